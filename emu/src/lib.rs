@@ -1,0 +1,1 @@
+//! Machine of lancer: words to effects, time and counts.

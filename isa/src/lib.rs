@@ -1,0 +1,3 @@
+//! What an instruction is, and its arithmetic.
+
+pub mod diagnostic;

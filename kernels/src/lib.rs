@@ -1,0 +1,1 @@
+//! Ray-tracing kernels in assembly, their layouts and bit-exact Rust twins.

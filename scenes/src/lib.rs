@@ -1,0 +1,3 @@
+//! Scene files, kd tree, memory image, generators and the double-precision reference.
+
+pub mod model;

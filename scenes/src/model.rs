@@ -1,0 +1,126 @@
+//! A scene as its files describe it, in double precision and in the user's units. Nothing here knows of grids or formats.
+
+/// Position, direction or colour in double precision.
+pub type Vec3 = [f64; 3];
+
+/// Surface of a triangle: the report's material line `r g b reflection intensity index` (report 5.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Diffuse colour, components in [0, 1].
+    pub colour: Vec3,
+    /// Specular coefficient ks, in [0, 1].
+    pub reflection: f64,
+    /// Diffuse coefficient kd, in [0, 1].
+    pub intensity: f64,
+    /// Index of refraction against the void; 0 for an opaque material.
+    pub index: f64,
+}
+
+impl Material {
+    /// Transmission coefficient kt: max(0, 1 - ks - kd) where the material is transparent, else 0.
+    pub fn transmission(&self) -> f64 {
+        if self.index > 0.0 { (1.0 - self.reflection - self.intensity).max(0.0) } else { 0.0 }
+    }
+}
+
+/// A point light without fall-off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Where it stands, in scene units.
+    pub position: Vec3,
+    /// Its colour, components in [0, 1].
+    pub colour: Vec3,
+}
+
+/// A triangle: three vertices by number, and its material by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Indices into [`Scene::vertices`].
+    pub vertices: [u32; 3],
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+}
+
+/// Everything that is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Short name, from the file's stem or the generator.
+    pub name: String,
+    /// Width and height of the picture in pixels.
+    pub size: (u32, u32),
+    /// The surfaces.
+    pub materials: Vec<Material>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// Positions in scene units.
+    pub vertices: Vec<Vec3>,
+    /// The triangles; their order is their index.
+    pub triangles: Vec<Triangle>,
+}
+
+impl Scene {
+    /// Smallest and largest corner of the triangles' box, `None` when there is no triangle.
+    pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let mut corners = self.triangles.iter().flat_map(|t| t.vertices).map(|v| self.vertices[v as usize]);
+        let first = corners.next()?;
+        Some(corners.fold((first, first), |(low, high), p| {
+            ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
+        }))
+    }
+}
+
+/// How the scene is looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Camera {
+    /// Parallel rays along -z, centred on the scene's box; the pixel pitch is max(box width / W, box height / H).
+    Orthographic,
+    /// Rays from one eye; `None` where the default stands: eye at (cx, cy, zmax + 1.2 max(bw, bh)), looking at the box's centre.
+    Perspective {
+        /// Eye position in scene units.
+        eye: Option<Vec3>,
+        /// Point that the centre of the picture shows, in scene units.
+        look: Option<Vec3>,
+        /// Vertical field of view in degrees (default 45).
+        field: f64,
+    },
+}
+
+/// What a user may say about a picture beside the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// The camera.
+    pub camera: Camera,
+    /// Moves every sample by this many pixel pitches, x right, y up.
+    pub shift: [f64; 2],
+    /// Ambient intensity (default 0.1).
+    pub ambient: f64,
+    /// Colour where a ray hits nothing (default black).
+    pub background: Vec3,
+    /// Levels of secondary rays below the camera ray (default 5).
+    pub bounces: u32,
+}
+
+impl View {
+    /// The defaults for a picture of `size` pixels.
+    pub fn new(size: (u32, u32)) -> View {
+        View {
+            size,
+            camera: Camera::Orthographic,
+            shift: [0.0; 2],
+            ambient: 0.1,
+            background: [0.0; 3],
+            bounces: 5,
+        }
+    }
+}
+
+/// A picture in linear components, row 0 on top, `width * height` pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Red, green and blue of each pixel; not clamped.
+    pub pixels: Vec<Vec3>,
+}

@@ -1,3 +1,4 @@
 //! Scene files, kd tree, memory image, generators and the double-precision reference.
 
+pub mod generate;
 pub mod model;

@@ -1,4 +1,5 @@
 //! Scene files, kd tree, memory image, generators and the double-precision reference.
 
 pub mod generate;
+pub mod kdtree;
 pub mod model;

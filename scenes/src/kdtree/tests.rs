@@ -1,0 +1,238 @@
+//! The tree against a model that follows the report's pseudo code 1 word by word: every candidate counted by looking at every triangle,
+//! costs compared as fractions with the node's surface below the line.
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// A node of the model: box, and either (axis, plane, children) or the packet.
+#[derive(Debug, PartialEq)]
+enum Model {
+    Inner(Bounds, usize, i32, Box<(Model, Model)>),
+    Leaf(Bounds, Vec<u32>),
+}
+
+/// Surface of a box, in square units.
+fn surface(b: &Bounds) -> i128 {
+    let side = |axis: usize| i128::from(b.high[axis]) - i128::from(b.low[axis]);
+    2 * (side(0) * side(1) + side(1) * side(2) + side(0) * side(2))
+}
+
+fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> Model {
+    let sides = [0, 1, 2].map(|k| i64::from(node.high[k]) - i64::from(node.low[k]));
+    let longest = *sides.iter().max().unwrap();
+    let axis = sides.iter().position(|&side| side == longest).unwrap();
+    let area = surface(&node);
+    if levels == 0 || area == 0 {
+        return Model::Leaf(node, packet);
+    }
+    let extent = |&i: &u32| (triangles[i as usize].low[axis], triangles[i as usize].high[axis]);
+    let mut candidates: Vec<i32> = packet.iter().map(extent).flat_map(|(low, high)| [low, high]).collect();
+    candidates.retain(|&s| node.low[axis] < s && s < node.high[axis]);
+    candidates.sort_unstable();
+    let mut lowest = packet.len() as i128 * area;
+    let mut found = None;
+    for s in candidates {
+        let left = packet.iter().map(extent).filter(|&(low, high)| low < s && high <= s).count() as i128;
+        let right = packet.iter().map(extent).filter(|&(low, high)| low >= s && high > s).count() as i128;
+        let both = packet.iter().map(extent).filter(|&(low, high)| low < s && high > s).count() as i128;
+        let flat = packet.iter().map(extent).filter(|&(low, high)| low == s && high == s).count() as i128;
+        let (mut below, mut above) = (node, node);
+        below.high[axis] = s;
+        above.low[axis] = s;
+        let cost = |nl: i128, nr: i128| area + surface(&below) * (nl + both) + surface(&above) * (nr + both);
+        let (to_left, to_right) = (cost(left + flat, right), cost(left, right + flat));
+        let is_right = to_right < to_left;
+        let here = if is_right { to_right } else { to_left };
+        if here < lowest {
+            lowest = here;
+            found = Some((s, is_right, below, above));
+        }
+    }
+    let Some((s, is_right, below, above)) = found else { return Model::Leaf(node, packet) };
+    let is_flat = |i: &u32| extent(i) == (s, s);
+    let lower = packet.iter().copied().filter(|i| extent(i).0 < s || is_flat(i) && !is_right).collect();
+    let upper = packet.iter().copied().filter(|i| extent(i).1 > s || is_flat(i) && is_right).collect();
+    let children = (model(lower, triangles, below, levels - 1), model(upper, triangles, above, levels - 1));
+    Model::Inner(node, axis, s, Box::new(children))
+}
+
+fn as_model(tree: &KdTree, number: u32) -> Model {
+    let node = &tree.nodes[number as usize];
+    match &node.content {
+        Content::Leaf { triangles } => Model::Leaf(node.bounds, triangles.clone()),
+        &Content::Inner { axis, at, left } => {
+            Model::Inner(node.bounds, axis, at, Box::new((as_model(tree, left), as_model(tree, left + 1))))
+        }
+    }
+}
+
+/// The numbers of the nodes level by level, from left to right, by walking down from the root.
+fn levels(tree: &KdTree) -> Vec<Vec<u32>> {
+    let mut levels = vec![vec![0]];
+    loop {
+        let below: Vec<u32> = levels[levels.len() - 1]
+            .iter()
+            .filter_map(|&number| match tree.nodes[number as usize].content {
+                Content::Inner { left, .. } => Some([left, left + 1]),
+                Content::Leaf { .. } => None,
+            })
+            .flatten()
+            .collect();
+        if below.is_empty() {
+            return levels;
+        }
+        levels.push(below);
+    }
+}
+
+fn check(triangles: &[Bounds], unit: i32, depth: u32) -> KdTree {
+    let root = triangles
+        .iter()
+        .copied()
+        .reduce(|a, b| a.union(&b))
+        .unwrap_or(Bounds { low: [0; 3], high: [0; 3] })
+        .grown(unit);
+    let tree = build(triangles, root, depth).unwrap();
+    assert_eq!(as_model(&tree, 0), model((0..triangles.len() as u32).collect(), triangles, root, depth));
+    let mut expected = 0;
+    for level in levels(&tree) {
+        for (place, &number) in level.iter().enumerate() {
+            assert_eq!(number, expected, "nodes are stored level by level");
+            expected += 1;
+            assert_eq!(tree.nodes[number as usize].next, level.get(place + 1).copied());
+        }
+    }
+    assert_eq!(expected as usize, tree.nodes.len());
+    tree
+}
+
+fn bounds(low: [i32; 3], high: [i32; 3]) -> Bounds {
+    Bounds { low, high }
+}
+
+/// Triangles as boxes whose corners lie on few different coordinates, so that ties, flat boxes and equal costs are common.
+fn boxes(range: i32, most: usize) -> impl Strategy<Value = Vec<Bounds>> {
+    let corner = || prop::array::uniform3(-range..=range);
+    prop::collection::vec(prop::array::uniform3(corner()).prop_map(|v| Bounds::of_triangle(&v)), 0..most)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    #[test]
+    fn it_is_the_tree_of_the_literal_rule_where_bounds_often_coincide(triangles in boxes(3, 24), depth in 0u32..7) {
+        check(&triangles, 1, depth);
+    }
+
+    #[test]
+    fn it_is_the_tree_of_the_literal_rule_at_the_ends_of_the_grid(triangles in boxes((1 << 30) - 4, 40), depth in 0u32..17) {
+        check(&triangles, 1, depth);
+    }
+
+    #[test]
+    fn it_is_the_tree_of_the_literal_rule_for_small_triangles(
+        triangles in prop::collection::vec((prop::array::uniform3(-500..500), prop::array::uniform3(0..9)), 0..60),
+        unit in 0..3,
+    ) {
+        let triangles: Vec<Bounds> =
+            triangles.into_iter().map(|(low, side)| bounds(low, [0, 1, 2].map(|k| low[k] + side[k]))).collect();
+        check(&triangles, unit, DEPTH);
+    }
+}
+
+#[test]
+fn no_triangles_give_one_empty_leaf() {
+    let tree = check(&[], 1, DEPTH);
+    assert_eq!(tree.nodes.len(), 1);
+    assert_eq!(tree.statistics().empty_leaves, 1);
+    assert_eq!(tree.statistics().depth, 0);
+}
+
+#[test]
+fn a_flat_node_stays_whole() {
+    let apart = [bounds([0, 0, 0], [1, 0, 0]), bounds([100, 0, 0], [101, 0, 0])];
+    assert_eq!(check(&apart, 0, DEPTH).nodes.len(), 1, "surface 0");
+    assert!(check(&apart, 1, DEPTH).nodes.len() == 1, "2 triangles never pay for a division that costs 1");
+    let many: Vec<Bounds> = (0..8).map(|k| bounds([k * 100, 0, 0], [k * 100 + 1, 0, 0])).collect();
+    assert_eq!(check(&many, 0, DEPTH).nodes.len(), 1);
+    assert!(check(&many, 1, DEPTH).nodes.len() > 1);
+}
+
+#[test]
+fn triangles_in_the_plane_go_to_the_cheaper_side() {
+    // Along x from -1 to 101: eight flat triangles at 20. The left child is smaller and takes them.
+    let mut triangles = vec![bounds([20, 0, 0], [20, 50, 50]); 8];
+    triangles.push(bounds([0, 0, 0], [100, 50, 50]));
+    let tree = check(&triangles, 1, 1);
+    let Content::Inner { axis: 0, at: 20, left: 1 } = tree.nodes[0].content else { panic!("{:?}", tree.nodes[0]) };
+    assert_eq!(tree.nodes[1].content, Content::Leaf { triangles: (0..9).collect() });
+    assert_eq!(tree.nodes[2].content, Content::Leaf { triangles: vec![8] });
+    // Mirrored, the right one does.
+    for triangle in &mut triangles {
+        (triangle.low[0], triangle.high[0]) = (100 - triangle.high[0], 100 - triangle.low[0]);
+    }
+    let tree = check(&triangles, 1, 1);
+    assert_eq!(tree.nodes[1].content, Content::Leaf { triangles: vec![8] });
+    // Exactly between, the left one.
+    for triangle in &mut triangles[..8] {
+        (triangle.low[0], triangle.high[0]) = (50, 50);
+    }
+    let tree = check(&triangles, 1, 1);
+    assert_eq!(tree.nodes[2].content, Content::Leaf { triangles: vec![8] });
+}
+
+#[test]
+fn equal_costs_take_the_lowest_coordinate_and_equal_sides_the_first_axis() {
+    // Two packets that mirror each other: planes at -10 and 10 cost the same.
+    let packet = |x: i32| bounds([x.min(x * 9), -90, -90], [x.max(x * 9), 90, 90]);
+    let triangles: Vec<Bounds> = [packet(10); 5].into_iter().chain([packet(-10); 5]).collect();
+    let tree = check(&triangles, 1, 1);
+    assert!(matches!(tree.nodes[0].content, Content::Inner { axis: 0, at: -10, .. }), "{:?}", tree.nodes[0]);
+}
+
+#[test]
+fn the_depth_limit_holds() {
+    let triangles: Vec<Bounds> = (0..1000).map(|k| bounds([k * 64, 0, 0], [k * 64 + 32, 9, 9])).collect();
+    for depth in [0, 1, 2, 5, DEPTH] {
+        assert!(check(&triangles, 1, depth).statistics().depth <= depth);
+    }
+    assert_eq!(check(&triangles, 1, 3).statistics().depth, 3);
+}
+
+#[test]
+fn the_statistics_of_a_small_tree_are_right() {
+    let many: Vec<Bounds> = (0..4).map(|k| bounds([k * 100, 0, 0], [k * 100 + 1, 50, 50])).collect();
+    let tree = check(&many, 1, 1);
+    // The root's plane lies at 1, 100, 101, 200, 201 or 300; whichever it is, no triangle straddles it.
+    let statistics = tree.statistics();
+    assert_eq!((statistics.nodes, statistics.leaves, statistics.empty_leaves), (3, 2, 0));
+    assert_eq!((statistics.references, statistics.depth, statistics.mean_triangles), (4, 1, 2.0));
+}
+
+#[test]
+fn a_terrain_of_sixty_thousand_triangles_takes_moments() {
+    let height = |x: i32, z: i32| ((x * 37 + z * 91) % 101 + (x * x + z * 3) % 57) * 300_000;
+    let corner = |x: i32, z: i32| [(x - 86) * 12_000_000, height(x, z), (z - 87) * 12_000_000];
+    let triangles: Vec<Bounds> = (0..173)
+        .flat_map(|x| (0..174).map(move |z| (x, z)))
+        .flat_map(|(x, z)| {
+            let [a, b, c, d] = [corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1)];
+            [Bounds::of_triangle(&[a, b, c]), Bounds::of_triangle(&[b, d, c])]
+        })
+        .collect();
+    let root = triangles.iter().copied().reduce(|a, b| a.union(&b)).unwrap().grown(1);
+    let tree = build(&triangles, root, DEPTH).unwrap();
+    let statistics = tree.statistics();
+    assert_eq!(statistics.depth, DEPTH);
+    // Every triangle is in every leaf that its box reaches into.
+    for node in &tree.nodes {
+        if let Content::Leaf { triangles: packet } = &node.content {
+            assert!(packet.is_sorted());
+            for &index in packet {
+                let (t, b) = (&triangles[index as usize], &node.bounds);
+                assert!((0..3).all(|k| t.low[k] <= b.high[k] && t.high[k] >= b.low[k]));
+            }
+        }
+    }
+}

@@ -78,7 +78,14 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// An error without a place.
     pub fn error(message: impl Into<String>) -> Diagnostic {
-        Diagnostic { severity: Severity::Error, code: None, message: message.into(), place: None, others: Vec::new(), hint: None }
+        Diagnostic {
+            severity: Severity::Error,
+            code: None,
+            message: message.into(),
+            place: None,
+            others: Vec::new(),
+            hint: None,
+        }
     }
 
     /// A warning without a place.
@@ -191,7 +198,11 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
 /// Longest part of a source line that a message shows, in octets; longer lines are cut around the place.
 const SHOWN: usize = 160;
 
-fn snippet<'a>(place: &'a Place, label: &'a str, kind: AnnotationKind) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+fn snippet<'a>(
+    place: &'a Place,
+    label: &'a str,
+    kind: AnnotationKind,
+) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
     let text = &place.source.text;
     let from = floor_boundary(text, place.span.start);
     let line_start = text[..from].rfind('\n').map_or(0, |at| at + 1);

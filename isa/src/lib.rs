@@ -1,3 +1,17 @@
 //! What an instruction is, and its arithmetic.
 
 pub mod diagnostic;
+
+pub mod class;
+mod isa;
+pub mod number;
+pub mod picture;
+pub mod program;
+pub mod row;
+pub mod table;
+
+pub use class::{Class, Counts};
+pub use isa::{EncodeError, Fields, Instruction, Isa, parse_register, register_name};
+pub use program::Program;
+pub use row::{Exit, Kind, Operand, Row};
+pub use table::{Op, ROWS};

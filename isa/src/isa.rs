@@ -1,0 +1,241 @@
+//! The instruction set of a run: the built-in table plus loaded extension rows, with encoder and decoder over it.
+
+use std::fmt;
+
+use crate::row::{Kind, Row};
+use crate::table::{Op, ROWS};
+
+/// The fields of a decoded word, by operand letter; a letter that the row does not have is 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the letters are those of the rows")]
+pub struct Fields {
+    pub d: u8,
+    pub e: u8,
+    pub x: u8,
+    pub y: u8,
+    pub a: u8,
+    pub b: u8,
+    pub c: u8,
+    pub i: i32,
+    pub j: i32,
+}
+
+impl Fields {
+    /// The number in the field of a letter.
+    pub fn get(&self, letter: u8) -> i64 {
+        match letter {
+            b'd' => self.d.into(),
+            b'e' => self.e.into(),
+            b'x' => self.x.into(),
+            b'y' => self.y.into(),
+            b'a' => self.a.into(),
+            b'b' => self.b.into(),
+            b'c' => self.c.into(),
+            b'i' => self.i.into(),
+            _ => self.j.into(),
+        }
+    }
+
+    fn set(&mut self, letter: u8, value: i32) {
+        match letter {
+            b'd' => self.d = value as u8,
+            b'e' => self.e = value as u8,
+            b'x' => self.x = value as u8,
+            b'y' => self.y = value as u8,
+            b'a' => self.a = value as u8,
+            b'b' => self.b = value as u8,
+            b'c' => self.c = value as u8,
+            b'i' => self.i = value,
+            _ => self.j = value,
+        }
+    }
+}
+
+/// A decoded word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Instruction {
+    /// Which row.
+    pub op: Op,
+    /// Its operands.
+    pub fields: Fields,
+}
+
+/// Why an instruction cannot be encoded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EncodeError {
+    /// Operand number `operand` must lie in `least..=most`.
+    Range {
+        /// Place in the row's list of operands.
+        operand: usize,
+        /// The value that was asked for.
+        value: i64,
+        /// Least value of the field.
+        least: i64,
+        /// Largest value of the field.
+        most: i64,
+    },
+    /// The row has `expected` operands.
+    Operands {
+        /// How many the row has.
+        expected: usize,
+    },
+}
+
+impl fmt::Display for EncodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            EncodeError::Range { value, least, most, .. } => write!(f, "{value} is not in {least}..={most}"),
+            EncodeError::Operands { expected } => write!(f, "the instruction takes {expected} operands"),
+        }
+    }
+}
+
+/// The instruction set of a run.
+#[derive(Clone, Debug)]
+pub struct Isa {
+    extensions: Vec<Row>,
+    by_major: Vec<Vec<Op>>,
+}
+
+impl Isa {
+    /// The built-in table alone.
+    pub fn base() -> Isa {
+        let mut isa = Isa { extensions: Vec::new(), by_major: vec![Vec::new(); 64] };
+        for &op in Op::BUILT_IN {
+            isa.enter(op);
+        }
+        isa
+    }
+
+    fn enter(&mut self, op: Op) {
+        let picture = self.row(op).picture;
+        for major in 0..64u32 {
+            if (major << 26 ^ picture.value) & picture.mask >> 26 << 26 == 0 {
+                self.by_major[major as usize].push(op);
+            }
+        }
+    }
+
+    /// Adds an extension row.
+    ///
+    /// # Errors
+    /// The row whose name or word it would take.
+    pub fn extend(&mut self, row: Row) -> Result<Op, Op> {
+        if let Some(other) =
+            self.ops().find(|&op| self.row(op).name == row.name || self.row(op).picture.overlaps(&row.picture))
+        {
+            return Err(other);
+        }
+        let op = Op::Ext(self.extensions.len() as u16);
+        self.extensions.push(row);
+        self.enter(op);
+        Ok(op)
+    }
+
+    /// All opcodes, extensions last.
+    pub fn ops(&self) -> impl Iterator<Item = Op> + '_ {
+        Op::BUILT_IN.iter().copied().chain((0..self.extensions.len()).map(|n| Op::Ext(n as u16)))
+    }
+
+    /// The row of an opcode.
+    pub fn row(&self, op: Op) -> &Row {
+        match op {
+            Op::Ext(n) => &self.extensions[n as usize],
+            _ => &ROWS[op.index()],
+        }
+    }
+
+    /// The opcode of a mnemonic.
+    pub fn find(&self, name: &str) -> Option<Op> {
+        self.ops().find(|&op| self.row(op).name == name)
+    }
+
+    /// Decodes a word; `None` when no row matches or a register or lane does not exist.
+    pub fn decode(&self, word: u32) -> Option<Instruction> {
+        let op = self.by_major[(word >> 26) as usize].iter().copied().find(|&op| self.row(op).picture.matches(word))?;
+        let row = self.row(op);
+        let mut fields = Fields::default();
+        for operand in row.operands.iter() {
+            let field = row.picture.field(operand.letter)?;
+            let raw = i64::from(word >> field.shift) & ((1 << field.width) - 1);
+            let is_negative = operand.kind.is_signed() && raw >> (field.width - 1) == 1;
+            let value = if is_negative { raw - (1 << field.width) } else { raw };
+            let (least, most) = operand.kind.range(field.width);
+            if value < least || value > most {
+                return None;
+            }
+            fields.set(operand.letter, value as i32);
+        }
+        Some(Instruction { op, fields })
+    }
+
+    /// Encodes an instruction from its operands in the order of the row.
+    ///
+    /// # Errors
+    /// A wrong number of operands, or a number that its field does not hold; nothing wraps.
+    pub fn encode(&self, op: Op, operands: &[i64]) -> Result<u32, EncodeError> {
+        let row = self.row(op);
+        if operands.len() != row.operands.len() {
+            return Err(EncodeError::Operands { expected: row.operands.len() });
+        }
+        let mut word = row.picture.value;
+        for (place, (operand, &value)) in row.operands.iter().zip(operands).enumerate() {
+            let field = row.picture.field(operand.letter).expect("Row::check gave every operand a field");
+            let (least, most) = operand.kind.range(field.width);
+            if value < least || value > most {
+                return Err(EncodeError::Range { operand: place, value, least, most });
+            }
+            word |= (value as u32 & ((1u64 << field.width) - 1) as u32) << field.shift;
+        }
+        Ok(word)
+    }
+}
+
+/// Name of a register of the file that a kind names, such as `v3`.
+pub fn register_name(kind: Kind, number: u8) -> String {
+    match kind.register_file() {
+        Some(file) => format!("{file}{number}"),
+        None => number.to_string(),
+    }
+}
+
+/// The register that a text names: its file's letter and number. `None` for anything else (`s32`, `v01`, `w8`).
+pub fn parse_register(text: &str) -> Option<(char, u8)> {
+    let file = text.chars().next().filter(|file| "svw".contains(*file))?;
+    let digits = &text[1..];
+    let is_plain = digits.bytes().all(|c| c.is_ascii_digit()) && (digits == "0" || !digits.starts_with('0'));
+    let number: u8 = if is_plain { digits.parse().ok()? } else { return None };
+    let count = if file == 'w' { 8 } else { 32 };
+    (number < count).then_some((file, number))
+}
+
+impl Instruction {
+    /// The instruction as assembly text that assembles to the same word; `target` names the label or number that a
+    /// distance in words leads to.
+    pub fn text(&self, isa: &Isa, target: impl Fn(i32) -> String) -> String {
+        let row = isa.row(self.op);
+        let mut parts: Vec<String> = Vec::new();
+        let mut at = 0;
+        while at < row.operands.len() {
+            let operand = row.operands[at];
+            let value = self.fields.get(operand.letter);
+            let next_is_offset = row.operands.get(at + 1).is_some_and(|next| next.kind == Kind::Off);
+            if next_is_offset && operand.kind.register_file() == Some('s') {
+                let offset = self.fields.get(row.operands[at + 1].letter);
+                parts.push(format!("{offset}({})", register_name(operand.kind, value as u8)));
+                at += 2;
+                continue;
+            }
+            parts.push(match operand.kind {
+                Kind::Rel => target(value as i32),
+                kind => register_name_or_number(kind, value),
+            });
+            at += 1;
+        }
+        if parts.is_empty() { row.name.to_string() } else { format!("{} {}", row.name, parts.join(", ")) }
+    }
+}
+
+fn register_name_or_number(kind: Kind, value: i64) -> String {
+    if kind.register_file().is_some() { register_name(kind, value as u8) } else { value.to_string() }
+}

@@ -1,0 +1,65 @@
+//! Fixed-point arithmetic on raw integers: quantization and overflow in the modes of IEEE 1666, exact quotients, and
+//! correctly rounded roots. Which format a raw integer has is the caller's business; every function says how it rounds.
+
+mod modes;
+mod nearest;
+mod root;
+
+pub use modes::{Modes, Overflow, Quantization};
+pub use nearest::Nearest32;
+pub use root::square_root;
+
+/// Three raw lanes.
+pub type Vector = [i32; 3];
+
+/// The machine's word length and modes. All operations take exact integers and round once.
+pub trait Arithmetic {
+    /// Bits of a word, 8 to 32.
+    fn word(&self) -> u32;
+
+    /// `value / 2^shift`, quantized and brought into `bits` bits (at most 64); `shift` at most 126.
+    fn quantize(&self, value: i128, shift: u32, bits: u32) -> i64;
+
+    /// `value / 2^shift` as a word.
+    fn narrow(&self, value: i128, shift: u32) -> i32 {
+        self.quantize(value, shift, self.word()) as i32
+    }
+
+    /// `value / 2^shift` as a word, for values of 64 bits.
+    fn narrow64(&self, value: i64, shift: u32) -> i32 {
+        self.narrow(value.into(), shift)
+    }
+
+    /// `value / 2^shift` as a wide number of twice the word.
+    fn widen(&self, value: i128, shift: u32) -> i64 {
+        self.quantize(value, shift, 2 * self.word())
+    }
+
+    /// The exact quotient, quantized once to a word; x / 0 overflows with the sign of x, 0 / 0 = 0.
+    fn quotient(&self, dividend: i128, divisor: i128) -> i32;
+
+    /// The square root of a non-negative integer, correctly rounded to nearest (a root is never a tie), as a word.
+    fn root(&self, value: u128) -> i32 {
+        self.narrow(square_root(value).into(), 0)
+    }
+}
+
+/// Number of bits that the two's complement number needs without its sign: 0 for 0 and -1, 3 for 7 and -8.
+pub const fn magnitude_bits(value: i128) -> u32 {
+    128 - (if value < 0 { !value } else { value }).leading_zeros()
+}
+
+/// The shift right (negative: left) after which the largest lane lies in [2^(word-3), 2^(word-2)); 0 for a zero vector.
+///
+/// Rounding may then bring the largest lane to 2^(word-2) exactly.
+pub fn normalizing_shift(lanes: [i128; 3], word: u32) -> i32 {
+    let largest = lanes.map(i128::unsigned_abs).into_iter().max().unwrap_or(0);
+    if largest == 0 { 0 } else { (128 - largest.leading_zeros()) as i32 - (word as i32 - 2) }
+}
+
+/// `value` times 2^-shift, where a negative shift goes left; exact to the left, unrounded input for [`Arithmetic::quantize`].
+///
+/// Returns the exact numerator and the shift right that is left to do.
+pub const fn split_shift(value: i128, shift: i32) -> (i128, u32) {
+    if shift < 0 { (value << -shift, 0) } else { (value, shift as u32) }
+}

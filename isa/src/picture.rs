@@ -1,0 +1,182 @@
+//! The 32-bit word of an instruction as a picture: `0` and `1` are fixed, a letter is a bit of that operand's field,
+//! `-` encodes as 0 and must be 0, spaces are ignored. One parser serves built-in rows, at compile time, and extensions.
+
+use std::fmt;
+
+/// Most fields that a picture may have.
+pub const MAX_FIELDS: usize = 6;
+
+/// Letters that may name an operand: written, read and written, read, immediate.
+pub const LETTERS: &[u8] = b"dexyabcij";
+
+/// Where an operand stands in the word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// The operand's letter.
+    pub letter: u8,
+    /// Lowest bit of the field.
+    pub shift: u8,
+    /// Number of bits.
+    pub width: u8,
+}
+
+/// A parsed picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// The fixed bits.
+    pub value: u32,
+    /// Which bits are fixed, those drawn `-` included.
+    pub mask: u32,
+    fields: [Field; MAX_FIELDS],
+    count: u8,
+}
+
+/// Why a picture cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureError {
+    /// Not 32 bits but this many.
+    Length(usize),
+    /// A character, at this octet, that means nothing in a picture.
+    Character(usize),
+    /// The field of this letter is in several pieces.
+    Split(u8),
+    /// More than [`MAX_FIELDS`] fields.
+    TooManyFields,
+}
+
+impl fmt::Display for PictureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            PictureError::Length(bits) => write!(f, "the picture has {bits} bits instead of 32"),
+            PictureError::Character(at) => {
+                write!(f, "character {} of the picture is none of 0, 1, -, {}", at + 1, LETTERS.escape_ascii())
+            }
+            PictureError::Split(letter) => write!(f, "the field `{}` is in several pieces", *letter as char),
+            PictureError::TooManyFields => write!(f, "the picture has more than {MAX_FIELDS} fields"),
+        }
+    }
+}
+
+/// Names of the major opcodes that stay free for extensions, with their six bits.
+pub const CUSTOM: [(&str, &str); 4] =
+    [("custom0", "111100"), ("custom1", "111101"), ("custom2", "111110"), ("custom3", "111111")];
+
+impl Picture {
+    /// Reads a picture.
+    pub const fn parse(text: &str) -> Result<Picture, PictureError> {
+        let text = text.as_bytes();
+        let empty = Field { letter: 0, shift: 0, width: 0 };
+        let mut picture = Picture { value: 0, mask: 0, fields: [empty; MAX_FIELDS], count: 0 };
+        let mut bits = 0;
+        let mut at = 0;
+        let mut last = 0;
+        if let Some(value) = custom_major(text) {
+            picture.value = value << 26;
+            picture.mask = 0x3f << 26;
+            bits = 6;
+            at = CUSTOM[0].0.len();
+        }
+        while at < text.len() {
+            let c = text[at];
+            at += 1;
+            if c == b' ' {
+                continue;
+            }
+            bits += 1;
+            if bits > 32 {
+                continue;
+            }
+            let shift = 32 - bits as u8;
+            match c {
+                b'0' | b'1' | b'-' => {
+                    picture.mask |= 1 << shift;
+                    picture.value |= ((c == b'1') as u32) << shift;
+                }
+                _ if is_letter(c) => {
+                    if c == last {
+                        let field = &mut picture.fields[picture.count as usize - 1];
+                        field.shift = shift;
+                        field.width += 1;
+                    } else {
+                        if picture.field(c).is_some() {
+                            return Err(PictureError::Split(c));
+                        }
+                        if picture.count as usize == MAX_FIELDS {
+                            return Err(PictureError::TooManyFields);
+                        }
+                        picture.fields[picture.count as usize] = Field { letter: c, shift, width: 1 };
+                        picture.count += 1;
+                    }
+                }
+                _ => return Err(PictureError::Character(at - 1)),
+            }
+            last = c;
+        }
+        if bits == 32 { Ok(picture) } else { Err(PictureError::Length(bits)) }
+    }
+
+    /// The field of an operand.
+    pub const fn field(&self, letter: u8) -> Option<Field> {
+        let mut at = 0;
+        while at < self.count as usize {
+            if self.fields[at].letter == letter {
+                return Some(self.fields[at]);
+            }
+            at += 1;
+        }
+        None
+    }
+
+    /// All fields, from the top bit down.
+    pub fn fields(&self) -> &[Field] {
+        &self.fields[..self.count as usize]
+    }
+
+    /// Number of fields.
+    pub const fn field_count(&self) -> usize {
+        self.count as usize
+    }
+
+    /// Whether some word matches both pictures.
+    pub const fn overlaps(&self, other: &Picture) -> bool {
+        (self.value ^ other.value) & self.mask & other.mask == 0
+    }
+
+    /// Whether `word` has the fixed bits of this picture.
+    pub const fn matches(&self, word: u32) -> bool {
+        word & self.mask == self.value
+    }
+
+    /// Whether the six major bits are one of the four opcodes kept for extensions.
+    pub const fn is_custom(&self) -> bool {
+        self.mask >> 26 == 0x3f && self.value >> 28 == 0xf
+    }
+}
+
+const fn is_letter(c: u8) -> bool {
+    let mut at = 0;
+    while at < LETTERS.len() {
+        if LETTERS[at] == c {
+            return true;
+        }
+        at += 1;
+    }
+    false
+}
+
+/// The major opcode when the text starts with `custom0` to `custom3`.
+const fn custom_major(text: &[u8]) -> Option<u32> {
+    let name = CUSTOM[0].0.as_bytes();
+    if text.len() < name.len() {
+        return None;
+    }
+    let mut at = 0;
+    while at < name.len() - 1 {
+        if text[at] != name[at] {
+            return None;
+        }
+        at += 1;
+    }
+    let digit = text[at];
+    if digit >= b'0' && digit <= b'3' { Some(0x3c + (digit - b'0') as u32) } else { None }
+}

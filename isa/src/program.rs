@@ -1,0 +1,68 @@
+//! What an assembler makes and a machine runs: words, the initial buffer, and what ties them to source lines,
+//! functions and regions.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::diagnostic::Source;
+
+/// A line of one of a program's sources.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Line {
+    /// Index into [`Program::sources`].
+    pub source: u16,
+    /// Line from 1.
+    pub line: u32,
+}
+
+/// A stretch of code that counts are reported for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Its name.
+    pub name: String,
+    /// Whether it is a function (`.func`), entered by calls, or a region (`.region`), entered by running into it.
+    pub is_function: bool,
+    /// The region around it, an index into [`Program::regions`].
+    pub parent: Option<u16>,
+}
+
+/// An assembled program.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Program {
+    /// Instruction words; a program counter is an index into them.
+    pub words: Vec<u32>,
+    /// What the local buffer holds at the start of a work item, from address 0.
+    pub buffer: Vec<u8>,
+    /// Where execution starts, in words.
+    pub entry: u32,
+    /// Labels and constants by name: labels of code in words, of data in octets.
+    pub symbols: BTreeMap<String, i64>,
+    /// The files it was made from.
+    pub sources: Vec<Arc<Source>>,
+    /// The source line of each word; where a macro made the word, its line in the macro.
+    pub lines: Vec<Line>,
+    /// Functions and regions.
+    pub regions: Vec<Region>,
+    /// The innermost region of each word.
+    pub region_of: Vec<Option<u16>>,
+}
+
+impl Program {
+    /// `file:line` of a word, for messages.
+    pub fn place(&self, pc: u32) -> Option<String> {
+        let line = self.lines.get(pc as usize)?;
+        Some(format!("{}:{}", self.sources.get(line.source as usize)?.name, line.line))
+    }
+
+    /// Name of the innermost function around a word.
+    pub fn function(&self, pc: u32) -> Option<&str> {
+        let mut region = (*self.region_of.get(pc as usize)?)?;
+        loop {
+            let here = self.regions.get(region as usize)?;
+            if here.is_function {
+                return Some(&here.name);
+            }
+            region = here.parent?;
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! What a row of the instruction table says: operands, picture, exits and their costs. Built-in rows are constants,
+//! rows of extensions are owned values of the same type.
+
+use std::borrow::Cow;
+
+use crate::class::Counts;
+use crate::picture::Picture;
+
+/// What an operand is, and what its field's number means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Scalar register `s0` to `s31`; `s0` reads zero and ignores writes.
+    S,
+    /// Vector register `v0` to `v31`, three lanes.
+    V,
+    /// Wide accumulator `w0` to `w7`, twice the word.
+    W,
+    /// Scalar register read as a 32-bit address, never quantized.
+    A,
+    /// Two consecutive vector registers, named by the first.
+    V2,
+    /// Three consecutive vector registers, named by the first.
+    V3,
+    /// Shift in bits, unsigned.
+    Sh,
+    /// Signed integer.
+    Im,
+    /// Unsigned integer.
+    Un,
+    /// Signed offset in octets from the address operand before it.
+    Off,
+    /// Signed distance in words from this instruction to a label.
+    Rel,
+    /// Lane of a vector: 0, 1 or 2.
+    Lane,
+}
+
+impl Kind {
+    /// All kinds.
+    pub const ALL: [Kind; 12] = [
+        Kind::S,
+        Kind::V,
+        Kind::W,
+        Kind::A,
+        Kind::V2,
+        Kind::V3,
+        Kind::Sh,
+        Kind::Im,
+        Kind::Un,
+        Kind::Off,
+        Kind::Rel,
+        Kind::Lane,
+    ];
+
+    /// The name that rows use.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::S => "S",
+            Kind::V => "V",
+            Kind::W => "W",
+            Kind::A => "A",
+            Kind::V2 => "V2",
+            Kind::V3 => "V3",
+            Kind::Sh => "Sh",
+            Kind::Im => "Im",
+            Kind::Un => "Un",
+            Kind::Off => "Off",
+            Kind::Rel => "Rel",
+            Kind::Lane => "Lane",
+        }
+    }
+
+    /// The kind of that name.
+    pub fn from_name(name: &str) -> Option<Kind> {
+        Kind::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// The prefix of the register file, `None` for immediates.
+    pub const fn register_file(self) -> Option<char> {
+        match self {
+            Kind::S | Kind::A => Some('s'),
+            Kind::V | Kind::V2 | Kind::V3 => Some('v'),
+            Kind::W => Some('w'),
+            _ => None,
+        }
+    }
+
+    /// How many consecutive registers the operand names; 0 for immediates.
+    pub const fn registers(self) -> u8 {
+        match self {
+            Kind::S | Kind::A | Kind::V | Kind::W => 1,
+            Kind::V2 => 2,
+            Kind::V3 => 3,
+            _ => 0,
+        }
+    }
+
+    /// Bits that a register field of this kind needs; `None` where the row chooses.
+    pub const fn width(self) -> Option<u8> {
+        match self {
+            Kind::S | Kind::A | Kind::V | Kind::V2 | Kind::V3 => Some(5),
+            Kind::W => Some(3),
+            Kind::Lane => Some(2),
+            Kind::Sh => Some(6),
+            Kind::Im | Kind::Un | Kind::Off | Kind::Rel => None,
+        }
+    }
+
+    /// Whether the field is a two's complement number.
+    pub const fn is_signed(self) -> bool {
+        matches!(self, Kind::Im | Kind::Off | Kind::Rel)
+    }
+
+    /// Least and largest number that a field of `width` bits may hold.
+    pub const fn range(self, width: u8) -> (i64, i64) {
+        match self {
+            Kind::V2 => (0, 30),
+            Kind::V3 => (0, 29),
+            Kind::Lane => (0, 2),
+            _ if self.is_signed() => (-(1 << (width - 1)), (1 << (width - 1)) - 1),
+            _ => (0, (1 << width) - 1),
+        }
+    }
+}
+
+/// One operand of a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Operand {
+    /// `d e` written, `x y` read and written, `a b c` read, `i j` immediate.
+    pub letter: u8,
+    /// What it is.
+    pub kind: Kind,
+}
+
+impl Operand {
+    /// Whether the instruction reads the register.
+    pub const fn is_read(&self) -> bool {
+        matches!(self.letter, b'x' | b'y' | b'a' | b'b' | b'c')
+    }
+
+    /// Whether the instruction writes the register.
+    pub const fn is_written(&self) -> bool {
+        matches!(self.letter, b'd' | b'e' | b'x' | b'y')
+    }
+}
+
+/// One way in which an instruction ends, and what that way costs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exit {
+    /// `Done`, `Taken`, ...
+    pub name: Cow<'static, str>,
+    /// Cost of the exit.
+    pub cost: Counts,
+    /// Cost of each unit that the meaning reports (an octet of a block transfer).
+    pub each: Counts,
+}
+
+/// The chapter of the table in which a row stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Room {
+    /// Name, as in file names.
+    pub name: &'static str,
+    /// What the rows of the room have in common.
+    pub doc: &'static str,
+}
+
+/// One instruction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// Mnemonic.
+    pub name: Cow<'static, str>,
+    /// What is true of it; the first sentence is the one that manuals quote.
+    pub doc: Cow<'static, str>,
+    /// Name of its room.
+    pub room: Cow<'static, str>,
+    /// Operands in the order of the assembly text.
+    pub operands: Cow<'static, [Operand]>,
+    /// The word.
+    pub picture: Picture,
+    /// The picture as written.
+    pub drawn: Cow<'static, str>,
+    /// The ways in which it ends; at least one.
+    pub exits: Cow<'static, [Exit]>,
+}
+
+/// Why a row is not well formed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowError {
+    /// The operand of this letter has no field, or not as wide as its kind needs.
+    Field(u8),
+    /// The picture has a field without an operand.
+    Spare,
+    /// A letter is used by two operands.
+    Twice(u8),
+    /// A register under an immediate's letter or the other way round.
+    Letter(u8),
+    /// There is no exit.
+    NoExit,
+}
+
+impl Row {
+    /// Whether operands, picture and exits fit together.
+    pub const fn check(operands: &[Operand], picture: &Picture, exits: usize) -> Result<(), RowError> {
+        let mut at = 0;
+        while at < operands.len() {
+            let Operand { letter, kind } = operands[at];
+            let mut before = 0;
+            while before < at {
+                if operands[before].letter == letter {
+                    return Err(RowError::Twice(letter));
+                }
+                before += 1;
+            }
+            if (letter == b'i' || letter == b'j') != kind.register_file().is_none() {
+                return Err(RowError::Letter(letter));
+            }
+            match picture.field(letter) {
+                None => return Err(RowError::Field(letter)),
+                Some(field) => {
+                    if let Some(width) = kind.width()
+                        && field.width != width
+                    {
+                        return Err(RowError::Field(letter));
+                    }
+                }
+            }
+            at += 1;
+        }
+        if picture.field_count() != operands.len() {
+            return Err(RowError::Spare);
+        }
+        if exits == 0 {
+            return Err(RowError::NoExit);
+        }
+        Ok(())
+    }
+
+    /// The operand of a letter.
+    pub fn operand(&self, letter: u8) -> Option<&Operand> {
+        self.operands.iter().find(|operand| operand.letter == letter)
+    }
+
+    /// Number of the exit of that name.
+    pub fn exit(&self, name: &str) -> Option<usize> {
+        self.exits.iter().position(|exit| exit.name == name)
+    }
+
+    /// The row line as it stands in the table: operands, picture, exits.
+    pub fn line(&self) -> String {
+        let operands: Vec<String> =
+            self.operands.iter().map(|o| format!("{}: {}", o.letter as char, o.kind.name())).collect();
+        let exits: Vec<String> = self.exits.iter().map(Exit::text).collect();
+        format!("{} ({})  \"{}\"  [{}]", self.name, operands.join(", "), self.drawn, exits.join(", "))
+    }
+}
+
+impl Exit {
+    /// The exit as a row writes it, such as `Done(mem 1; each octet 1)`.
+    pub fn text(&self) -> String {
+        let list = |counts: &Counts| -> String {
+            let parts: Vec<String> =
+                counts.iter().filter(|&(_, n)| n != 0).map(|(class, n)| format!("{} {n}", class.name())).collect();
+            parts.join(", ")
+        };
+        if self.each == Counts::ZERO {
+            format!("{}({})", self.name, list(&self.cost))
+        } else {
+            format!("{}({}; each {})", self.name, list(&self.cost), list(&self.each))
+        }
+    }
+}

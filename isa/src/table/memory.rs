@@ -1,0 +1,65 @@
+//! Rows that touch the local buffer, and rows that touch global memory over the bus.
+
+/// Hands the rows of the room on.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! memory_rows {
+    ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
+        local local LocalRoom "The local buffer of a core: octet addresses from 0, little-endian, any alignment. An access beyond its end is a trap." {
+            /// Loads an octet, unsigned, from the buffer at `a + i`.
+            lbu (d: S, a: A, i: Off)          "011000 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Loads 16 bits, signed, from the buffer at `a + i`.
+            lh (d: S, a: A, i: Off)           "011001 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Loads 16 bits, unsigned, from the buffer at `a + i`.
+            lhu (d: S, a: A, i: Off)          "011010 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Loads 32 bits from the buffer at `a + i`.
+            lw (d: S, a: A, i: Off)           "011011 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Stores the low octet of `b` to the buffer at `a + i`.
+            sb (b: S, a: A, i: Off)           "011100 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Stores the low 16 bits of `b` to the buffer at `a + i`.
+            sh (b: S, a: A, i: Off)           "011101 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Stores 32 bits to the buffer at `a + i`.
+            sw (b: S, a: A, i: Off)           "011110 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(local 1)];
+            /// Loads three words of 32 bits from the buffer at `a + i`.
+            lv (d: V, a: A, i: Off)           "011111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 3)];
+            /// Stores three words of 32 bits to the buffer at `a + i`.
+            sv (b: V, a: A, i: Off)           "100000 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(local 3)];
+            /// Loads three signed numbers of 16 bits from the buffer at `a + i`, each shifted left by `j`.
+            lvh (d: V, a: A, i: Off, j: Sh)   "100001 ddddd aaaaa iiiiiiiiii jjjjjj"   [Done(local 3)];
+            /// Loads a wide number of 64 bits from the buffer at `a + i`.
+            lwide (d: W, a: A, i: Off)        "100010 ddd00 aaaaa iiiiiiiiiiiiiiii"    [Done(local 2)];
+            /// Stores a wide number of 64 bits to the buffer at `a + i`.
+            swide (b: W, a: A, i: Off)        "100010 bbb01 aaaaa iiiiiiiiiiiiiiii"    [Done(local 2)];
+            /// Loads 32 bits from the buffer at `x`, then adds `i` octets to `x`.
+            lwp (d: S, x: S, i: Off)          "100011 ddddd xxxxx iiiiiiiiiiiiiiii"    [Done(local 1, address 1)];
+            /// Loads three words from the buffer at `x`, then adds `i` octets to `x`.
+            lvp (d: V, x: S, i: Off)          "100100 ddddd xxxxx iiiiiiiiiiiiiiii"    [Done(local 3, address 1)];
+            /// Stores 32 bits to the buffer at `x`, then adds `i` octets to `x`.
+            swp (b: S, x: S, i: Off)          "100101 bbbbb xxxxx iiiiiiiiiiiiiiii"    [Done(local 1, address 1)];
+        }
+        bus bus BusRoom "Global memory, over the shared bus: the core waits for the arbiter, then for the transfer." {
+            /// Copies `c` octets from global memory at `b` to the buffer at `a`.
+            load (a: A, b: A, c: S)           "100110 aaaaa bbbbb ccccc ----- 000000"  [Done(mem 1; each octet 1)];
+            /// Copies `c` octets from the buffer at `b` to global memory at `a`.
+            store (a: A, b: A, c: S)          "100110 aaaaa bbbbb ccccc ----- 000001"  [Done(mem 1; each octet 1)];
+            /// Loads 32 bits from global memory at `a + i`.
+            ldw (d: S, a: A, i: Off)          "100111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
+            /// Stores 32 bits to global memory at `a + i`.
+            stw (b: S, a: A, i: Off)          "101000 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
+            /// Stores three words of 32 bits to global memory at `a + i`.
+            stv (b: V, a: A, i: Off)          "101001 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 12)];
+            /// Atomic counter: `d` = the 32 bits of global memory at `a`, which become their sum with `b` modulo 2^32.
+            fetchadd (d: S, a: A, b: S)       "100110 ddddd aaaaa bbbbb ----- 000010"  [Done(add 1, mem 1, octet 8)];
+            /// Sends two vectors to the core of number `a`; blocks until its mailbox for this core is free.
+            send2 (a: S, b: V2)               "100110 aaaaa bbbbb ----- ----- 000011"  [Done(mem 1, octet 24)];
+            /// Sends three vectors to the core of number `a`; blocks until its mailbox for this core is free.
+            send3 (a: S, b: V3)               "100110 aaaaa bbbbb ----- ----- 000100"  [Done(mem 1, octet 36)];
+            /// Receives two vectors; `e` = the sender's number. Blocks until a message is there; of several the earliest, then that of the lowest sender.
+            recv2 (d: V2, e: S)               "100110 ddddd eeeee ----- ----- 000101"  [Done(move 6)];
+            /// Receives three vectors; `e` = the sender's number. Blocks as `recv2`.
+            recv3 (d: V3, e: S)               "100110 ddddd eeeee ----- ----- 000110"  [Done(move 9)];
+            /// Waits until every core that has not halted waits here.
+            barrier ()                        "100110 ----- ----- ----- ----- 000111"  [Done(move 0)];
+        }
+    ] $($rest)* } };
+}

@@ -1,0 +1,177 @@
+//! The table of instructions: its rooms put together, once, and what is stamped from it: the opcode enum, the rows as
+//! data, an exit type a row. A wrong row (overlapping picture, operand without field, unknown class) does not compile.
+
+mod control;
+mod integer;
+mod memory;
+mod scalar;
+mod vector;
+mod wide;
+
+use std::borrow::Cow;
+
+use crate::class::Counts;
+use crate::picture::Picture;
+use crate::row::{Exit, Kind, Operand, Room, Row};
+
+/// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
+///
+/// The style says who may give the meaning: `pure` needs only values, `local` the core's buffer, `bus` the machine,
+/// `control` the next instruction.
+#[macro_export]
+macro_rules! rows {
+    ($callback:ident) => {
+        $crate::scalar_rows! { [] integer_rows vector_rows wide_rows memory_rows control_rows rows_end $callback }
+    };
+}
+
+/// Closes the chain of rooms.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! rows_end {
+    ([$($rooms:tt)*] $callback:ident) => { $callback! { $($rooms)* } };
+}
+
+/// The only exit of a row whose list of exits is `[Done(..)]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Done;
+
+/// The only exit of a row that costs something for each unit; it carries the number of units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Each(pub u32);
+
+/// What an engine reads off the exit that a meaning returns.
+pub trait Ending: Copy {
+    /// Number of the exit within its row.
+    fn index(self) -> usize;
+    /// Units of the per-unit cost; 0 where the row has none.
+    fn units(self) -> u32;
+}
+
+impl Ending for Done {
+    fn index(self) -> usize {
+        0
+    }
+    fn units(self) -> u32 {
+        0
+    }
+}
+
+impl Ending for Each {
+    fn index(self) -> usize {
+        0
+    }
+    fn units(self) -> u32 {
+        self.0
+    }
+}
+
+macro_rules! exit_type {
+    ($name:ident [Done($($class:ident $n:literal),*)]) => {
+        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        pub mod $name {
+            pub use super::super::Done as Exit;
+        }
+    };
+    ($name:ident [Done($($class:ident $n:literal),* ; each $($unit:ident $m:literal),+)]) => {
+        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        pub mod $name {
+            pub use super::super::Each as Exit;
+        }
+    };
+    ($name:ident [$($exit:ident($($class:ident $n:literal),*)),+]) => {
+        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        pub mod $name {
+            #[doc = concat!("How `", stringify!($name), "` ends.")]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub enum Exit {
+                $(#[doc = concat!("Exit `", stringify!($exit), "`.")] $exit,)+
+            }
+            impl crate::table::Ending for Exit {
+                fn index(self) -> usize { self as usize }
+                fn units(self) -> u32 { 0 }
+            }
+        }
+    };
+}
+
+macro_rules! stamp {
+    ($($style:ident $room:ident $trait:ident $room_doc:literal {
+        $($(#[doc = $doc:expr])* $name:ident ($($letter:ident : $kind:ident),*) $drawn:literal
+            [$($exit:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+];)*
+    })*) => {
+        /// Number of an instruction: a row of the table, or row `n` of the extensions.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[allow(non_camel_case_types, reason = "an opcode is spelt as its mnemonic")]
+        pub enum Op {
+            $($($(#[doc = $doc])* $name,)*)*
+            /// Row `n` of the loaded extensions.
+            Ext(u16),
+        }
+
+        #[allow(non_camel_case_types, dead_code, reason = "numbers the mnemonics in the order of the table")]
+        enum Number { $($($name,)*)* }
+
+        impl Op {
+            /// Opcodes of the built-in rows, in the order of the table.
+            pub const BUILT_IN: &[Op] = &[$($(Op::$name,)*)*];
+
+            /// Place in the list of all rows, extensions after the table.
+            pub const fn index(self) -> usize {
+                match self {
+                    $($(Op::$name => Number::$name as usize,)*)*
+                    Op::Ext(n) => Op::BUILT_IN.len() + n as usize,
+                }
+            }
+        }
+
+        /// The rooms in the order of the table.
+        pub const ROOMS: &[Room] = &[$(Room { name: stringify!($room), doc: $room_doc },)*];
+
+        const TABLE: &[Row] = &[$($(Row {
+            name: Cow::Borrowed(stringify!($name)),
+            doc: Cow::Borrowed(concat!($($doc, "\n"),*)),
+            room: Cow::Borrowed(stringify!($room)),
+            operands: Cow::Borrowed(&[$(Operand { letter: stringify!($letter).as_bytes()[0], kind: Kind::$kind }),*]),
+            picture: match Picture::parse($drawn) {
+                Ok(picture) => picture,
+                Err(_) => panic!(concat!("the picture of `", stringify!($name), "` cannot be read")),
+            },
+            drawn: Cow::Borrowed($drawn),
+            exits: Cow::Borrowed(&[$(Exit {
+                name: Cow::Borrowed(stringify!($exit)),
+                cost: Counts::from_pairs(&[$((stringify!($class), $n)),*]),
+                each: Counts::from_pairs(&[$($((stringify!($unit), $m)),+)?]),
+            }),+]),
+        },)*)*];
+
+        $($(const _: () = {
+            const OPERANDS: &[Operand] = &[$(Operand { letter: stringify!($letter).as_bytes()[0], kind: Kind::$kind }),*];
+            let Ok(picture) = Picture::parse($drawn) else { panic!() };
+            assert!(!picture.is_custom(), concat!("`", stringify!($name), "` stands in an opcode kept for extensions"));
+            assert!(Row::check(OPERANDS, &picture, 1).is_ok(), concat!("operands and picture of `", stringify!($name), "` do not fit"));
+        };)*)*
+
+        /// An exit type a row, in a module of the row's name.
+        pub mod exit {
+            $($(exit_type! { $name [$($exit($($class $n),* $(; each $($unit $m),+)?)),+] })*)*
+        }
+    };
+}
+
+crate::rows!(stamp);
+
+/// The built-in rows, in the order of [`Op::BUILT_IN`].
+pub static ROWS: &[Row] = TABLE;
+
+const _: () = {
+    let mut at = 0;
+    while at < TABLE.len() {
+        let mut other = 0;
+        while other < at {
+            assert!(!TABLE[at].picture.overlaps(&TABLE[other].picture), "two pictures overlap");
+            other += 1;
+        }
+        at += 1;
+    }
+};

@@ -21,6 +21,10 @@ pub enum Kind {
     V2,
     /// Three consecutive vector registers, named by the first.
     V3,
+    /// Five consecutive vector registers, named by the first.
+    V5,
+    /// Three consecutive wide accumulators, named by the first.
+    W3,
     /// Shift in bits, unsigned.
     Sh,
     /// Signed integer.
@@ -37,13 +41,15 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub const ALL: [Kind; 12] = [
+    pub const ALL: [Kind; 14] = [
         Kind::S,
         Kind::V,
         Kind::W,
         Kind::A,
         Kind::V2,
         Kind::V3,
+        Kind::V5,
+        Kind::W3,
         Kind::Sh,
         Kind::Im,
         Kind::Un,
@@ -61,6 +67,8 @@ impl Kind {
             Kind::A => "A",
             Kind::V2 => "V2",
             Kind::V3 => "V3",
+            Kind::V5 => "V5",
+            Kind::W3 => "W3",
             Kind::Sh => "Sh",
             Kind::Im => "Im",
             Kind::Un => "Un",
@@ -79,8 +87,8 @@ impl Kind {
     pub const fn register_file(self) -> Option<char> {
         match self {
             Kind::S | Kind::A => Some('s'),
-            Kind::V | Kind::V2 | Kind::V3 => Some('v'),
-            Kind::W => Some('w'),
+            Kind::V | Kind::V2 | Kind::V3 | Kind::V5 => Some('v'),
+            Kind::W | Kind::W3 => Some('w'),
             _ => None,
         }
     }
@@ -90,7 +98,8 @@ impl Kind {
         match self {
             Kind::S | Kind::A | Kind::V | Kind::W => 1,
             Kind::V2 => 2,
-            Kind::V3 => 3,
+            Kind::V3 | Kind::W3 => 3,
+            Kind::V5 => 5,
             _ => 0,
         }
     }
@@ -98,8 +107,8 @@ impl Kind {
     /// Bits that a register field of this kind needs; `None` where the row chooses.
     pub const fn width(self) -> Option<u8> {
         match self {
-            Kind::S | Kind::A | Kind::V | Kind::V2 | Kind::V3 => Some(5),
-            Kind::W => Some(3),
+            Kind::S | Kind::A | Kind::V | Kind::V2 | Kind::V3 | Kind::V5 => Some(5),
+            Kind::W | Kind::W3 => Some(3),
             Kind::Lane => Some(2),
             Kind::Sh => Some(6),
             Kind::Im | Kind::Un | Kind::Off | Kind::Rel => None,
@@ -116,6 +125,8 @@ impl Kind {
         match self {
             Kind::V2 => (0, 30),
             Kind::V3 => (0, 29),
+            Kind::V5 => (0, 27),
+            Kind::W3 => (0, 5),
             Kind::Lane => (0, 2),
             _ if self.is_signed() => (-(1 << (width - 1)), (1 << (width - 1)) - 1),
             _ => (0, (1 << width) - 1),

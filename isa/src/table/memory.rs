@@ -52,12 +52,12 @@ macro_rules! memory_rows {
             fetchadd (d: S, a: A, b: S)       "100110 ddddd aaaaa bbbbb ----- 000010"  [Done(add 1, mem 1, octet 8)];
             /// Sends two vectors to the core of number `a`; blocks until its mailbox for this core is free.
             send2 (a: S, b: V2)               "100110 aaaaa bbbbb ----- ----- 000011"  [Done(mem 1, octet 24)];
-            /// Sends three vectors to the core of number `a`; blocks until its mailbox for this core is free.
-            send3 (a: S, b: V3)               "100110 aaaaa bbbbb ----- ----- 000100"  [Done(mem 1, octet 36)];
+            /// Sends five vectors to the core of number `a`; blocks until its mailbox for this core is free.
+            send5 (a: S, b: V5)               "100110 aaaaa bbbbb ----- ----- 000100"  [Done(mem 1, octet 60)];
             /// Receives two vectors; `e` = the sender's number. Blocks until a message is there; of several the earliest, then that of the lowest sender.
             recv2 (d: V2, e: S)               "100110 ddddd eeeee ----- ----- 000101"  [Done(move 6)];
-            /// Receives three vectors; `e` = the sender's number. Blocks as `recv2`.
-            recv3 (d: V3, e: S)               "100110 ddddd eeeee ----- ----- 000110"  [Done(move 9)];
+            /// Receives five vectors; `e` = the sender's number. Blocks as `recv2`.
+            recv5 (d: V5, e: S)               "100110 ddddd eeeee ----- ----- 000110"  [Done(move 15)];
             /// Waits until every core that has not halted waits here.
             barrier ()                        "100110 ----- ----- ----- ----- 000111"  [Done(move 0)];
         }

@@ -3,3 +3,5 @@
 pub mod generate;
 pub mod kdtree;
 pub mod model;
+pub mod read;
+pub mod write;

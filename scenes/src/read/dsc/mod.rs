@@ -1,0 +1,272 @@
+//! The `.dsc` reader (report 5.2): picture size, materials, lights and the material of each triangle. The mesh is in
+//! another file; `join` brings both together.
+
+mod colour;
+
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Place, Report, Source};
+
+use self::colour::Colours;
+use super::words::{Word, Words};
+use crate::model::{Light, Material};
+
+/// Most pixels along one side of a picture.
+const LARGEST: u32 = 65_535;
+
+/// What a `.dsc` file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Description {
+    /// Width and height of the picture in pixels.
+    pub size: (u32, u32),
+    /// The surfaces; colours in [0, 1].
+    pub materials: Vec<Material>,
+    /// The lights; colours in [0, 1].
+    pub lights: Vec<Light>,
+    /// The material of each triangle, by number.
+    pub surfaces: Vec<u32>,
+    /// Where the number of triangles stands.
+    pub count: Place,
+    /// What is likely a mistake.
+    pub warnings: Report,
+}
+
+/// A count as the file announces it, and its word.
+type Count<'a> = (u32, Word<'a>);
+
+/// What a line of six numbers holds.
+struct Shape {
+    name: &'static str,
+    fields: [&'static str; 6],
+}
+
+const MATERIAL: Shape =
+    Shape { name: "material", fields: ["red", "green", "blue", "reflection", "intensity", "index of refraction"] };
+const LIGHT: Shape = Shape { name: "light", fields: ["x", "y", "z", "red", "green", "blue"] };
+
+/// Reads a `.dsc` text. `#` starts a comment and words may be spread over lines, except that a material or light which
+/// begins a line has that line for itself: a missing number would otherwise shift all that follow.
+///
+/// Errors: anything that is not as report 5.2 has it, several at once where it stays clear what follows.
+pub fn parse(source: &Arc<Source>) -> Result<Description, Report> {
+    let mut words = Words::new(source, if source.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 });
+    let description = read(&mut words);
+    let has_errors = words.has_errors();
+    let report = words.into_report();
+    match description {
+        Some(description) if !has_errors => Ok(Description { warnings: report, ..description }),
+        _ => Err(report),
+    }
+}
+
+/// Reads on as long as it is clear what must follow; `None` when it no longer is.
+fn read(words: &mut Words<'_>) -> Option<Description> {
+    keyword(words)?;
+    let size = (side(words, "the picture's width")?, side(words, "the picture's height")?);
+    let (materials, lights) = (count(words, "materials")?, count(words, "lights")?);
+    has_room(words, materials, "materials", 12)?;
+    has_room(words, lights, "lights", 12)?;
+
+    let mut colours = Colours::default();
+    let mut surfaces = Vec::new();
+    for n in 0..materials.0 {
+        if let Some((values, at)) = six(words, &MATERIAL, n, materials)? {
+            let [red, green, blue, reflection, intensity, index] = values;
+            colours.note(words, [0, 1, 2].map(|k| (values[k], at[k])));
+            let material = Material { colour: [red, green, blue], reflection, intensity, index };
+            check_material(words, n, &material, at);
+            surfaces.push(material);
+        }
+    }
+    let mut lamps = Vec::new();
+    for n in 0..lights.0 {
+        if let Some((values, at)) = six(words, &LIGHT, n, lights)? {
+            let [x, y, z, red, green, blue] = values;
+            colours.note(words, [3, 4, 5].map(|k| (values[k], at[k])));
+            lamps.push(Light { position: [x, y, z], colour: [red, green, blue] });
+        }
+    }
+    let largest = colours.largest(words);
+    surfaces.iter_mut().for_each(|material| material.colour = material.colour.map(|c| c / largest));
+    lamps.iter_mut().for_each(|light| light.colour = light.colour.map(|c| c / largest));
+
+    let triangles = count(words, "triangles")?;
+    has_room(words, triangles, "triangles", 2)?;
+    let of_triangles = triangle_materials(words, triangles, materials)?;
+    if let Some(word) = words.next() {
+        let message = format!("the file goes on after the materials of its {} triangles", triangles.0);
+        let error = Diagnostic::error(message).at(words.place(word.span()), "nothing more is expected");
+        words.complain(error.also(words.place(triangles.1.span()), "the triangles are counted here"));
+    }
+    if lights.0 == 0 && triangles.0 > 0 {
+        let place = words.place(lights.1.span());
+        words.complain(Diagnostic::warning("without a light only ambient light is seen").at(place, "no lights"));
+    }
+    let count = words.place(triangles.1.span());
+    Some(Description {
+        size,
+        materials: surfaces,
+        lights: lamps,
+        surfaces: of_triangles,
+        count,
+        warnings: Report::default(),
+    })
+}
+
+fn keyword(words: &mut Words<'_>) -> Option<()> {
+    let Some(word) = words.next() else {
+        return cut(words, "before its first word, `DSC`", None);
+    };
+    if word.text == "DSC" {
+        return Some(());
+    }
+    let hint = match word.text {
+        text if text.eq_ignore_ascii_case("dsc") => "write it in capitals",
+        text if text.to_ascii_uppercase().contains("OFF") => "this looks like a mesh: its name should end in .off",
+        _ => "the first line is `DSC`, the second the picture's width and height in pixels",
+    };
+    let place = words.place(word.span());
+    words.complain(Diagnostic::error("a scene description starts with `DSC`").at(place, "not `DSC`").hint(hint));
+    None
+}
+
+/// One side of the picture in pixels.
+fn side(words: &mut Words<'_>, what: &str) -> Option<u32> {
+    let Some(word) = words.next() else {
+        return cut(words, &format!("before {what}"), None);
+    };
+    let pixels = words.whole(word, || format!("{what} in pixels"))?;
+    if !(1..=LARGEST).contains(&pixels) {
+        words.refuse(word, format!("{what} must be 1 to {LARGEST} pixels"), format!("{pixels} pixels"));
+    }
+    Some(pixels)
+}
+
+/// The number of `what`, with its word.
+fn count<'a>(words: &mut Words<'a>, what: &str) -> Option<Count<'a>> {
+    let Some(word) = words.next() else {
+        return cut(words, &format!("before the number of {what}"), None);
+    };
+    Some((words.whole(word, || format!("the number of {what}"))?, word))
+}
+
+/// Whether the rest of the file can hold what is announced, at `least` octets each.
+fn has_room(words: &mut Words<'_>, (number, word): Count<'_>, what: &str, least: usize) -> Option<()> {
+    let most = (words.remaining() + 1) / least;
+    if number as usize <= most {
+        return Some(());
+    }
+    let message = format!("{number} {what} are announced, but the rest of the file has room for {most} at most");
+    words.refuse(word, message, "a wrong number, or the file is cut short");
+    None
+}
+
+/// The six numbers of a material or light. `None`: it is no longer clear what follows. `Some(None)`: this one is not
+/// usable, but the next may be.
+fn six<'a>(
+    words: &mut Words<'a>,
+    shape: &Shape,
+    n: u32,
+    announced: Count<'a>,
+) -> Option<Option<([f64; 6], [Word<'a>; 6])>> {
+    let name = shape.name;
+    let Some(first) = words.next() else {
+        return cut(words, &format!("after {n} of {} {name}s", announced.0), Some((announced.1, name)));
+    };
+    let in_line = 1 + words.count_in_line();
+    if words.starts_line(first) && in_line != 6 {
+        let mut last = first;
+        while let Some(word) = words.next_in_line() {
+            last = word;
+        }
+        let message = format!("{name} {n} should have 6 numbers on its line");
+        let place = words.place(first.start..last.span().end);
+        let error = Diagnostic::error(message)
+            .at(place, format!("{in_line} here"))
+            .also(words.place(announced.1.span()), format!("the number of {name}s"))
+            .hint(format!("a {name} is: {}", shape.fields.join(", ")));
+        words.complain(error);
+        // A line with one or two numbers is likely the count that follows, or a list of materials: not to be skipped.
+        return if in_line > 2 { Some(None) } else { None };
+    }
+    let mut at = [first; 6];
+    for slot in &mut at[1..] {
+        match words.next() {
+            Some(word) => *slot = word,
+            None => return cut(words, &format!("within {name} {n}"), Some((announced.1, name))),
+        }
+    }
+    let mut values = [0.0; 6];
+    for (k, value) in values.iter_mut().enumerate() {
+        *value = words.number(at[k], || format!("{} of {name} {n}", shape.fields[k]));
+    }
+    Some(Some((values, at)))
+}
+
+/// Refuses coefficients that no surface has, and warns of unlikely ones.
+fn check_material(words: &mut Words<'_>, n: u32, material: &Material, at: [Word<'_>; 6]) {
+    for (value, word, name) in
+        [(material.reflection, at[3], MATERIAL.fields[3]), (material.intensity, at[4], MATERIAL.fields[4])]
+    {
+        if !(0.0..=1.0).contains(&value) {
+            words.refuse(word, format!("{name} of material {n} must be 0 to 1"), "out of range");
+        }
+    }
+    let sum = material.reflection + material.intensity;
+    // A sum such as 0.7 + 0.3 may be off by a rounding.
+    if sum > 1.0 + 1e-9 && material.reflection <= 1.0 && material.intensity <= 1.0 {
+        let place = words.place(at[3].start..at[4].span().end);
+        let message = format!("material {n} gives back more light than it receives");
+        words.complain(Diagnostic::warning(message).at(place, format!("reflection + intensity = {sum}")));
+    }
+    if material.index < 0.0 {
+        words.refuse(at[5], format!("index of refraction of material {n} must not be negative"), "negative");
+    } else if material.index > 0.0 && material.index < 1.0 {
+        let place = words.place(at[5].span());
+        let message = format!("material {n} bends light as if it were thinner than the void");
+        words.complain(Diagnostic::warning(message).at(place, "between 0 (opaque) and 1 (the void)"));
+    }
+}
+
+/// The material of each triangle.
+fn triangle_materials(words: &mut Words<'_>, triangles: Count<'_>, materials: Count<'_>) -> Option<Vec<u32>> {
+    let mut list = Vec::with_capacity(triangles.0 as usize);
+    let mut first_beyond = None;
+    let mut beyond = 0;
+    for n in 0..triangles.0 {
+        let Some(word) = words.next() else {
+            let place = format!("after the materials of {n} of {} triangles", triangles.0);
+            return cut(words, &place, Some((triangles.1, "triangle")));
+        };
+        let number = words.whole(word, || format!("the material of triangle {n}"));
+        if let Some(number) = number.filter(|&number| number >= materials.0) {
+            first_beyond.get_or_insert((n, number, word));
+            beyond += 1;
+        }
+        list.push(number.unwrap_or(0));
+    }
+    if let Some((n, number, word)) = first_beyond {
+        let known = match materials.0 {
+            0 => "there are none".to_string(),
+            1 => "there is only material 0".to_string(),
+            count => format!("there are only 0 to {}", count - 1),
+        };
+        let mut message = format!("triangle {n} has material {number}, but {known}");
+        if beyond > 1 {
+            message.push_str(&format!("; {} more triangles are out of range too", beyond - 1));
+        }
+        let error = Diagnostic::error(message).at(words.place(word.span()), "no such material");
+        words.complain(error.also(words.place(materials.1.span()), "the number of materials"));
+    }
+    Some(list)
+}
+
+/// Says that the file ends too early; `announced` is the count that promised more, and of what.
+fn cut<T>(words: &mut Words<'_>, place: &str, announced: Option<(Word<'_>, &str)>) -> Option<T> {
+    let mut error = Diagnostic::error(format!("the file ends {place}")).at(words.end(), "the end");
+    if let Some((word, name)) = announced {
+        error = error.also(words.place(word.span()), format!("the number of {name}s"));
+    }
+    words.complain(error);
+    None
+}

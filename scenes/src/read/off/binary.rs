@@ -1,0 +1,150 @@
+//! The binary form of OFF: after the line of the header, 32-bit integers and floating-point numbers, the most
+//! significant octet first. Each face is followed by the number of its colour components.
+
+use isa::diagnostic::Diagnostic;
+use nom::number::complete::{be_f32, be_u32};
+use nom::{IResult, Parser};
+
+use super::super::mesh::Mesh;
+use super::super::words::Words;
+use super::colour::{Spec, Writing};
+use super::header::{Binary, DIMENSIONS, Header};
+use super::{Faces, position};
+use crate::model::Vec3;
+
+/// Octets at the start of a file in which a binary file's header must end.
+pub(super) const HEAD: usize = 4096;
+
+/// Whether the word `BINARY` is near the start of a file.
+pub(super) fn is_likely(bytes: &[u8]) -> bool {
+    bytes[..bytes.len().min(HEAD)].windows(6).any(|six| six == b"BINARY")
+}
+
+/// Reads the part that follows the header in `words`; `None` after a complaint.
+pub(super) fn read(bytes: &[u8], header: &Header, binary: Binary, words: &mut Words<'_>) -> Option<Mesh> {
+    let source = words.place(0..0).source;
+    // Comments before may hold octets that are not text, and have another length there: lines are the same.
+    let lines = source.text[..binary.start].matches('\n').count();
+    let start =
+        bytes.iter().enumerate().filter(|&(_, &octet)| octet == b'\n').nth(lines - 1).map_or(0, |(at, _)| at + 1);
+    let mut numbers = Numbers { rest: &bytes[start..], all: bytes };
+    match body(&mut numbers, header, binary, &source.name) {
+        Ok(mesh) => Some(mesh),
+        Err(message) => {
+            let place = words.place(binary.word.0..binary.word.1);
+            words.complain(Diagnostic::error(message).at(place, "binary from the next line on"));
+            None
+        }
+    }
+}
+
+/// What is left of the binary part.
+struct Numbers<'a> {
+    rest: &'a [u8],
+    all: &'a [u8],
+}
+
+impl Numbers<'_> {
+    /// Offset of the next number in the file.
+    fn at(&self) -> usize {
+        self.all.len() - self.rest.len()
+    }
+
+    fn whole(&mut self, what: impl Fn() -> String) -> Result<u32, String> {
+        let parsed: IResult<&[u8], u32> = be_u32.parse(self.rest);
+        let (rest, value) =
+            parsed.map_err(|_| format!("the file ends at octet {} before {}", self.all.len(), what()))?;
+        if value > i32::MAX as u32 {
+            let (least, other) = (value as i32, value.swap_bytes());
+            let likely =
+                if other < 1 << 24 { format!("; the least octet first it would be {other}") } else { String::new() };
+            return Err(format!("{} cannot be {least} (octet {}){likely}", what(), self.at()));
+        }
+        self.rest = rest;
+        Ok(value)
+    }
+
+    fn real(&mut self, what: impl Fn() -> String) -> Result<f64, String> {
+        let parsed: IResult<&[u8], f32> = be_f32.parse(self.rest);
+        let (rest, value) =
+            parsed.map_err(|_| format!("the file ends at octet {} before {}", self.all.len(), what()))?;
+        if !value.is_finite() {
+            return Err(format!("{} must be a finite number, not {value} (octet {})", what(), self.at()));
+        }
+        self.rest = rest;
+        Ok(f64::from(value))
+    }
+
+    /// Whether `count` things of `octets` each can follow.
+    fn has_room(&self, count: u32, octets: usize, what: &str) -> Result<(), String> {
+        let most = self.rest.len() / octets;
+        if count as usize <= most {
+            return Ok(());
+        }
+        let other = count.swap_bytes() as usize;
+        let hint = if other <= most { format!("; the least octet first it would be {other}") } else { String::new() };
+        Err(format!("{count} {what} are announced, but the rest of the file has room for {most} at most{hint}"))
+    }
+}
+
+fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) -> Result<Mesh, String> {
+    let mut header = *header;
+    if binary.has_dimension {
+        let dimension = numbers.whole(|| "the dimension".to_string())?;
+        if !(1..=DIMENSIONS).contains(&dimension) {
+            return Err(format!("the dimension must be 1 to {DIMENSIONS}, not {dimension}"));
+        }
+        header.components = dimension as usize + usize::from(header.is_homogeneous);
+    }
+    let points = numbers.whole(|| "the number of vertices".to_string())?;
+    let polygons = numbers.whole(|| "the number of faces".to_string())?;
+    numbers.whole(|| "the number of edges".to_string())?;
+    let row_length = header.components
+        + 3 * usize::from(header.has_normals)
+        + 4 * usize::from(header.has_colours)
+        + 2 * usize::from(header.has_texture);
+    numbers.has_room(points, 4 * row_length, "vertices")?;
+
+    let mut vertices: Vec<Vec3> = Vec::with_capacity(points as usize);
+    let mut row = vec![0.0; row_length];
+    for n in 0..points {
+        for slot in &mut row {
+            *slot = numbers.real(|| format!("a number of vertex {n} of {points}"))?;
+        }
+        let point = position(&header, &row[..header.components]);
+        vertices.push(point.ok_or_else(|| format!("vertex {n} lies at infinity: its last number is 0"))?);
+    }
+    numbers.has_room(polygons, 8, "faces")?;
+    let mut faces = Faces::default();
+    let mut corners = Vec::new();
+    for n in 0..polygons {
+        let size = numbers.whole(|| format!("the number of corners of face {n} of {polygons}"))?;
+        numbers.has_room(size, 4, &format!("corners of face {n}"))?;
+        corners.clear();
+        for _ in 0..size {
+            let number = numbers.whole(|| format!("a vertex number of face {n}"))?;
+            if number >= points {
+                return Err(format!("face {n} has vertex {number}, but there are {points} vertices, counted from 0"));
+            }
+            corners.push(number);
+        }
+        let components = numbers.whole(|| format!("the number of colour components of face {n}"))?;
+        let mut values = [0.0; 4];
+        let Some(values) = values.get_mut(..components as usize) else {
+            return Err(format!("face {n} has {components} colour components; a colour has 0, 1, 3 or 4"));
+        };
+        for value in values.iter_mut() {
+            *value = numbers.real(|| format!("a colour component of face {n}"))?;
+        }
+        let colour = match *values {
+            [index] => Spec::Index(index),
+            [red, green, blue] | [red, green, blue, _] => Spec::Components([red, green, blue], Writing::Decimal),
+            _ => Spec::Default,
+        };
+        faces.push(&vertices, &corners, colour);
+    }
+    if !numbers.rest.is_empty() {
+        return Err(format!("{} octets follow the last of {polygons} faces", numbers.rest.len()));
+    }
+    Ok(faces.into_mesh(name, vertices, None))
+}

@@ -1,0 +1,232 @@
+//! A text as words, the layer under the .dsc and .off readers: blanks, line ends and `#` comments between, numbers with
+//! their complaints. What the words mean is not known here.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Place, Report, Severity, Source};
+use nom::branch::alt;
+use nom::bytes::complete::{take_till, take_till1, take_while1};
+use nom::character::complete::char;
+use nom::combinator::recognize;
+use nom::multi::many0_count;
+use nom::sequence::preceded;
+use nom::{IResult, Parser};
+
+/// Errors of one file that are shown; what follows them is likely their consequence.
+const SHOWN: usize = 20;
+
+/// One word and where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Word<'a> {
+    /// The word itself.
+    pub text: &'a str,
+    /// Offset of its first octet.
+    pub start: usize,
+}
+
+impl Word<'_> {
+    /// Its octets in the text.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.start..self.start + self.text.len()
+    }
+}
+
+/// Reads a text word by word and collects what is wrong with it.
+pub(super) struct Words<'a> {
+    source: &'a Arc<Source>,
+    at: usize,
+    messages: Vec<Diagnostic>,
+    hidden: usize,
+}
+
+fn is_line_end(c: char) -> bool {
+    c == '\n' || c == '\r'
+}
+
+fn is_blank(c: char) -> bool {
+    c == ' ' || c == '\t' || c == '\x0b' || c == '\x0c'
+}
+
+fn comment(input: &str) -> IResult<&str, &str> {
+    recognize(preceded(char('#'), take_till(is_line_end))).parse(input)
+}
+
+/// What stands between words of one line.
+fn gap_in_line(input: &str) -> IResult<&str, usize> {
+    many0_count(alt((take_while1(is_blank), comment))).parse(input)
+}
+
+/// What stands between words.
+fn gap(input: &str) -> IResult<&str, usize> {
+    many0_count(alt((take_while1(|c| is_blank(c) || is_line_end(c)), comment))).parse(input)
+}
+
+fn word(input: &str) -> IResult<&str, &str> {
+    take_till1(|c| is_blank(c) || is_line_end(c) || c == '#').parse(input)
+}
+
+impl<'a> Words<'a> {
+    /// The words of a source, from octet `at` on.
+    pub(super) fn new(source: &'a Arc<Source>, at: usize) -> Words<'a> {
+        Words { source, at, messages: Vec::new(), hidden: 0 }
+    }
+
+    /// Octets not yet read.
+    pub(super) fn remaining(&self) -> usize {
+        self.source.text.len() - self.at
+    }
+
+    /// Goes back to (or on to) octet `at`.
+    pub(super) fn seek(&mut self, at: usize) {
+        self.at = at;
+    }
+
+    /// The octet after the last word read.
+    pub(super) fn position(&self) -> usize {
+        self.at
+    }
+
+    fn take(&mut self, skip: fn(&str) -> IResult<&str, usize>) -> Option<Word<'a>> {
+        let text: &'a str = &self.source.text;
+        let rest = skip(&text[self.at..]).map_or(&text[self.at..], |(rest, _)| rest);
+        self.at = text.len() - rest.len();
+        let (after, found) = word(rest).ok()?;
+        let start = self.at;
+        self.at = text.len() - after.len();
+        Some(Word { text: found, start })
+    }
+
+    /// The next word of the text.
+    pub(super) fn next(&mut self) -> Option<Word<'a>> {
+        self.take(gap)
+    }
+
+    /// The next word of the line; `None` at its end, which stays unread.
+    pub(super) fn next_in_line(&mut self) -> Option<Word<'a>> {
+        self.take(gap_in_line)
+    }
+
+    /// Words of the line from here to its end, without reading them.
+    pub(super) fn count_in_line(&mut self) -> usize {
+        let at = self.at;
+        let count = std::iter::from_fn(|| self.next_in_line()).count();
+        self.at = at;
+        count
+    }
+
+    /// Reads the end of the line if nothing else is before it; the offset behind it.
+    pub(super) fn skip_line_end(&mut self) -> Option<usize> {
+        let text = self.source.text.as_bytes();
+        let blanks =
+            text[self.at..].iter().take_while(|&&octet| octet == b' ' || octet == b'\t' || octet == b'\r').count();
+        let end = self.at + blanks;
+        (text.get(end) == Some(&b'\n')).then(|| {
+            self.at = end + 1;
+            self.at
+        })
+    }
+
+    /// A place in this text.
+    pub(super) fn place(&self, span: Range<usize>) -> Place {
+        Place::new(self.source, span)
+    }
+
+    /// The end of the text, behind its last word.
+    pub(super) fn end(&self) -> Place {
+        let end = self.source.text.trim_end().len();
+        self.place(end..end)
+    }
+
+    /// Whether nothing but blanks stands before `word` on its line.
+    pub(super) fn starts_line(&self, word: Word<'_>) -> bool {
+        let before = self.source.text[..word.start].trim_end_matches(is_blank);
+        before.is_empty() || before.ends_with(is_line_end)
+    }
+
+    /// Notes what is wrong. After many errors the rest is only counted.
+    pub(super) fn complain(&mut self, message: Diagnostic) {
+        if self.messages.len() < SHOWN { self.messages.push(message) } else { self.hidden += 1 }
+    }
+
+    /// The usual complaint: `message` about `word`, `label` under it.
+    pub(super) fn refuse(&mut self, word: Word<'_>, message: impl Into<String>, label: impl Into<String>) {
+        let place = self.place(word.span());
+        self.complain(Diagnostic::error(message).at(place, label));
+    }
+
+    /// Whether anything was an error.
+    pub(super) fn has_errors(&self) -> bool {
+        self.hidden > 0 || self.messages.iter().any(|message| message.severity == Severity::Error)
+    }
+
+    /// Everything noted, ready to be shown.
+    pub(super) fn into_report(mut self) -> Report {
+        if self.hidden > 0 {
+            self.messages.push(Diagnostic::error(format!("{} more errors are not shown", self.hidden)));
+        }
+        Report(self.messages)
+    }
+
+    /// The word as a finite number; otherwise a complaint that names `what`, and 0 to go on with.
+    pub(super) fn number(&mut self, word: Word<'_>, what: impl FnOnce() -> String) -> f64 {
+        match word.text.parse::<f64>() {
+            Ok(value) if value.is_finite() => value,
+            Ok(value) => {
+                let label = if value.is_nan() { "not a number" } else { "infinite" };
+                let message = format!("{} must be a finite number", what());
+                self.refuse(word, message, label);
+                0.0
+            }
+            Err(_) => {
+                let message = format!("expected {}, found `{}`", what(), shortened(word.text));
+                let place = self.place(word.span());
+                let mut complaint = Diagnostic::error(message).at(place, kind(word.text, "not a number"));
+                if word.text.replacen(',', ".", 1).parse::<f64>().is_ok() {
+                    complaint = complaint.hint("decimals follow a point, not a comma");
+                } else if word.text.contains(',') {
+                    complaint = complaint.hint("numbers are separated by blanks, not commas");
+                }
+                self.complain(complaint);
+                0.0
+            }
+        }
+    }
+
+    /// The word as a whole number that is not negative; otherwise a complaint that names `what`.
+    pub(super) fn whole(&mut self, word: Word<'_>, what: impl FnOnce() -> String) -> Option<u32> {
+        if let Some(value) = digits(word.text) {
+            return Some(value);
+        }
+        let label = match word.text.parse::<f64>() {
+            Ok(value) if value < 0.0 => "negative",
+            Ok(value) if value.is_finite() && value > f64::from(u32::MAX) => "too large",
+            Ok(_) => "not a whole number",
+            Err(_) => kind(word.text, "not a number"),
+        };
+        let message = format!("expected {}, found `{}`", what(), shortened(word.text));
+        self.refuse(word, message, label);
+        None
+    }
+}
+
+/// What a word is that is no number.
+fn kind(text: &str, otherwise: &'static str) -> &'static str {
+    if text.contains('\u{fffd}') { "not UTF-8 text" } else { otherwise }
+}
+
+/// Decimal digits as a number, if it fits.
+fn digits(text: &str) -> Option<u32> {
+    let text = text.strip_prefix('+').unwrap_or(text);
+    let is_plain = !text.is_empty() && text.bytes().all(|octet| octet.is_ascii_digit());
+    is_plain.then(|| text.parse().ok()).flatten()
+}
+
+/// A word for a message: at most 40 characters of it.
+pub(super) fn shortened(text: &str) -> String {
+    let mut shown: String = text.chars().take(40).collect();
+    if shown.len() < text.len() {
+        shown.push_str("...");
+    }
+    shown
+}

@@ -1,0 +1,71 @@
+//! Writers of `.dsc` and `.off` files (report 5.2). What they write reads back as the same scene, bit for bit.
+
+use std::fmt;
+use std::io::{self, Error, ErrorKind, Write};
+
+use crate::model::{Scene, Vec3};
+
+/// Writes the mesh of a scene as an ASCII `.off` file: header, counts, vertices, triangles.
+///
+/// Errors: what the writer says, and a coordinate that is not finite.
+pub fn off(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "OFF\n{} {} 0", scene.vertices.len(), scene.triangles.len())?;
+    for &vertex in &scene.vertices {
+        writeln!(out, "{}", triple(vertex)?)?;
+    }
+    for triangle in &scene.triangles {
+        let [a, b, c] = triangle.vertices;
+        writeln!(out, "3 {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+/// Writes everything but the mesh as a `.dsc` file: size, materials, lights, the material of each triangle.
+///
+/// Errors: what the writer says, a value that is not finite, and a colour component above 1 (which would make the
+/// whole file's colours read as 0..255).
+pub fn dsc(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+    let colours = scene.materials.iter().map(|m| m.colour).chain(scene.lights.iter().map(|l| l.colour));
+    if let Some(colour) = colours.flatten().find(|&component| component > 1.0) {
+        return Err(Error::new(ErrorKind::InvalidData, format!("the colour component {colour} is above 1")));
+    }
+    writeln!(out, "DSC\n{} {}", scene.size.0, scene.size.1)?;
+    writeln!(out, "{} {}", scene.materials.len(), scene.lights.len())?;
+    for material in &scene.materials {
+        let (reflection, intensity) = (Number::new(material.reflection)?, Number::new(material.intensity)?);
+        writeln!(out, "{} {reflection} {intensity} {}", triple(material.colour)?, Number::new(material.index)?)?;
+    }
+    for light in &scene.lights {
+        writeln!(out, "{} {}", triple(light.position)?, triple(light.colour)?)?;
+    }
+    writeln!(out, "{}", scene.triangles.len())?;
+    for triangle in &scene.triangles {
+        writeln!(out, "{}", triangle.material)?;
+    }
+    Ok(())
+}
+
+fn triple(v: Vec3) -> io::Result<String> {
+    let [x, y, z] = v.map(Number::new);
+    Ok(format!("{} {} {}", x?, y?, z?))
+}
+
+/// A finite number, shown with the fewest digits that read back as the same bits.
+struct Number(f64);
+
+impl Number {
+    fn new(value: f64) -> io::Result<Number> {
+        if value.is_finite() {
+            Ok(Number(value))
+        } else {
+            Err(Error::new(ErrorKind::InvalidData, format!("{value} cannot be written: not a finite number")))
+        }
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size != 0.0 && !(1e-5..1e16).contains(&size) { write!(f, "{:e}", self.0) } else { write!(f, "{}", self.0) }
+    }
+}

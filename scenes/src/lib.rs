@@ -1,7 +1,10 @@
-//! Scene files, kd tree, memory image, generators and the double-precision reference.
 
+pub mod cadrage;
+pub mod camera;
 pub mod generate;
+pub mod grid;
 pub mod kdtree;
 pub mod model;
 pub mod read;
+pub mod vector;
 pub mod write;

@@ -1,5 +1,7 @@
 //! A scene as its files describe it, in double precision and in the user's units. Nothing here knows of grids or formats.
 
+use isa::diagnostic::{Diagnostic, Report};
+
 /// Position, direction or colour in double precision.
 pub type Vec3 = [f64; 3];
 
@@ -67,6 +69,54 @@ impl Scene {
             ([0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k])))
         }))
     }
+
+    /// What makes the scene unusable, wherever it came from: numbers of vertices and materials that do not exist, values that are not
+    /// finite, material coefficients outside [0, 1]. At most one message a kind.
+    pub fn check(&self) -> Report {
+        let mut messages = Vec::new();
+        let mut refuse = |message: Option<String>| messages.extend(message.map(Diagnostic::error));
+        let (vertices, materials) = (self.vertices.len(), self.materials.len());
+        refuse(self.triangles.iter().enumerate().find_map(|(k, t)| {
+            let vertex = t.vertices.into_iter().find(|&v| v as usize >= vertices)?;
+            Some(format!("triangle {k} has vertex {vertex}, but there are {vertices} vertices, counted from 0"))
+        }));
+        refuse(self.triangles.iter().enumerate().find_map(|(k, t)| {
+            let is_known = (t.material as usize) < materials;
+            (!is_known)
+                .then(|| format!("triangle {k} has material {}, but there are {materials}, counted from 0", t.material))
+        }));
+        refuse(
+            self.vertices
+                .iter()
+                .position(|v| !v.iter().all(|x| x.is_finite()))
+                .map(|k| format!("vertex {k} is not finite: {:?}", self.vertices[k])),
+        );
+        refuse(
+            self.lights
+                .iter()
+                .position(|l| !l.position.iter().chain(&l.colour).all(|x| x.is_finite()))
+                .map(|k| format!("light {k} is not finite: {:?}", self.lights[k])),
+        );
+        refuse(
+            self.lights
+                .iter()
+                .position(|l| l.colour.iter().any(|&x| x < 0.0))
+                .map(|k| format!("light {k} has a negative colour: {:?}", self.lights[k].colour)),
+        );
+        refuse(self.materials.iter().enumerate().find_map(|(k, m)| {
+            let named = [("reflection", m.reflection), ("intensity", m.intensity)].into_iter();
+            let all = named.chain(m.colour.map(|x| ("colour", x)));
+            let (name, value) = all.into_iter().find(|(_, x)| !(0.0..=1.0).contains(x))?;
+            Some(format!("material {k} has a {name} of {value}, which is not in 0 to 1"))
+        }));
+        refuse(
+            self.materials
+                .iter()
+                .position(|m| !(m.index.is_finite() && m.index >= 0.0))
+                .map(|k| format!("material {k} has an index of refraction of {}", self.materials[k].index)),
+        );
+        Report(messages)
+    }
 }
 
 /// How the scene is looked at.
@@ -105,14 +155,34 @@ pub struct View {
 impl View {
     /// The defaults for a picture of `size` pixels.
     pub fn new(size: (u32, u32)) -> View {
-        View {
-            size,
-            camera: Camera::Orthographic,
-            shift: [0.0; 2],
-            ambient: 0.1,
-            background: [0.0; 3],
-            bounces: 5,
+        View { size, camera: Camera::Orthographic, shift: [0.0; 2], ambient: 0.1, background: [0.0; 3], bounces: 5 }
+    }
+
+    /// What makes the view unusable: an empty picture, values that are not finite, negative light. At most one message a kind.
+    pub fn check(&self) -> Report {
+        let mut messages = Vec::new();
+        if self.size.0 == 0 || self.size.1 == 0 {
+            messages.push(Diagnostic::error(format!("a picture of {} x {} pixels has none", self.size.0, self.size.1)));
         }
+        let points = match self.camera {
+            Camera::Orthographic => [None, None],
+            Camera::Perspective { eye, look, .. } => [eye, look],
+        };
+        for (name, values) in [("--shift", self.shift.to_vec())]
+            .into_iter()
+            .chain(["--eye", "--look"].into_iter().zip(points).filter_map(|(name, p)| Some((name, p?.to_vec()))))
+        {
+            if !values.iter().all(|x| x.is_finite()) {
+                messages.push(Diagnostic::error(format!("{name} is not finite: {values:?}")));
+            }
+        }
+        if !(self.ambient.is_finite() && self.ambient >= 0.0) {
+            messages.push(Diagnostic::error(format!("an ambient intensity of {} is no light", self.ambient)));
+        }
+        if !self.background.iter().all(|&x| x.is_finite() && x >= 0.0) {
+            messages.push(Diagnostic::error(format!("a background of {:?} is no colour", self.background)));
+        }
+        Report(messages)
     }
 }
 

@@ -1,0 +1,183 @@
+//! What has to hold for any scene on its grid, and what is said when one does not fit.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::model::{Light, Material, Triangle};
+
+fn scene(vertices: Vec<Vec3>, lights: Vec<Vec3>) -> Scene {
+    let material = Material { colour: [1.0; 3], reflection: 0.0, intensity: 1.0, index: 0.0 };
+    let triangles = (0..(vertices.len() / 3) as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]);
+    Scene {
+        name: "test".into(),
+        size: (8, 8),
+        materials: vec![material],
+        lights: lights.into_iter().map(|position| Light { position, colour: [1.0; 3] }).collect(),
+        triangles: triangles.map(|vertices| Triangle { vertices, material: 0 }).collect(),
+        vertices,
+    }
+}
+
+fn perspective(eye: Option<Vec3>) -> View {
+    View { camera: Camera::Perspective { eye, look: None, field: 45.0 }, ..View::new((8, 8)) }
+}
+
+/// All raw integers that come from a scene.
+fn raws(scene: &Scene, view: &View, word: u32) -> Result<(Vec<[i32; 3]>, Bounds), Report> {
+    let grid = Grid::new(scene, view, word, None)?;
+    let lights = scene.lights.iter().map(|light| light.position);
+    Ok((scene.vertices.iter().copied().chain(lights).map(|p| grid.raw(p)).collect(), grid.reach))
+}
+
+/// Coordinates with few enough bits that sums with whole steps are exact.
+fn coordinate() -> impl Strategy<Value = f64> {
+    (-(1i64 << 24)..1i64 << 24, 0..12).prop_map(|(n, shift)| shifted(n as f64, -20 + shift))
+}
+
+fn points(least: usize, most: usize) -> impl Strategy<Value = Vec<Vec3>> {
+    prop::collection::vec(prop::array::uniform3(coordinate()), least * 3..=most * 3)
+}
+
+fn views() -> impl Strategy<Value = View> {
+    prop_oneof![
+        Just(View::new((8, 8))),
+        Just(perspective(None)),
+        prop::array::uniform3(coordinate()).prop_map(|eye| perspective(Some(eye))),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn a_scene_multiplied_by_a_power_of_two_has_the_same_integers(
+        vertices in points(1, 5), lights in points(0, 1), view in views(), word in 16u32..=32, power in -900..900,
+    ) {
+        let times = |p: Vec3| p.map(|x| shifted(x, power));
+        let scaled = scene(vertices.iter().copied().map(times).collect(), lights.iter().copied().map(times).collect());
+        let scaled_view = View { camera: camera::mapped(&view.camera, times), ..view.clone() };
+        let plain = raws(&scene(vertices, lights), &view, word);
+        prop_assert_eq!(raws(&scaled, &scaled_view, word).ok(), plain.ok());
+    }
+
+    #[test]
+    fn a_scene_moved_by_whole_steps_has_the_same_integers(
+        vertices in points(1, 5), lights in points(0, 1), view in views(), word in 16u32..=32,
+        steps in prop::array::uniform3(-100_000i32..100_000),
+    ) {
+        let plain = scene(vertices, lights);
+        let Ok(grid) = Grid::new(&plain, &view, word, None) else { return Ok(()) };
+        let moved = |p: Vec3| AXES.map(|k| p[k] + shifted(f64::from(steps[k]), -grid.position));
+        let other = scene(
+            plain.vertices.iter().copied().map(moved).collect(),
+            plain.lights.iter().map(|light| moved(light.position)).collect(),
+        );
+        let other_view = View { camera: camera::mapped(&view.camera, moved), ..view.clone() };
+        let grid = Grid::new(&other, &other_view, word, None).unwrap();
+        prop_assert_eq!(raws(&other, &other_view, word).unwrap(), raws(&plain, &view, word).unwrap());
+        prop_assert_eq!(grid.local_corners(), Grid::new(&plain, &view, word, None).unwrap().local_corners());
+    }
+
+    #[test]
+    fn everything_fits_and_half_the_step_would_not(
+        vertices in points(1, 5), lights in points(0, 2), view in views(), word in 8u32..=32,
+    ) {
+        let scene = scene(vertices, lights);
+        let Ok(grid) = Grid::new(&scene, &view, word, None) else { return Ok(()) };
+        let limit = (1i32 << (word - 2)) - 4;
+        let most = |b: &Bounds| b.low.iter().chain(&b.high).map(|x| x.abs()).max().unwrap();
+        prop_assert!(most(&grid.reach) <= limit);
+        prop_assert!(most(&grid.reach) >= limit / 2 - 1, "a finer grid fits: {:?}", grid.reach);
+        prop_assert!(Grid::new(&scene, &view, word, Some(grid.position + 1)).is_err());
+        // The middle of the box is within one step of 0 on every axis, and the way back is within half a step.
+        let bounds = grid.bounds();
+        prop_assert!(AXES.iter().all(|&k| (i64::from(bounds.low[k]) + i64::from(bounds.high[k])).abs() <= 2));
+        for &vertex in &scene.vertices[..scene.triangles.len() * 3] {
+            let back = grid.scene(grid.raw(vertex));
+            let off = largest(sub(back, vertex));
+            prop_assert!(off <= shifted(0.5, -grid.position) * (1.0 + 1e-9), "{vertex:?} {back:?}");
+        }
+    }
+
+    #[test]
+    fn any_doubles_give_a_grid_or_a_message(
+        bits in prop::collection::vec(prop::array::uniform3(any::<f64>()), 0..9),
+        light in prop::array::uniform3(any::<f64>()), word in 0u32..40, position in prop::option::of(any::<i32>()),
+    ) {
+        let scene = scene(bits, vec![light]);
+        for view in [View::new((8, 8)), perspective(None), perspective(Some(light))] {
+            if let Ok(grid) = Grid::new(&scene, &view, word, position) {
+                let limit = (1i32 << (word - 2)) - 4;
+                let mut corners = scene.triangles.iter().flat_map(|t| t.vertices).flat_map(|v| grid.raw(scene.vertices[v as usize]));
+                prop_assert!(corners.all(|x| x.abs() <= limit));
+            }
+        }
+    }
+}
+
+fn refusal(scene: &Scene, view: &View, word: u32) -> String {
+    Grid::new(scene, view, word, None).unwrap_err().render(false)
+}
+
+#[test]
+fn a_plain_box_uses_its_word() {
+    // From 1 to 3 on every axis: the centre is 2, and one unit is 2^12 of the 2^14 - 4 that a word of 16 bits has: 2^13 would be 8192 each.
+    let grid =
+        Grid::new(&scene(vec![[1.0; 3], [3.0; 3], [3.0, 1.0, 3.0]], vec![]), &View::new((8, 8)), 16, None).unwrap();
+    assert_eq!((grid.position, grid.centre()), (13, [2.0; 3]));
+    assert_eq!(grid.raw([2.5, 1.0, 3.00007]), [4096, -8192, 8193]);
+    assert_eq!(grid.raw([1e9, -1e9, 2.0 + 0.5 / 8192.0]), [32767, -32768, 1], "saturated, and a tie goes up");
+}
+
+#[test]
+fn coordinates_at_the_ends_of_double_precision_are_placed() {
+    for size in [1e300, 1.7e308, 1e-300, 1e-308, 1e-320] {
+        let corners = vec![[-size, -size, 0.0], [size, -size, size], [0.0, size, 0.0]];
+        let (raw, _) = raws(&scene(corners, vec![[0.0, 0.0, size]]), &View::new((8, 8)), 32).unwrap();
+        assert!((1 << 28..1 << 30).contains(&raw[1][0]) && raw[0][0] == -raw[1][0], "{size}: {raw:?}");
+    }
+}
+
+#[test]
+fn flat_single_and_empty_scenes_are_placed() {
+    let view = View::new((8, 8));
+    let (flat, _) = raws(&scene(vec![[0.0, 5.0, 5.0], [1.0, 5.0, 5.0], [0.5, 5.0, 7.0]], vec![]), &view, 32).unwrap();
+    assert!(flat.iter().all(|p| p[1] == 0) && flat[1][0] > 1 << 27);
+    for at in [[0.0; 3], [1e300, 1.0, -1e-300]] {
+        let (point, _) = raws(&scene(vec![at; 3], vec![]), &view, 32).unwrap();
+        assert_eq!(point, [[0; 3]; 3]);
+    }
+    let empty = Grid::new(&scene(vec![], vec![]), &view, 32, None).unwrap();
+    assert_eq!((empty.raw([1.0; 3]), empty.bounds().low), ([1 << 29; 3], [-1 << 29; 3]));
+}
+
+#[test]
+fn what_sets_the_scale_is_named_when_too_little_is_left() {
+    let small = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]];
+    let far_light = scene(small.clone(), vec![[0.0, 1.0, 2.0], [0.0, 1e9, 0.0]]);
+    let message = refusal(&far_light, &View::new((8, 8)), 32);
+    assert!(
+        message.contains("the scene's box is 1 grid steps long") && message.contains("light 2 stands far away"),
+        "{message}"
+    );
+    let message = refusal(&scene(small.clone(), vec![]), &perspective(Some([0.0, 0.0, 1e6])), 24);
+    assert!(message.contains("the eye stands far away"), "{message}");
+    assert!(Grid::new(&scene(small.clone(), vec![[0.0, 60.0, 0.0]]), &View::new((8, 8)), 16, None).is_ok());
+    assert!(
+        refusal(&scene(small, vec![[0.0, 70.0, 0.0]]), &View::new((8, 8)), 16).contains("less than 8 bits (256 steps)")
+    );
+}
+
+#[test]
+fn unusable_scenes_and_views_are_refused() {
+    let view = View::new((8, 8));
+    let mut bad = scene(vec![[0.0; 3]; 3], vec![]);
+    bad.triangles[0].vertices[1] = 7;
+    bad.triangles[0].material = 3;
+    let message = refusal(&bad, &view, 32);
+    assert!(
+        message.contains("triangle 0 has vertex 7, but there are 3") && message.contains("has material 3"),
+        "{message}"
+    );
+    assert!(refusal(&scene(vec![[f64::NAN; 3]; 3], vec![]), &view, 32).contains("vertex 0 is not finite"));
+    assert!(refusal(&scene(vec![], vec![]), &View::new((0, 8)), 32).contains("0 x 8 pixels"));
+    assert!(refusal(&scene(vec![], vec![]), &view, 7).contains("7 bits is not supported"));
+}

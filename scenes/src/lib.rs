@@ -1,9 +1,12 @@
+//! Scene files, kd tree, memory image, generators and the double-precision reference.
 
 pub mod cadrage;
 pub mod camera;
 pub mod generate;
 pub mod grid;
+pub mod image;
 pub mod kdtree;
+pub mod layout;
 pub mod model;
 pub mod read;
 pub mod vector;

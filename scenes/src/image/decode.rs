@@ -1,0 +1,173 @@
+//! An image read back: what its octets say, by the tables of [`crate::layout`] alone. Tests and the kernels' twins compare with it.
+
+use super::{Image, Kind};
+use crate::kdtree::{Bounds, Content, KdTree, Node};
+use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
+
+/// A triangle as it is stored, its coordinates shifted back to positions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StoredTriangle {
+    /// The vertices, raw.
+    pub vertices: [[i32; 3]; 3],
+    /// Number of the material.
+    pub material: u32,
+}
+
+/// Everything an image holds beside its frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents {
+    /// The kd tree, its nodes level by level.
+    pub tree: KdTree,
+    /// The triangles by index.
+    pub triangles: Vec<StoredTriangle>,
+    /// The fields of each material, in their order.
+    pub materials: Vec<Vec<i64>>,
+    /// The fields of each light, in their order.
+    pub lights: Vec<Vec<i64>>,
+}
+
+impl Image {
+    /// Reads tree, triangles, materials and lights from the octets; `None` when an address leads out of its region or the tree is none.
+    pub fn decode(&self) -> Option<Contents> {
+        let nodes =
+            (self.tree.nodes.len() as u32).min(self.region(Kind::Nodes).len() as u32 / self.layout.node().octets());
+        Some(Contents {
+            tree: match self.layout {
+                Layout::Report => self.report_tree(nodes)?,
+                Layout::Wide => self.wide_tree(nodes)?,
+            },
+            triangles: (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?,
+            materials: (0..self.counts.materials)
+                .map(|k| self.element(Kind::Materials, &MATERIAL, k))
+                .collect::<Option<_>>()?,
+            lights: (0..self.counts.lights).map(|k| self.element(Kind::Lights, &LIGHT, k)).collect::<Option<_>>()?,
+        })
+    }
+
+    /// A triangle by its index.
+    pub fn triangle(&self, index: u32) -> Option<StoredTriangle> {
+        let values = self.element(Kind::Triangles, self.layout.triangle(), index)?;
+        let vertex = |k: usize| [0, 1, 2].map(|axis| self.loaded(values[3 * k + axis]));
+        Some(StoredTriangle { vertices: [0, 1, 2].map(vertex), material: *values.last()? as u32 })
+    }
+
+    fn loaded(&self, stored: i64) -> i32 {
+        (stored << self.layout.coordinate_shift(self.formats.word)) as i32
+    }
+
+    /// Element `index` of an array that fills a region.
+    fn element(&self, kind: Kind, structure: &Structure, index: u32) -> Option<Vec<i64>> {
+        let region = self.region(kind);
+        let address = region.start.checked_add(index.checked_mul(structure.octets())?)?;
+        let end = address.checked_add(structure.octets())?;
+        if end > region.end {
+            return None;
+        }
+        structure.read(self.bytes.get(address as usize..end as usize)?)
+    }
+
+    /// Which element of a region lies at an address.
+    fn number(&self, kind: Kind, structure: &Structure, address: u32) -> Option<u32> {
+        let region = self.region(kind);
+        let offset = region.contains(&address).then(|| address - region.start)?;
+        (offset % structure.octets() == 0).then_some(offset / structure.octets())
+    }
+
+    fn report_tree(&self, count: u32) -> Option<KdTree> {
+        let structure = self.layout.node();
+        let number = |address: i64| self.number(Kind::Nodes, structure, address as u32);
+        let mut nodes = Vec::new();
+        for k in 0..count {
+            let values = self.element(Kind::Nodes, structure, k)?;
+            let &[left, right, next, first, count] = values.first_chunk()?;
+            let corner = |at: usize| [0, 1, 2].map(|axis| self.loaded(values[at + axis]));
+            let bounds = Bounds { low: corner(5), high: corner(8) };
+            // The corner on each of the other faces is the same one.
+            for face in [11, 17] {
+                if corner(face) != bounds.low || corner(face + 3) != bounds.high {
+                    return None;
+                }
+            }
+            let content = if left == 0 {
+                Content::Leaf { triangles: self.list(first as u32, count as u32)? }
+            } else {
+                let axis = *values.last()? as usize;
+                let (left, right) = (number(left)?, number(right)?);
+                let below = self.element(Kind::Nodes, structure, left)?;
+                // x1, y1 or z1 of the left child lies on the plane; all three are its upper corner.
+                let at = self.loaded(*below.get(8 + axis)?);
+                (right == left + 1).then_some(Content::Inner { axis, at, left })?
+            };
+            nodes.push(Node { bounds, next: if next == 0 { None } else { Some(number(next)?) }, content });
+        }
+        Some(KdTree { nodes })
+    }
+
+    /// The triangles of a linked list that is `count` long.
+    fn list(&self, mut address: u32, count: u32) -> Option<Vec<u32>> {
+        let structure = self.layout.reference();
+        let mut triangles = Vec::new();
+        while address != 0 {
+            let number = self.number(Kind::References, structure, address)?;
+            let &[triangle, next] = self.element(Kind::References, structure, number)?.first_chunk()?;
+            triangles.push(self.number(Kind::Triangles, self.layout.triangle(), triangle as u32)?);
+            if triangles.len() > count as usize {
+                return None;
+            }
+            address = next as u32;
+        }
+        (triangles.len() == count as usize).then_some(triangles)
+    }
+
+    fn wide_tree(&self, count: u32) -> Option<KdTree> {
+        let structure = self.layout.node();
+        let mut nodes =
+            vec![Node { bounds: self.bounds, next: None, content: Content::Leaf { triangles: Vec::new() } }];
+        let mut addresses = vec![self.root];
+        let mut level_end = 1;
+        let mut k = 0;
+        while k < nodes.len() {
+            let number = self.number(Kind::Nodes, structure, addresses[k])?;
+            let &[plane, link] = self.element(Kind::Nodes, structure, number)?.first_chunk()?;
+            let (tag, address) = (link as u32 & 3, link as u32 & !3);
+            if tag == WIDE_LEAF {
+                nodes[k].content = Content::Leaf { triangles: self.array(address, plane)? };
+            } else {
+                let (axis, at) = (tag as usize, i32::try_from(plane).ok()?);
+                nodes[k].content = Content::Inner { axis, at, left: nodes.len() as u32 };
+                for side in 0..2 {
+                    let mut bounds = nodes[k].bounds;
+                    if side == 0 {
+                        bounds.high[axis] = at
+                    } else {
+                        bounds.low[axis] = at
+                    }
+                    nodes.push(Node { bounds, next: None, content: Content::Leaf { triangles: Vec::new() } });
+                    addresses.push(address + side * structure.octets());
+                }
+                if nodes.len() > count as usize {
+                    return None;
+                }
+            }
+            k += 1;
+            nodes[k - 1].next = (k < level_end).then_some(k as u32);
+            if k == level_end {
+                level_end = nodes.len();
+            }
+        }
+        Some(KdTree { nodes })
+    }
+
+    /// The triangles of an array of `count` references.
+    fn array(&self, address: u32, count: i64) -> Option<Vec<u32>> {
+        let structure = self.layout.reference();
+        let first = if count == 0 { 0 } else { self.number(Kind::References, structure, address)? };
+        let end = first.checked_add(u32::try_from(count).ok()?)?;
+        (first..end)
+            .map(|k| {
+                let triangle = *self.element(Kind::References, structure, k)?.first()?;
+                self.number(Kind::Triangles, self.layout.triangle(), triangle as u32)
+            })
+            .collect()
+    }
+}

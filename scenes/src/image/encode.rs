@@ -1,0 +1,199 @@
+//! From tree, triangles and tables to octets. Nothing here chooses a number; that is done before.
+
+use isa::diagnostic::{Diagnostic, Report};
+
+use super::{HEADER, Kind, Regions, out_of_range, stored, three};
+use crate::cadrage::{self, Formats};
+use crate::grid::Grid;
+use crate::kdtree::{Bounds, Content, KdTree};
+use crate::layout::{LIGHT, Layout, MATERIAL, PIXEL, Structure, WIDE_LEAF};
+use crate::model::Scene;
+
+/// Materials and lights as raw integers, in the order of their fields.
+pub(super) struct Tables {
+    materials: Vec<[i32; 8]>,
+    lights: Vec<[i32; 6]>,
+}
+
+impl Tables {
+    /// Rounds all coefficients to their formats (nearest, ties up).
+    pub(super) fn new(scene: &Scene, grid: &Grid, formats: &Formats, layout: Layout) -> Result<Tables, Report> {
+        let most = 1usize << (8 * layout.triangle().fields[layout.triangle().fields.len() - 1].width);
+        if scene.materials.len() > most {
+            return Err(Diagnostic::error(format!(
+                "{} materials are more than the {most} of layout `{layout}`",
+                scene.materials.len()
+            ))
+            .hint(match layout {
+                Layout::Report => "use --layout wide, which has room for 65536",
+                Layout::Wide => "merge materials that are the same",
+            })
+            .into());
+        }
+        let fixed = |name: String, value: f64, format: &str, fraction: u32| {
+            cadrage::raw(value, fraction, formats.word)
+                .ok_or_else(|| out_of_range(&name, value, format, fraction, formats.word))
+        };
+        let materials = scene.materials.iter().enumerate().map(|(k, material)| {
+            let weight = |name: &str, x| fixed(format!("the {name} of material {k}"), x, "weight", formats.weight);
+            let index = |name: &str, x| fixed(format!("the {name} of material {k}"), x, "index", formats.index);
+            let [r, g, b] = three(material.colour, |x| weight("colour", x))?;
+            let (reflection, intensity) =
+                (weight("reflection", material.reflection)?, weight("intensity", material.intensity)?);
+            if material.index == 0.0 {
+                return Ok([r, g, b, reflection, intensity, 0, 0, 0]);
+            }
+            let transmission = weight("transmission", material.transmission())?;
+            let refraction = index("index of refraction", material.index)?;
+            let inverse = index("reciprocal of the index of refraction", 1.0 / material.index)?;
+            // An index of 0 would say that the material is opaque.
+            Ok([r, g, b, reflection, intensity, transmission, refraction.max(1), inverse.max(1)])
+        });
+        let lights = scene.lights.iter().enumerate().map(|(k, light)| {
+            let [x, y, z] = grid.raw(light.position);
+            let [r, g, b] =
+                three(light.colour, |c| fixed(format!("the colour of light {k}"), c, "colour", formats.colour))?;
+            Ok([x, y, z, r, g, b])
+        });
+        Ok(Tables {
+            materials: materials.collect::<Result<_, Report>>()?,
+            lights: lights.collect::<Result<_, Report>>()?,
+        })
+    }
+}
+
+/// All octets, and which addresses hold what.
+pub(super) fn memory(
+    tree: &KdTree,
+    scene: &Scene,
+    triangles: &[[[i32; 3]; 3]],
+    tables: &Tables,
+    layout: Layout,
+    shift: u32,
+    size: (u32, u32),
+) -> Result<(Vec<u8>, Regions), Report> {
+    let references: u64 = tree.nodes.iter().map(|node| packet(&node.content).len() as u64).sum();
+    let octets = [
+        u64::from(HEADER),
+        tree.nodes.len() as u64 * u64::from(layout.node().octets()),
+        references * u64::from(layout.reference().octets()),
+        triangles.len() as u64 * u64::from(layout.triangle().octets()),
+        tables.materials.len() as u64 * u64::from(MATERIAL.octets()),
+        tables.lights.len() as u64 * u64::from(LIGHT.octets()),
+        (u64::from(size.0) * u64::from(size.1)).saturating_mul(u64::from(PIXEL.octets())),
+    ];
+    let mut end = 0u64;
+    let mut regions = Kind::ALL.map(|kind| (kind, 0..0));
+    for ((_, range), length) in regions.iter_mut().zip(octets) {
+        let start = end.next_multiple_of(8);
+        end = start.saturating_add(length);
+        *range = u32::try_from(start).and_then(|start| Ok(start..u32::try_from(end)?)).map_err(|_| {
+            let mebioctets = octets.iter().fold(0u64, |sum, &n| sum.saturating_add(n)) >> 20;
+            Diagnostic::error(format!("the memory image needs {mebioctets} MiB, more than 32-bit addresses reach"))
+                .hint("use a smaller picture, or a lower tree with --kd-depth")
+        })?;
+    }
+    let mut bytes = vec![0; end as usize];
+    let start = |kind: usize| regions[kind].1.start;
+    let addresses = Addresses { nodes: start(1), references: start(2), triangles: start(3), layout };
+    let mut put = |address: u32, structure: &Structure, values: &mut dyn Iterator<Item = i64>| {
+        structure.write(&mut bytes[address as usize..], values);
+    };
+    let mut reference = 0;
+    for (number, node) in (0..).zip(&tree.nodes) {
+        let packet = packet(&node.content);
+        let first = if packet.is_empty() { 0 } else { addresses.reference(reference) };
+        let values = match layout {
+            Layout::Report => {
+                if packet.len() > usize::from(u16::MAX) {
+                    return Err(Diagnostic::error(format!(
+                        "a leaf of {} triangles is more than a node counts",
+                        packet.len()
+                    ))
+                    .hint("use --layout wide, or a deeper tree with --kd-depth")
+                    .into());
+                }
+                addresses.report_node(node.next, &node.bounds, &node.content, first, shift)
+            }
+            Layout::Wide => addresses.wide_node(&node.content, first),
+        };
+        put(addresses.node(number), layout.node(), &mut values.into_iter());
+        for (k, &triangle) in packet.iter().enumerate() {
+            let here = addresses.reference(reference);
+            reference += 1;
+            let next = if k + 1 < packet.len() { addresses.reference(reference) } else { 0 };
+            let values = [addresses.triangle(triangle), next].map(i64::from);
+            put(here, layout.reference(), &mut values.into_iter().take(layout.reference().fields.len()));
+        }
+    }
+    for (number, (vertices, triangle)) in (0..).zip(triangles.iter().zip(&scene.triangles)) {
+        let Bounds { low, high } = Bounds::of_triangle(vertices);
+        let own: &[[i32; 3]] = match layout {
+            Layout::Report => &[low, high],
+            Layout::Wide => &[],
+        };
+        let mut values = vertices
+            .iter()
+            .chain(own)
+            .flatten()
+            .map(|&x| i64::from(stored(x, shift)))
+            .chain([i64::from(triangle.material)]);
+        put(addresses.triangle(number), layout.triangle(), &mut values);
+    }
+    for (number, material) in (0..).zip(&tables.materials) {
+        put(start(4) + number * MATERIAL.octets(), &MATERIAL, &mut material.iter().map(|&x| i64::from(x)));
+    }
+    for (number, light) in (0..).zip(&tables.lights) {
+        put(start(5) + number * LIGHT.octets(), &LIGHT, &mut light.iter().map(|&x| i64::from(x)));
+    }
+    Ok((bytes, regions))
+}
+
+/// The triangles of a leaf, none for an inner node.
+fn packet(content: &Content) -> &[u32] {
+    match content {
+        Content::Leaf { triangles } => triangles,
+        Content::Inner { .. } => &[],
+    }
+}
+
+/// Where structures lie, by number.
+struct Addresses {
+    nodes: u32,
+    references: u32,
+    triangles: u32,
+    layout: Layout,
+}
+
+impl Addresses {
+    fn node(&self, number: u32) -> u32 {
+        self.nodes + number * self.layout.node().octets()
+    }
+
+    fn reference(&self, number: u32) -> u32 {
+        self.references + number * self.layout.reference().octets()
+    }
+
+    fn triangle(&self, number: u32) -> u32 {
+        self.triangles + number * self.layout.triangle().octets()
+    }
+
+    fn report_node(&self, next: Option<u32>, bounds: &Bounds, content: &Content, first: u32, shift: u32) -> Vec<i64> {
+        let (left, right, axis) = match *content {
+            Content::Inner { axis, left, .. } => (self.node(left), self.node(left + 1), axis),
+            Content::Leaf { .. } => (0, 0, 0),
+        };
+        let next = next.map_or(0, |number| self.node(number));
+        let corners = [bounds.low, bounds.high].map(|corner| corner.map(|x| i64::from(stored(x, shift))));
+        let faces = (0..3).flat_map(|_| corners).flatten();
+        let head = [left, right, next, first].map(i64::from).into_iter();
+        head.chain([packet(content).len() as i64]).chain(faces).chain([axis as i64]).collect()
+    }
+
+    fn wide_node(&self, content: &Content, first: u32) -> Vec<i64> {
+        match *content {
+            Content::Inner { axis, at, left } => vec![i64::from(at), i64::from(self.node(left) | axis as u32)],
+            Content::Leaf { ref triangles } => vec![triangles.len() as i64, i64::from(first | WIDE_LEAF)],
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! The image of global memory that a machine starts with: kd tree, triangles, materials, lights and an empty frame, and what the kernels
+//! have to be told beside it. How structures look is said in [`crate::layout`].
+
+mod decode;
+mod encode;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use isa::diagnostic::{Diagnostic, Report};
+
+use crate::cadrage::{self, Formats, Overrides};
+use crate::camera::{self, RawCamera, Rays};
+use crate::grid::Grid;
+use crate::kdtree::{self, Bounds, KdTree};
+use crate::layout::Layout;
+use crate::model::{Scene, Vec3, View};
+pub use decode::{Contents, StoredTriangle};
+
+/// Octets from address 0 that are never used, so that 0 is no structure's address.
+pub const HEADER: u32 = 16;
+
+/// What a user may choose of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Bits of a register: 8 to 32.
+    pub word: u32,
+    /// How triangles and tree are stored.
+    pub layout: Layout,
+    /// Levels of the kd tree below the root.
+    pub kd_depth: u32,
+    /// Fraction bits set by the user.
+    pub formats: Overrides,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { word: 32, layout: Layout::Wide, kd_depth: kdtree::DEPTH, formats: Overrides::default() }
+    }
+}
+
+/// What a range of addresses holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Kind {
+    /// Nothing: no address in it is valid.
+    Header,
+    /// Nodes of the kd tree, level by level; the root is the first.
+    Nodes,
+    /// References of the leaves, leaf by leaf.
+    References,
+    /// Triangles, by index.
+    Triangles,
+    /// Materials, by number.
+    Materials,
+    /// Lights, by number.
+    Lights,
+    /// Pixels, row 0 first.
+    Frame,
+}
+
+impl Kind {
+    /// All kinds in the order of their addresses.
+    pub const ALL: [Kind; 7] =
+        [Kind::Header, Kind::Nodes, Kind::References, Kind::Triangles, Kind::Materials, Kind::Lights, Kind::Frame];
+
+    /// Name in listings and traces.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::Header => "header",
+            Kind::Nodes => "nodes",
+            Kind::References => "references",
+            Kind::Triangles => "triangles",
+            Kind::Materials => "materials",
+            Kind::Lights => "lights",
+            Kind::Frame => "frame",
+        }
+    }
+}
+
+/// Addresses of each kind, in the order of [`Kind::ALL`].
+pub type Regions = [(Kind, Range<u32>); 7];
+
+/// A memory image and the raw integers that go with it.
+#[derive(Clone, Debug)]
+pub struct Image {
+    /// Global memory from address 0; the frame at its end is zero.
+    pub bytes: Vec<u8>,
+    /// How triangles and tree are stored.
+    pub layout: Layout,
+    /// Addresses of each kind, in the order of [`Kind::ALL`]; they start at multiples of 8, and may be empty.
+    pub regions: Regions,
+    /// Address of the tree's root.
+    pub root: u32,
+    /// Box of the tree's root, raw: the scene's, one stored unit larger on every side.
+    pub bounds: Bounds,
+    /// Width and height of the frame in pixels.
+    pub size: (u32, u32),
+    /// Fraction bits of all quantities.
+    pub formats: Formats,
+    /// Where the scene lies on the integers.
+    pub grid: Grid,
+    /// Where the rays of the pixels start and go.
+    pub camera: RawCamera,
+    /// Ambient intensity in the colour format.
+    pub ambient: i32,
+    /// Colour where a ray hits nothing, in the colour format.
+    pub background: [i32; 3],
+    /// Numbers of triangles, materials and lights.
+    pub counts: Counts,
+    /// The tree that is stored, on raw coordinates.
+    pub tree: KdTree,
+}
+
+/// How many structures an image holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Triangles.
+    pub triangles: u32,
+    /// Materials.
+    pub materials: u32,
+    /// Lights.
+    pub lights: u32,
+}
+
+impl Image {
+    /// The addresses of one kind.
+    pub fn region(&self, kind: Kind) -> Range<u32> {
+        self.regions.iter().find(|(k, _)| *k == kind).map_or(0..0, |(_, range)| range.clone())
+    }
+
+    /// What an address holds, `None` beyond the end and in the gaps between the regions.
+    pub fn kind(&self, address: u32) -> Option<Kind> {
+        self.regions.iter().find(|(_, range)| range.contains(&address)).map(|(kind, _)| *kind)
+    }
+}
+
+/// Puts a scene into memory.
+///
+/// Vertices are rounded to the grid and, in the report's layout, further to the 16 bits that it stores; the tree is built on the vertices as
+/// they are stored, so planes and triangles agree.
+///
+/// # Errors
+/// What [`Grid::new`], [`Formats::new`], [`Rays::new`], [`RawCamera::new`] and [`kdtree::build`] refuse, more materials than a triangle can
+/// name, coefficients that do not fit their format, leaves with more triangles than a node can count, and an image beyond 32-bit addresses.
+pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Report> {
+    let layout = options.layout;
+    let grid = Grid::new(scene, view, options.word, options.formats.position)?;
+    let shift = layout.coordinate_shift(options.word);
+    let vertices: Vec<[i32; 3]> =
+        scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
+    let triangles: Vec<[[i32; 3]; 3]> =
+        scene.triangles.iter().map(|t| t.vertices.map(|v| vertices[v as usize])).collect();
+    let boxes: Vec<Bounds> = triangles.iter().map(Bounds::of_triangle).collect();
+    let unit = 1 << shift;
+    let inner = boxes.iter().copied().reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
+        let Bounds { low, high } = grid.bounds();
+        Bounds { low: low.map(|x| stored(x, shift) << shift), high: high.map(|x| stored(x, shift) << shift) }
+    });
+    let bounds = inner.grown(unit);
+    let formats = Formats::new(scene, view, &grid, 2 * unit as u32 + 2, &options.formats)?;
+    let local = View { camera: camera::mapped(&view.camera, |p| grid.local(p)), ..view.clone() };
+    let rays = Rays::new(grid.local_corners(), &local)?;
+    let camera = RawCamera::new(&rays, view.size, &formats, &bounds)?;
+    let colour = |name: &str, value: f64| {
+        cadrage::raw(value, formats.colour, formats.word)
+            .ok_or_else(|| out_of_range(name, value, "colour", formats.colour, formats.word))
+    };
+    let ambient = colour("the ambient intensity", view.ambient)?;
+    let background = three(view.background, |x| colour("the background", x))?;
+    let tree = kdtree::build(&boxes, bounds, options.kd_depth)?;
+    let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
+    let (bytes, regions) = encode::memory(&tree, scene, &triangles, &tables, layout, shift, view.size)?;
+    let root = regions[1].1.start;
+    let counts = Counts {
+        triangles: scene.triangles.len() as u32,
+        materials: scene.materials.len() as u32,
+        lights: scene.lights.len() as u32,
+    };
+    Ok(Image {
+        bytes,
+        layout,
+        regions,
+        root,
+        bounds,
+        size: view.size,
+        formats,
+        grid,
+        camera,
+        ambient,
+        background,
+        counts,
+        tree,
+    })
+}
+
+/// A raw coordinate as it is stored: shifted right, nearest, ties up, within 16 bits when it is shifted at all.
+fn stored(raw: i32, shift: u32) -> i32 {
+    if shift == 0 {
+        return raw;
+    }
+    let rounded = (i64::from(raw) + (1i64 << (shift - 1))) >> shift;
+    rounded.clamp(i64::from(i16::MIN), i64::from(i16::MAX)) as i32
+}
+
+/// `f` of each component, or its first error.
+fn three<T, E>(values: Vec3, f: impl Fn(f64) -> Result<T, E>) -> Result<[T; 3], E> {
+    let [a, b, c] = values;
+    Ok([f(a)?, f(b)?, f(c)?])
+}
+
+fn out_of_range(name: &str, value: f64, format: &str, fraction: u32, word: u32) -> Report {
+    let most = crate::vector::shifted(1.0, word as i32 - 1 - fraction as i32);
+    Diagnostic::error(format!("{name} is {value}, which does not fit the {format} format"))
+        .hint(format!("{fraction} fraction bits in a word of {word} hold values below {most}"))
+        .into()
+}

@@ -1,0 +1,366 @@
+//! The structures of global memory as data: names, octets and offsets of all fields, in both layouts. The image is written and read by these
+//! tables, and the assembler's `.struct` definitions are generated from them, so that a field has one place. Little-endian throughout.
+
+use std::fmt;
+use std::str::FromStr;
+
+use isa::diagnostic::{Diagnostic, did_you_mean};
+
+/// A field: one or more integers of the same width.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Name as kernels write it.
+    pub name: &'static str,
+    /// Number of integers, 3 for a point or a colour.
+    pub elements: u32,
+    /// Octets of one integer: 1, 2 or 4.
+    pub width: u32,
+    /// Whether the integers are two's complement.
+    pub is_signed: bool,
+    /// What the field holds, with its format.
+    pub holds: &'static str,
+}
+
+impl Field {
+    /// Octets of the whole field.
+    pub const fn octets(&self) -> u32 {
+        self.elements * self.width
+    }
+}
+
+const fn unsigned(name: &'static str, width: u32, holds: &'static str) -> Field {
+    Field { name, elements: 1, width, is_signed: false, holds }
+}
+
+const fn signed(name: &'static str, elements: u32, width: u32, holds: &'static str) -> Field {
+    Field { name, elements, width, is_signed: true, holds }
+}
+
+/// A structure in memory: its fields one after another without gaps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Structure {
+    /// Name as kernels write it.
+    pub name: &'static str,
+    /// The fields in the order of their addresses.
+    pub fields: &'static [Field],
+}
+
+impl Structure {
+    /// Octets of the structure.
+    pub const fn octets(&self) -> u32 {
+        let (mut sum, mut k) = (0, 0);
+        while k < self.fields.len() {
+            sum += self.fields[k].octets();
+            k += 1;
+        }
+        sum
+    }
+
+    /// The fields, each with its offset in octets.
+    pub fn offsets(&self) -> impl Iterator<Item = (u32, &'static Field)> {
+        self.fields.iter().scan(0, |next, field| {
+            let offset = *next;
+            *next += field.octets();
+            Some((offset, field))
+        })
+    }
+
+    /// Offset of the field `name` in octets.
+    pub fn offset(&self, name: &str) -> Option<u32> {
+        self.offsets().find(|(_, field)| field.name == name).map(|(offset, _)| offset)
+    }
+
+    /// Writes one structure: the integers of all its fields in order.
+    ///
+    /// They have to be as many as the fields hold and to fit them; this is the caller's to see to, and checked in debug builds.
+    pub fn write(&self, octets: &mut [u8], values: impl IntoIterator<Item = i64>) {
+        let mut values = values.into_iter();
+        let mut at = 0;
+        for field in self.fields {
+            for _ in 0..field.elements {
+                let value = values.next().unwrap_or(0);
+                let width = field.width as usize;
+                debug_assert!(field.fits(value), "{} of {} does not hold {value}", field.name, self.name);
+                octets[at..at + width].copy_from_slice(&value.to_le_bytes()[..width]);
+                at += width;
+            }
+        }
+        debug_assert!(values.next().is_none(), "too many values for {}", self.name);
+    }
+
+    /// The integers of all fields in order, `None` when `octets` is shorter than the structure.
+    pub fn read(&self, octets: &[u8]) -> Option<Vec<i64>> {
+        let mut octets = octets.get(..self.octets() as usize)?;
+        let mut values = Vec::new();
+        for field in self.fields {
+            for _ in 0..field.elements {
+                let (element, rest) = octets.split_at(field.width as usize);
+                let is_negative = field.is_signed && element.last().is_some_and(|&top| top >= 0x80);
+                let mut wide = [if is_negative { 0xff } else { 0 }; 8];
+                wide[..element.len()].copy_from_slice(element);
+                values.push(i64::from_le_bytes(wide));
+                octets = rest;
+            }
+        }
+        Some(values)
+    }
+}
+
+impl Field {
+    /// Whether each integer of the field can be `value`.
+    pub fn fits(&self, value: i64) -> bool {
+        let bits = 8 * self.width;
+        let (low, high) = if self.is_signed { (-(1 << (bits - 1)), 1 << (bits - 1)) } else { (0, 1 << bits) };
+        (low..high).contains(&value)
+    }
+}
+
+/// How triangles and tree are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Layout {
+    /// The report's structures bit for bit (Annex I): coordinates of 16 bits, nodes with box and `next`, references as linked lists.
+    Report,
+    /// Coordinates of 32 bits, nodes of 8 octets, references as arrays.
+    #[default]
+    Wide,
+}
+
+impl Layout {
+    /// Both, in the order of their declaration.
+    pub const ALL: [Layout; 2] = [Layout::Report, Layout::Wide];
+
+    /// Name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Layout::Report => "report",
+            Layout::Wide => "wide",
+        }
+    }
+
+    /// A triangle.
+    pub const fn triangle(self) -> &'static Structure {
+        match self {
+            Layout::Report => &REPORT_TRIANGLE,
+            Layout::Wide => &WIDE_TRIANGLE,
+        }
+    }
+
+    /// A node of the kd tree.
+    pub const fn node(self) -> &'static Structure {
+        match self {
+            Layout::Report => &REPORT_NODE,
+            Layout::Wide => &WIDE_NODE,
+        }
+    }
+
+    /// An element of a leaf's list of triangles.
+    pub const fn reference(self) -> &'static Structure {
+        match self {
+            Layout::Report => &REPORT_REFERENCE,
+            Layout::Wide => &WIDE_REFERENCE,
+        }
+    }
+
+    /// All structures of an image in this layout.
+    pub const fn structures(self) -> [&'static Structure; 6] {
+        [self.node(), self.reference(), self.triangle(), &MATERIAL, &LIGHT, &PIXEL]
+    }
+
+    /// Bits by which a raw coordinate is shifted right (rounded to nearest, ties up) when it is stored, and left when it is loaded.
+    pub const fn coordinate_shift(self, word: u32) -> u32 {
+        match self {
+            Layout::Report => word.saturating_sub(16),
+            Layout::Wide => 0,
+        }
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Layout {
+    type Err = Box<Diagnostic>;
+
+    fn from_str(name: &str) -> Result<Layout, Box<Diagnostic>> {
+        Layout::ALL.into_iter().find(|layout| layout.name() == name).ok_or_else(|| {
+            let names = Layout::ALL.map(Layout::name);
+            let hint = match did_you_mean(name, names) {
+                Some(known) => format!("did you mean `{known}`?"),
+                None => format!("the layouts are {}", names.join(" and ")),
+            };
+            Box::new(Diagnostic::error(format!("`{name}` is no memory layout")).hint(hint))
+        })
+    }
+}
+
+/// Tags in the low bits of `link` of a wide node: the axis of an inner node, or this for a leaf.
+pub const WIDE_LEAF: u32 = 3;
+
+static REPORT_TRIANGLE: Structure = Structure {
+    name: "triangle",
+    fields: &[
+        signed("v1", 3, 2, "first vertex: position >> (word - 16), rounded"),
+        signed("v2", 3, 2, "second vertex"),
+        signed("v3", 3, 2, "third vertex"),
+        signed("small", 3, 2, "smallest coordinates of the three"),
+        signed("big", 3, 2, "largest coordinates of the three"),
+        unsigned("material_id", 1, "number of the material"),
+    ],
+};
+
+static REPORT_NODE: Structure = Structure {
+    name: "node",
+    fields: &[
+        unsigned("left", 4, "address of the left child, 0 for a leaf"),
+        unsigned("right", 4, "address of the right child, 0 for a leaf"),
+        unsigned("next", 4, "address of the next node of the level, 0 for the last"),
+        unsigned("trig", 4, "address of a leaf's first reference, 0 when it has none"),
+        unsigned("pnum", 2, "number of triangles of a leaf"),
+        signed("x0", 3, 2, "the box's corner on the face of small x: position >> (word - 16)"),
+        signed("x1", 3, 2, "the box's corner on the face of large x"),
+        signed("y0", 3, 2, "the box's corner on the face of small y"),
+        signed("y1", 3, 2, "the box's corner on the face of large y"),
+        signed("z0", 3, 2, "the box's corner on the face of small z"),
+        signed("z1", 3, 2, "the box's corner on the face of large z"),
+        unsigned(
+            "split",
+            1,
+            "axis that divides the children: 0, 1, 2 (0 in a leaf); the plane is the left child's face",
+        ),
+    ],
+};
+
+static REPORT_REFERENCE: Structure = Structure {
+    name: "reference",
+    fields: &[
+        unsigned("triangle", 4, "address of a triangle"),
+        unsigned("next", 4, "address of the next reference, 0 for the last"),
+    ],
+};
+
+static WIDE_TRIANGLE: Structure = Structure {
+    name: "triangle",
+    fields: &[
+        signed("v0", 3, 4, "first vertex: position"),
+        signed("v1", 3, 4, "second vertex"),
+        signed("v2", 3, 4, "third vertex"),
+        unsigned("material_id", 2, "number of the material"),
+    ],
+};
+
+static WIDE_NODE: Structure = Structure {
+    name: "node",
+    fields: &[
+        signed("plane", 1, 4, "inner: coordinate of the dividing plane, a position; leaf: number of triangles"),
+        unsigned(
+            "link",
+            4,
+            "inner: address of the left child, a multiple of 8, plus the axis 0, 1, 2; the right child is 8 octets on; \
+                  leaf: address of the first reference, a multiple of 4, plus 3",
+        ),
+    ],
+};
+
+static WIDE_REFERENCE: Structure =
+    Structure { name: "reference", fields: &[unsigned("triangle", 4, "address of a triangle")] };
+
+/// A material, the same in both layouts.
+pub static MATERIAL: Structure = Structure {
+    name: "material",
+    fields: &[
+        signed("colour", 3, 4, "red, green, blue: weight"),
+        signed("reflection", 1, 4, "ks: weight"),
+        signed("intensity", 1, 4, "kd: weight"),
+        signed("transmission", 1, 4, "kt: weight, 0 for an opaque material"),
+        signed("index", 1, 4, "index of refraction: index, 0 for an opaque material"),
+        signed(
+            "inverse_index",
+            1,
+            4,
+            "1 / index of refraction, the ratio for a ray that enters: index, 0 for an opaque material",
+        ),
+    ],
+};
+
+/// A light, the same in both layouts.
+pub static LIGHT: Structure = Structure {
+    name: "light",
+    fields: &[
+        signed("position", 3, 4, "where it stands: position"),
+        signed("colour", 3, 4, "red, green, blue: colour"),
+    ],
+};
+
+/// A pixel of the frame: three words, row 0 first.
+pub static PIXEL: Structure =
+    Structure { name: "pixel", fields: &[signed("colour", 3, 4, "red, green, blue: colour")] };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn structures_have_the_sizes_of_annex_one() {
+        let sizes = |layout: Layout| [layout.triangle(), layout.node(), layout.reference()].map(Structure::octets);
+        assert_eq!(sizes(Layout::Report), [31, 55, 8]);
+        assert_eq!(sizes(Layout::Wide), [38, 8, 4]);
+        assert_eq!([MATERIAL, LIGHT, PIXEL].map(|s| s.octets()), [32, 24, 12]);
+    }
+
+    #[test]
+    fn fields_lie_where_the_annex_has_them() {
+        let node = Layout::Report.node();
+        let offsets: Vec<_> = node.offsets().map(|(offset, field)| (field.name, offset)).collect();
+        let expected = [
+            ("left", 0),
+            ("right", 4),
+            ("next", 8),
+            ("trig", 12),
+            ("pnum", 16),
+            ("x0", 18),
+            ("x1", 24),
+            ("y0", 30),
+            ("y1", 36),
+            ("z0", 42),
+            ("z1", 48),
+            ("split", 54),
+        ];
+        assert_eq!(offsets, expected);
+        assert_eq!(Layout::Report.triangle().offset("material_id"), Some(30));
+        assert_eq!(Layout::Wide.triangle().offset("material_id"), Some(36));
+        assert_eq!(node.offset("middle"), None);
+    }
+
+    #[test]
+    fn names_are_different_within_a_structure() {
+        for structure in Layout::ALL.into_iter().flat_map(Layout::structures) {
+            let mut names: Vec<_> = structure.fields.iter().map(|field| field.name).collect();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), structure.fields.len(), "{}", structure.name);
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let triangle = Layout::Report.triangle();
+        let values: Vec<i64> = (0..15).map(|k| (k - 7) * 4681).chain([255]).collect();
+        let mut octets = [0xaa; 33];
+        triangle.write(&mut octets, values.iter().copied());
+        assert_eq!(octets[..4], [0x01, 0x80, 0x4a, 0x92], "little-endian, two's complement");
+        assert_eq!(octets[31..], [0xaa; 2]);
+        assert_eq!(triangle.read(&octets), Some(values));
+        assert_eq!(triangle.read(&octets[..30]), None);
+    }
+
+    #[test]
+    fn layouts_have_names() {
+        for layout in Layout::ALL {
+            assert_eq!(layout.name().parse(), Ok(layout));
+        }
+        assert!("wde".parse::<Layout>().unwrap_err().to_string().contains("did you mean `wide`?"));
+    }
+}

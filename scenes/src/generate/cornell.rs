@@ -18,10 +18,10 @@ const VANISHING: [f64; 2] = [0.03, 0.22];
 /// The room, its blocks and two lights under the ceiling; `level` is the number of tiles along each edge of a wall.
 pub(super) fn build(sizes: &Sizes) -> Scene {
     let mut mesh = Mesh::new("cornell", sizes.size);
-    let white = mesh.matte([0.93, 0.91, 0.86], 0.62);
-    let grey = mesh.matte([0.60, 0.58, 0.55], 0.62);
-    let red = mesh.matte([0.86, 0.12, 0.09], 0.72);
-    let green = mesh.matte([0.14, 0.66, 0.17], 0.72);
+    let white = mesh.matte([0.95, 0.93, 0.88], 0.72);
+    let grey = mesh.matte([0.55, 0.53, 0.50], 0.72);
+    let red = mesh.matte([0.90, 0.13, 0.09], 0.80);
+    let green = mesh.matte([0.14, 0.72, 0.18], 0.80);
     let mirror = mesh.mirror([0.85, 0.90, 1.0], 0.82, 0.10);
     let glass = mesh.glass([0.80, 0.95, 1.0], 0.10, 0.04, 1.5);
     let lamp = mesh.matte([1.0, 1.0, 1.0], 1.0);
@@ -33,22 +33,22 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
     let depth = |j: u32| foreshortened(f64::from(j) / f64::from(tiles));
     mesh.patch(side, |i, j| inside(across(i), -1.0, depth(j)), |i, j| if (i + j) % 2 == 0 { white } else { grey });
     mesh.patch(side, |i, j| inside(across(i), 1.0, depth(tiles - j)), plain(white));
-    mesh.patch(side, |i, j| inside(-1.0, across(i), depth(j)), plain(red));
-    mesh.patch(side, |i, j| inside(1.0, across(i), depth(tiles - j)), plain(green));
+    mesh.patch(side, |i, j| inside(-1.0, across(i), depth(tiles - j)), plain(red));
+    mesh.patch(side, |i, j| inside(1.0, across(i), depth(j)), plain(green));
     mesh.patch(side, |i, j| inside(across(i), across(j), 1.0), plain(white));
 
-    let floor = floor_frame();
+    let floor = slope_frame(-1.0);
     let stand = |x: f64, depth: f64, height: f64| add(inside(x, -1.0, depth), scale(floor.0[1], height));
-    let tall = floor.then(Frame::rotation(1, 0.19));
-    mesh.block(stand(-0.43, 0.63, 1.53), [0.83, 1.5, 0.79], tall, mirror);
-    let short = floor.then(Frame::rotation(1, -0.17));
-    mesh.block(stand(0.41, 0.37, 0.93), [0.87, 0.9, 0.85], short, glass);
+    let tall = floor.then(Frame::rotation(1, 0.31));
+    mesh.block(stand(-0.36, 0.62, 1.63), [0.87, 1.6, 0.83], tall, mirror);
+    let short = floor.then(Frame::rotation(1, -0.16));
+    mesh.block(stand(0.43, 0.36, 0.93), [0.89, 0.9, 0.85], short, glass);
 
-    let ceiling = Frame([floor.0[0], scale(floor.0[1], -1.0), scale(floor.0[2], -1.0)]);
-    let under = inside(0.0, 1.0, 0.5);
-    mesh.block(add(under, [0.0, -0.09, 0.0]), [0.75, 0.03, 0.5], ceiling, lamp);
-    mesh.light(add(under, [-0.31, -0.43, 0.23]), 0.62);
-    mesh.light(add(inside(0.0, 1.0, 0.06), [0.87, -0.37, 0.0]), 0.42);
+    let ceiling = slope_frame(1.0);
+    let under = inside(0.0, 1.0, 0.47);
+    mesh.block(add(under, [0.0, -0.09, 0.0]), [0.71, 0.03, 0.47], ceiling, lamp);
+    mesh.light(add(under, [-0.23, -0.93, 0.31]), 0.72);
+    mesh.light(add(inside(0.0, 1.0, 0.05), [0.71, -0.97, 0.0]), 0.38);
     mesh.scene
 }
 
@@ -66,13 +66,8 @@ fn foreshortened(at: f64) -> f64 {
     if at == 1.0 { 1.0 } else { (1.0 - size) / (1.0 - BACK) }
 }
 
-/// Axes of the sloping floor: across, up from the floor, towards the opening.
-fn floor_frame() -> Frame {
-    let (front, back) = (inside(0.0, -1.0, 0.0), inside(0.0, -1.0, 1.0));
-    let up = [0.0, front[2] - back[2], back[1] - front[1]];
-    let mut frame = Frame::upright(up);
-    if frame.0[0][0] < 0.0 {
-        frame = frame.then(Frame([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]]));
-    }
-    frame
+/// Axes of the floor (`y` = -1) or the ceiling (1): across, into the room, and along the slope.
+fn slope_frame(y: f64) -> Frame {
+    let (front, back) = (inside(0.0, y, 0.0), inside(0.0, y, 1.0));
+    Frame::upright([0.0, y * (back[2] - front[2]), y * (front[1] - back[1])])
 }

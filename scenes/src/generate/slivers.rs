@@ -9,7 +9,7 @@ use crate::model::{Scene, Vec3};
 /// slivers of each width.
 pub(super) fn build(sizes: &Sizes) -> Scene {
     let mut mesh = Mesh::new("slivers", sizes.size);
-    let wall = mesh.matte([0.30, 0.33, 0.40], 0.70);
+    let wall = mesh.matte([0.62, 0.66, 0.74], 0.70);
     let colours =
         [[0.9, 0.3, 0.2], [0.9, 0.6, 0.2], [0.9, 0.9, 0.3], [0.3, 0.8, 0.3], [0.3, 0.7, 0.9], [0.8, 0.4, 0.8]];
     let colours = colours.map(|colour| mesh.matte(colour, 0.85));

@@ -11,7 +11,7 @@ const WIDTH: f64 = 8.0;
 /// Half of the tangent of the angle between the ground and the line of sight's level: the rotation by 12/13, 5/13.
 const SLANT: f64 = 0.2;
 /// Height of the lake.
-const LAKE: f64 = 0.30;
+const LAKE: f64 = 0.20;
 
 /// A landscape of exactly `triangles` triangles.
 pub(super) fn build(sizes: &Sizes) -> Scene {
@@ -49,11 +49,11 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
                 let middle = (p[1] + q[1] + r[1]) / 3.0;
                 let surface = match middle {
                     _ if p[1] == LAKE && q[1] == LAKE && r[1] == LAKE => water,
-                    _ if middle < LAKE + 0.05 => sand,
-                    _ if normal[1] < 0.62 => rock,
-                    _ if middle > 1.25 => snow,
-                    _ if normal[1] < 0.74 || middle > 1.08 => rock,
-                    _ if middle > 0.62 => forest,
+                    _ if middle < LAKE + 0.02 => sand,
+                    _ if normal[1] < 0.66 => rock,
+                    _ if middle > 0.66 => snow,
+                    _ if normal[1] < 0.80 || middle > 0.58 => rock,
+                    _ if middle > 0.36 => forest,
                     _ => grass,
                 };
                 mesh.triangle(half, surface);
@@ -77,9 +77,9 @@ fn columns(triangles: u32) -> u32 {
 /// Height of the ground over a point: sharp ridges over soft hills.
 fn height(x: f64, z: f64) -> f64 {
     let hills = fractal(x * 0.55 + 3.7, z * 0.55 + 11.3, 6, 1);
-    let ridge = 1.0 - (2.0 * fractal(x * 0.42 + 7.1, z * 0.42 - 2.9, 5, 2) - 1.0).abs();
-    let rise = 0.35 + 0.65 * (-z / WIDTH).clamp(0.0, 1.0);
-    rise * (0.85 * hills + 1.6 * ridge * ridge * ridge * hills * 2.0) - 0.12
+    let ridge = 1.0 - (2.0 * fractal(x * 0.42 + 7.1, z * 0.42 - 2.9, 4, 2) - 1.0).abs();
+    let rise = 0.30 + 0.70 * (-z / WIDTH).clamp(0.0, 1.0);
+    rise * (0.45 * hills + 1.15 * ridge * ridge * ridge * hills)
 }
 
 /// Sum of octaves of noise, each twice as fine and half as high, in [0, 1].
@@ -88,7 +88,7 @@ fn fractal(x: f64, z: f64, octaves: u32, seed: u32) -> f64 {
     for octave in 0..octaves {
         sum += weight * noise(x * scale, z * scale, seed * 101 + octave);
         total += weight;
-        weight *= 0.48;
+        weight *= 0.43;
         scale *= 2.0;
     }
     sum / total

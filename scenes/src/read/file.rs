@@ -9,6 +9,9 @@ use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 /// Octets of the largest file that is read.
 const LARGEST: u64 = 1 << 30;
 
+/// Extensions of all files that make up scenes.
+const SCENES: [&str; 2] = ["dsc", "off"];
+
 /// All octets of a file.
 ///
 /// Errors: it is missing (with a name nearby that may be meant), no file, too large, or cannot be read.
@@ -17,10 +20,10 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     let metadata = fs::metadata(path).map_err(|error| refusal(path, &error))?;
     if metadata.is_dir() {
         let error = Diagnostic::error(format!("{shown} is a folder, not a scene file"));
-        let names: Vec<String> = scene_files(path).into_iter().take(8).collect();
+        let names = scene_files(path, &SCENES);
         let hint = match names.is_empty() {
             true => "there is no .dsc or .off in it".to_string(),
-            false => format!("scene files in it: {}", names.join(", ")),
+            false => format!("scene files in it: {}", listed(&names)),
         };
         return Err(error.hint(hint).into());
     }
@@ -42,9 +45,11 @@ fn refusal(path: &Path, error: &std::io::Error) -> Report {
     let message = match error.kind() {
         ErrorKind::NotFound => {
             let missing = Diagnostic::error(format!("there is no file {shown}"));
-            match near(path) {
+            let there = path.parent().map(|folder| scene_files(folder, &SCENES)).unwrap_or_default();
+            match near(path, &SCENES) {
                 Some(near) => missing.hint(format!("did you mean `{}`?", near.display())),
-                None => missing,
+                None if there.is_empty() => missing,
+                None => missing.hint(format!("scene files there: {}", listed(&there))),
             }
         }
         ErrorKind::PermissionDenied => Diagnostic::error(format!("{shown} must not be read by this user")),
@@ -54,12 +59,12 @@ fn refusal(path: &Path, error: &std::io::Error) -> Report {
     message.into()
 }
 
-/// A scene file in the same folder whose name is nearly this one.
-pub(super) fn near(path: &Path) -> Option<PathBuf> {
+/// A file in the same folder whose name is nearly this one and has one of the `extensions`.
+pub(super) fn near(path: &Path, extensions: &[&str]) -> Option<PathBuf> {
     let wanted = path.file_name()?.to_string_lossy().into_owned();
     let folder = path.parent()?;
-    let names = scene_files(folder);
-    let longer = ["dsc", "off"].map(|extension| format!("{wanted}.{extension}"));
+    let names = scene_files(folder, extensions);
+    let longer: Vec<String> = extensions.iter().map(|extension| format!("{wanted}.{extension}")).collect();
     let near = match longer.iter().find(|longer| names.contains(longer)) {
         Some(longer) => longer.as_str(),
         None => did_you_mean(&wanted, names.iter().map(String::as_str))?,
@@ -67,17 +72,23 @@ pub(super) fn near(path: &Path) -> Option<PathBuf> {
     Some(folder.join(near))
 }
 
-/// Names of the scene files in a folder, in order; none when it cannot be read.
-fn scene_files(folder: &Path) -> Vec<String> {
+/// Names of the files in a folder that have one of the `extensions`, in order; none when it cannot be read.
+fn scene_files(folder: &Path, extensions: &[&str]) -> Vec<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     // A folder of a million files must not make an error message slow.
     let names = entries.take(10_000).filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let is_scene = |name: &String| {
-        let lower = name.to_ascii_lowercase();
-        lower.ends_with(".dsc") || lower.ends_with(".off")
+    let is_wanted = |name: &String| {
+        let extension = Path::new(name).extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
+        extension.is_some_and(|extension| extensions.contains(&extension.as_str()))
     };
-    let mut names: Vec<String> = names.filter(is_scene).collect();
+    let mut names: Vec<String> = names.filter(is_wanted).collect();
     names.sort();
     names
+}
+
+/// The first few of many names.
+fn listed(names: &[String]) -> String {
+    let shown = names[..names.len().min(8)].join(", ");
+    if names.len() > 8 { format!("{shown}, ...") } else { shown }
 }

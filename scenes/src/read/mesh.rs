@@ -2,6 +2,7 @@
 
 use isa::diagnostic::{Diagnostic, Place, Report};
 
+use super::words::counted;
 use crate::model::{Material, Vec3};
 
 /// A mesh as its file describes it: polygons are already triangles.
@@ -50,11 +51,6 @@ pub(super) fn census(name: &str, vertices: &[Vec3], triangles: &[[u32; 3]]) -> V
         warnings.push(Diagnostic::warning(message));
     }
     warnings
-}
-
-/// "1 triangle has" or "5 triangles have".
-pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
-    if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
 }
 
 fn which(first: usize, more: usize) -> String {

@@ -107,9 +107,11 @@ fn load_mesh(path: &Path) -> Result<Mesh, Report> {
 
 /// The mesh beside a `.dsc`: the same name with a mesh's extension.
 fn beside(path: &Path) -> Result<PathBuf, Report> {
-    let meshes = || Format::EXTENSIONS.iter().filter(|(_, format)| *format != Format::Dsc);
-    let candidates: Vec<PathBuf> = meshes()
-        .flat_map(|(extension, _)| [extension.to_string(), extension.to_ascii_uppercase()])
+    let meshes: Vec<&str> =
+        Format::EXTENSIONS.iter().filter(|(_, f)| *f != Format::Dsc).map(|(text, _)| *text).collect();
+    let candidates: Vec<PathBuf> = meshes
+        .iter()
+        .flat_map(|extension| [extension.to_string(), extension.to_ascii_uppercase()])
         .map(|extension| path.with_extension(extension))
         .collect();
     if let Some(found) = candidates.iter().find(|candidate| candidate.exists()) {
@@ -117,7 +119,7 @@ fn beside(path: &Path) -> Result<PathBuf, Report> {
     }
     let wanted = &candidates[0];
     let error = Diagnostic::error(format!("{} has no mesh: {} is not there", path.display(), wanted.display()));
-    let hint = match file::near(wanted) {
+    let hint = match file::near(wanted, &meshes) {
         Some(near) => format!("did you mean `--mesh {}`?", near.display()),
         None => "put it beside the .dsc, or name another by `--mesh`".to_string(),
     };

@@ -13,7 +13,7 @@ use nom::multi::many0_count;
 use nom::sequence::preceded;
 use nom::{IResult, Parser};
 
-/// Errors of one file that are shown; what follows them is likely their consequence.
+/// Messages about one file that are shown; what follows them is likely their consequence.
 const SHOWN: usize = 20;
 
 /// One word and where it stands.
@@ -37,7 +37,9 @@ pub(super) struct Words<'a> {
     source: &'a Arc<Source>,
     at: usize,
     messages: Vec<Diagnostic>,
-    hidden: usize,
+    hidden_errors: usize,
+    hidden_warnings: usize,
+    is_lost: bool,
 }
 
 fn is_line_end(c: char) -> bool {
@@ -69,7 +71,7 @@ fn word(input: &str) -> IResult<&str, &str> {
 impl<'a> Words<'a> {
     /// The words of a source, from octet `at` on.
     pub(super) fn new(source: &'a Arc<Source>, at: usize) -> Words<'a> {
-        Words { source, at, messages: Vec::new(), hidden: 0 }
+        Words { source, at, messages: Vec::new(), hidden_errors: 0, hidden_warnings: 0, is_lost: false }
     }
 
     /// Octets not yet read.
@@ -107,12 +109,16 @@ impl<'a> Words<'a> {
         self.take(gap_in_line)
     }
 
-    /// Words of the line from here to its end, without reading them.
-    pub(super) fn count_in_line(&mut self) -> usize {
+    /// How many words follow on the line, `word` included, and where they end; they stay unread.
+    pub(super) fn rest_of_line(&mut self, word: Word<'a>) -> (usize, usize) {
         let at = self.at;
-        let count = std::iter::from_fn(|| self.next_in_line()).count();
+        let (mut count, mut end) = (1, word.span().end);
+        while let Some(word) = self.next_in_line() {
+            count += 1;
+            end = word.span().end;
+        }
         self.at = at;
-        count
+        (count, end)
     }
 
     /// Reads the end of the line if nothing else is before it; the offset behind it.
@@ -138,15 +144,27 @@ impl<'a> Words<'a> {
         self.place(end..end)
     }
 
+    /// Whether no word follows.
+    pub(super) fn is_at_end(&mut self) -> bool {
+        let at = self.at;
+        let is_at_end = self.next().is_none();
+        self.at = at;
+        is_at_end
+    }
+
     /// Whether nothing but blanks stands before `word` on its line.
     pub(super) fn starts_line(&self, word: Word<'_>) -> bool {
         let before = self.source.text[..word.start].trim_end_matches(is_blank);
         before.is_empty() || before.ends_with(is_line_end)
     }
 
-    /// Notes what is wrong. After many errors the rest is only counted.
+    /// Notes what is wrong. After many messages the rest is only counted.
     pub(super) fn complain(&mut self, message: Diagnostic) {
-        if self.messages.len() < SHOWN { self.messages.push(message) } else { self.hidden += 1 }
+        match message.severity {
+            _ if self.messages.len() < SHOWN => self.messages.push(message),
+            Severity::Error => self.hidden_errors += 1,
+            Severity::Warning => self.hidden_warnings += 1,
+        }
     }
 
     /// The usual complaint: `message` about `word`, `label` under it.
@@ -157,15 +175,39 @@ impl<'a> Words<'a> {
 
     /// Whether anything was an error.
     pub(super) fn has_errors(&self) -> bool {
-        self.hidden > 0 || self.messages.iter().any(|message| message.severity == Severity::Error)
+        self.hidden_errors > 0 || self.messages.iter().any(|message| message.severity == Severity::Error)
     }
 
-    /// Everything noted, ready to be shown.
+    /// Whether words are separated by something else than blanks: what follows cannot be counted.
+    pub(super) fn is_lost(&self) -> bool {
+        self.is_lost
+    }
+
+    /// Everything noted, in the order of the text.
     pub(super) fn into_report(mut self) -> Report {
-        if self.hidden > 0 {
-            self.messages.push(Diagnostic::error(format!("{} more errors are not shown", self.hidden)));
+        let offset = |message: &Diagnostic| message.place.as_ref().map_or(usize::MAX, |(place, _)| place.span.start);
+        self.messages.sort_by_key(offset);
+        if self.hidden_errors > 0 {
+            let hidden = counted(self.hidden_errors, "more error is", "more errors are");
+            self.messages.push(Diagnostic::error(format!("{hidden} not shown")));
+        }
+        if self.hidden_warnings > 0 {
+            let hidden = counted(self.hidden_warnings, "more warning is", "more warnings are");
+            self.messages.push(Diagnostic::warning(format!("{hidden} not shown")));
         }
         Report(self.messages)
+    }
+
+    /// Whether the rest of the text may hold `count` things of at least `octets` each. A count that is only somewhat
+    /// too large passes: that is a file cut short, which is better said where it ends. What the rest can really hold.
+    pub(super) fn room(&mut self, count: u32, word: Word<'_>, what: &str, octets: usize) -> Option<usize> {
+        let most = (self.remaining() + 1) / octets;
+        if count as usize / 16 > most {
+            let message = format!("{count} {what} are announced, but the rest of the file has room for {most} at most");
+            self.refuse(word, message, "a wrong number, or the file is cut short");
+            return None;
+        }
+        Some(most.min(count as usize))
     }
 
     /// The word as a finite number; otherwise a complaint that names `what`, and 0 to go on with.
@@ -186,6 +228,7 @@ impl<'a> Words<'a> {
                     complaint = complaint.hint("decimals follow a point, not a comma");
                 } else if word.text.contains(',') {
                     complaint = complaint.hint("numbers are separated by blanks, not commas");
+                    self.is_lost = true;
                 }
                 self.complain(complaint);
                 0.0
@@ -220,6 +263,11 @@ fn digits(text: &str) -> Option<u32> {
     let text = text.strip_prefix('+').unwrap_or(text);
     let is_plain = !text.is_empty() && text.bytes().all(|octet| octet.is_ascii_digit());
     is_plain.then(|| text.parse().ok()).flatten()
+}
+
+/// "1 triangle has" or "5 triangles have".
+pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
 }
 
 /// A word for a message: at most 40 characters of it.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use isa::diagnostic::{Diagnostic, Place, Report, Source};
 
 use self::colour::Colours;
-use super::words::{Word, Words};
+use super::words::{Word, Words, counted};
 use crate::model::{Light, Material};
 
 /// Most pixels along one side of a picture.
@@ -64,8 +64,8 @@ fn read(words: &mut Words<'_>) -> Option<Description> {
     keyword(words)?;
     let size = (side(words, "the picture's width")?, side(words, "the picture's height")?);
     let (materials, lights) = (count(words, "materials")?, count(words, "lights")?);
-    has_room(words, materials, "materials", 12)?;
-    has_room(words, lights, "lights", 12)?;
+    words.room(materials.0, materials.1, "materials", 12)?;
+    words.room(lights.0, lights.1, "lights", 12)?;
 
     let mut colours = Colours::default();
     let mut surfaces = Vec::new();
@@ -90,9 +90,10 @@ fn read(words: &mut Words<'_>) -> Option<Description> {
     surfaces.iter_mut().for_each(|material| material.colour = material.colour.map(|c| c / largest));
     lamps.iter_mut().for_each(|light| light.colour = light.colour.map(|c| c / largest));
 
+    is_not_a_light(words, materials, lights)?;
     let triangles = count(words, "triangles")?;
-    has_room(words, triangles, "triangles", 2)?;
-    let of_triangles = triangle_materials(words, triangles, materials)?;
+    let room = words.room(triangles.0, triangles.1, "triangles", 2)?;
+    let of_triangles = triangle_materials(words, triangles, materials, room)?;
     if let Some(word) = words.next() {
         let message = format!("the file goes on after the materials of its {} triangles", triangles.0);
         let error = Diagnostic::error(message).at(words.place(word.span()), "nothing more is expected");
@@ -150,14 +151,21 @@ fn count<'a>(words: &mut Words<'a>, what: &str) -> Option<Count<'a>> {
     Some((words.whole(word, || format!("the number of {what}"))?, word))
 }
 
-/// Whether the rest of the file can hold what is announced, at `least` octets each.
-fn has_room(words: &mut Words<'_>, (number, word): Count<'_>, what: &str, least: usize) -> Option<()> {
-    let most = (words.remaining() + 1) / least;
-    if number as usize <= most {
+/// Refuses another line of six numbers where the number of triangles is expected: a count before is too small.
+fn is_not_a_light(words: &mut Words<'_>, materials: Count<'_>, lights: Count<'_>) -> Option<()> {
+    let at = words.position();
+    let first = words.next();
+    let (in_line, end) = first.map_or((0, at), |first| words.rest_of_line(first));
+    words.seek(at);
+    // "5 0 0 0 0 0" is the number of triangles and all their materials.
+    let Some(first) = first.filter(|&word| words.starts_line(word) && in_line == 6 && word.text != "5") else {
         return Some(());
-    }
-    let message = format!("{number} {what} are announced, but the rest of the file has room for {most} at most");
-    words.refuse(word, message, "a wrong number, or the file is cut short");
+    };
+    let place = words.place(first.start..end);
+    let error = Diagnostic::error("expected the number of triangles, found another line of six numbers")
+        .at(place, "a light or material too many")
+        .also(words.place(materials.1.start..lights.1.span().end), "the numbers of materials and lights");
+    words.complain(error);
     None
 }
 
@@ -173,14 +181,14 @@ fn six<'a>(
     let Some(first) = words.next() else {
         return cut(words, &format!("after {n} of {} {name}s", announced.0), Some((announced.1, name)));
     };
-    let in_line = 1 + words.count_in_line();
+    let (in_line, end) = words.rest_of_line(first);
     if words.starts_line(first) && in_line != 6 {
-        let mut last = first;
-        while let Some(word) = words.next_in_line() {
-            last = word;
+        words.seek(end);
+        if in_line < 6 && words.is_at_end() {
+            return cut(words, &format!("within {name} {n}"), Some((announced.1, name)));
         }
         let message = format!("{name} {n} should have 6 numbers on its line");
-        let place = words.place(first.start..last.span().end);
+        let place = words.place(first.start..end);
         let error = Diagnostic::error(message)
             .at(place, format!("{in_line} here"))
             .also(words.place(announced.1.span()), format!("the number of {name}s"))
@@ -229,8 +237,13 @@ fn check_material(words: &mut Words<'_>, n: u32, material: &Material, at: [Word<
 }
 
 /// The material of each triangle.
-fn triangle_materials(words: &mut Words<'_>, triangles: Count<'_>, materials: Count<'_>) -> Option<Vec<u32>> {
-    let mut list = Vec::with_capacity(triangles.0 as usize);
+fn triangle_materials(
+    words: &mut Words<'_>,
+    triangles: Count<'_>,
+    materials: Count<'_>,
+    room: usize,
+) -> Option<Vec<u32>> {
+    let mut list = Vec::with_capacity(room);
     let mut first_beyond = None;
     let mut beyond = 0;
     for n in 0..triangles.0 {
@@ -253,7 +266,7 @@ fn triangle_materials(words: &mut Words<'_>, triangles: Count<'_>, materials: Co
         };
         let mut message = format!("triangle {n} has material {number}, but {known}");
         if beyond > 1 {
-            message.push_str(&format!("; {} more triangles are out of range too", beyond - 1));
+            message.push_str(&format!("; {} out of range too", counted(beyond - 1, "other is", "others are")));
         }
         let error = Diagnostic::error(message).at(words.place(word.span()), "no such material");
         words.complain(error.also(words.place(materials.1.span()), "the number of materials"));

@@ -6,7 +6,7 @@ use nom::number::complete::{be_f32, be_u32};
 use nom::{IResult, Parser};
 
 use super::super::mesh::Mesh;
-use super::super::words::Words;
+use super::super::words::{Words, counted};
 use super::colour::{Spec, Writing};
 use super::header::{Binary, DIMENSIONS, Header};
 use super::{Faces, position};
@@ -75,11 +75,11 @@ impl Numbers<'_> {
         Ok(f64::from(value))
     }
 
-    /// Whether `count` things of `octets` each can follow.
-    fn has_room(&self, count: u32, octets: usize, what: &str) -> Result<(), String> {
+    /// Whether `count` things of at least `octets` each may follow; somewhat too many pass, as in `Words::room`.
+    fn room(&self, count: u32, octets: usize, what: &str) -> Result<usize, String> {
         let most = self.rest.len() / octets;
-        if count as usize <= most {
-            return Ok(());
+        if count as usize / 16 <= most {
+            return Ok(most.min(count as usize));
         }
         let other = count.swap_bytes() as usize;
         let hint = if other <= most { format!("; the least octet first it would be {other}") } else { String::new() };
@@ -103,9 +103,7 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
         + 3 * usize::from(header.has_normals)
         + 4 * usize::from(header.has_colours)
         + 2 * usize::from(header.has_texture);
-    numbers.has_room(points, 4 * row_length, "vertices")?;
-
-    let mut vertices: Vec<Vec3> = Vec::with_capacity(points as usize);
+    let mut vertices: Vec<Vec3> = Vec::with_capacity(numbers.room(points, 4 * row_length, "vertices")?);
     let mut row = vec![0.0; row_length];
     for n in 0..points {
         for slot in &mut row {
@@ -114,15 +112,13 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
         let point = position(&header, &row[..header.components]);
         vertices.push(point.ok_or_else(|| format!("vertex {n} lies at infinity: its last number is 0"))?);
     }
-    numbers.has_room(polygons, 8, "faces")?;
-    let mut faces = Faces::default();
+    let mut faces = Faces::with_room(numbers.room(polygons, 8, "faces")?);
     let mut corners = Vec::new();
     for n in 0..polygons {
         let size = numbers.whole(|| format!("the number of corners of face {n} of {polygons}"))?;
-        numbers.has_room(size, 4, &format!("corners of face {n}"))?;
         corners.clear();
-        for _ in 0..size {
-            let number = numbers.whole(|| format!("a vertex number of face {n}"))?;
+        for k in 0..size {
+            let number = numbers.whole(|| format!("corner {} of the {size} of face {n}", k + 1))?;
             if number >= points {
                 return Err(format!("face {n} has vertex {number}, but there are {points} vertices, counted from 0"));
             }
@@ -144,7 +140,8 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
         faces.push(&vertices, &corners, colour);
     }
     if !numbers.rest.is_empty() {
-        return Err(format!("{} octets follow the last of {polygons} faces", numbers.rest.len()));
+        let rest = counted(numbers.rest.len(), "octet follows", "octets follow");
+        return Err(format!("{rest} the last of {polygons} faces"));
     }
     Ok(faces.into_mesh(name, vertices, None))
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use isa::diagnostic::Diagnostic;
 
-use super::super::mesh::counted;
+use super::super::words::counted;
 use crate::model::{Material, Vec3};
 
 /// Share of the light that a coloured surface scatters.

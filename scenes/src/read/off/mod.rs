@@ -10,9 +10,9 @@ use isa::diagnostic::{Diagnostic, Report, Source};
 
 use self::colour::FaceColours;
 use self::header::Header;
-use super::mesh::{Mesh, census, counted};
+use super::mesh::{Mesh, census};
 use super::polygon::Cutter;
-use super::words::Words;
+use super::words::{Words, counted};
 use crate::model::Vec3;
 
 /// Reads an OFF file; `name` is shown in messages.
@@ -72,6 +72,11 @@ struct Faces {
 }
 
 impl Faces {
+    /// No faces yet, and memory for as many as the file can hold.
+    fn with_room(room: usize) -> Faces {
+        Faces { triangles: Vec::with_capacity(room), origins: Vec::with_capacity(room), ..Faces::default() }
+    }
+
     /// Takes a face whose corners are all in range.
     fn push(&mut self, vertices: &[Vec3], corners: &[u32], colour: colour::Spec) {
         if corners.len() < 3 {

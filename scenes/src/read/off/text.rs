@@ -1,9 +1,11 @@
 //! The text form of OFF: counts, vertices, faces. Only the colour of a face depends on where a line ends.
 
+use std::ops::Range;
+
 use isa::diagnostic::Diagnostic;
 
 use super::super::mesh::Mesh;
-use super::super::words::{Word, Words, shortened};
+use super::super::words::{Word, Words, counted, shortened};
 use super::colour::{Spec, Writing};
 use super::header::Header;
 use super::{Faces, position};
@@ -16,10 +18,10 @@ type Count<'a> = (u32, Word<'a>);
 pub(super) fn read(words: &mut Words<'_>, header: &Header) -> Option<Mesh> {
     let (points, polygons) = counts(words)?;
     let numbers = numbers_of_vertex(words, header);
-    has_room(words, points, polygons, numbers)?;
-    let vertices = vertices(words, header, points, numbers)?;
-    let faces = faces(words, &vertices, polygons, points)?;
-    trailing(words, polygons);
+    let room = words.room(points.0, points.1, "vertices", 2 * numbers)?;
+    let vertices = vertices(words, header, points, numbers, room)?;
+    let room = words.room(polygons.0, polygons.1, "faces", 2)?;
+    let faces = faces(words, &vertices, polygons, points, room.min(words.remaining() / 8 + 1))?;
     let count = words.place(polygons.1.span());
     let name = count.source.name.clone();
     if header.has_colours && polygons.0 > 0 {
@@ -46,7 +48,7 @@ fn counts<'a>(words: &mut Words<'a>) -> Option<(Count<'a>, Count<'a>)> {
     // The line ends after two numbers: the third alone on its line is the edges', several are the first vertex.
     let at = words.position();
     match words.next() {
-        Some(word) if words.count_in_line() == 0 => edges(words, word),
+        Some(word) if words.rest_of_line(word).0 == 1 => edges(words, word),
         Some(_) => {
             words.seek(at);
             let place = words.place(points.1.start..polygons.1.span().end);
@@ -79,42 +81,38 @@ fn numbers_of_vertex(words: &mut Words<'_>, header: &Header) -> usize {
         return others;
     }
     let at = words.position();
-    let in_line = words.next().map_or(0, |_| 1 + words.count_in_line());
+    let in_line = words.next().map_or(0, |word| words.rest_of_line(word).0);
     words.seek(at);
     if in_line == others + 3 { others + 3 } else { others + 4 }
 }
 
-/// Whether the rest of the file can hold what is announced: two octets a number.
-fn has_room(words: &mut Words<'_>, points: Count<'_>, polygons: Count<'_>, numbers: usize) -> Option<()> {
-    let room = words.remaining() + 1;
-    let most = room / (2 * numbers);
-    let (count, word, what, most) = if points.0 as usize > most {
-        (points.0, points.1, "vertices", most)
-    } else if polygons.0 as usize > (room - points.0 as usize * 2 * numbers) / 2 {
-        (polygons.0, polygons.1, "faces", (room - points.0 as usize * 2 * numbers) / 2)
-    } else {
-        return Some(());
-    };
-    let message = format!("{count} {what} are announced, but the rest of the file has room for {most} at most");
-    words.refuse(word, message, "a wrong number, or the file is cut short");
-    None
-}
-
-fn vertices(words: &mut Words<'_>, header: &Header, points: Count<'_>, numbers: usize) -> Option<Vec<Vec3>> {
-    let mut list = Vec::with_capacity(points.0 as usize);
+/// The positions of all vertices; `numbers` for each, `room` as many as the file can hold.
+fn vertices(
+    words: &mut Words<'_>,
+    header: &Header,
+    points: Count<'_>,
+    numbers: usize,
+    room: usize,
+) -> Option<Vec<Vec3>> {
+    let mut list = Vec::with_capacity(room);
     let mut row = vec![0.0; numbers];
     for n in 0..points.0 {
         let mut first = None;
         for (k, slot) in row.iter_mut().enumerate() {
             let Some(word) = words.next() else {
-                let within = if k == 0 { "after" } else { "within the one after" };
-                let error = Diagnostic::error(format!("the file ends {within} {n} of {} vertices", points.0));
-                let error = error.at(words.end(), "the end");
+                let message = match k {
+                    0 => format!("the file ends after {n} of {} vertices", points.0),
+                    _ => format!("the file ends within vertex {n}, of {} from 0 on", points.0),
+                };
+                let error = Diagnostic::error(message).at(words.end(), "the end");
                 words.complain(error.also(words.place(points.1.span()), "the number of vertices"));
                 return None;
             };
             first.get_or_insert(word);
             *slot = words.number(word, || part(header, n, k));
+            if words.is_lost() {
+                return None;
+            }
         }
         let point = position(header, &row[..header.components]);
         if let (None, Some(first)) = (point, first) {
@@ -136,114 +134,150 @@ fn part(header: &Header, n: u32, k: usize) -> String {
     }
 }
 
-fn faces<'a>(words: &mut Words<'a>, vertices: &[Vec3], polygons: Count<'a>, points: Count<'a>) -> Option<Faces> {
-    let mut faces = Faces::default();
-    faces.triangles.reserve(polygons.0 as usize);
-    faces.origins.reserve(polygons.0 as usize);
+/// What is found more than once, and told once: the first place, and how often.
+struct Beyond<'a> {
+    face: u32,
+    number: u32,
+    word: Word<'a>,
+    more: usize,
+}
+
+/// All faces; `room` as many as the file can hold.
+fn faces<'a>(
+    words: &mut Words<'a>,
+    vertices: &[Vec3],
+    polygons: Count<'a>,
+    points: Count<'a>,
+    room: usize,
+) -> Option<Faces> {
+    let mut faces = Faces::with_room(room);
     let mut corners = Vec::new();
-    let mut first_beyond: Option<(u32, u32, Word<'a>)> = None;
-    let mut beyond = 0;
+    let mut beyond: Option<Beyond<'a>> = None;
+    let mut colours = Colours::default();
     for n in 0..polygons.0 {
         let Some(word) = words.next() else {
-            return cut(words, format!("after {n} of {} faces", polygons.0), polygons);
+            let error = Diagnostic::error(format!("the file ends after {n} of {} faces", polygons.0));
+            let error = error.at(words.end(), "the end");
+            words.complain(error.also(words.place(polygons.1.span()), "the number of faces"));
+            return None;
         };
         let size = words.whole(word, || format!("the number of corners of face {n}"))?;
-        let most = words.remaining().div_ceil(2);
-        if size as usize > most {
-            let message = format!("face {n} has {size} corners, but the rest of the file has room for {most} at most");
-            words.refuse(word, message, "a wrong number, or the file is cut short");
-            return None;
-        }
         corners.clear();
         let mut is_good = true;
-        for _ in 0..size {
-            let Some(word) = words.next() else {
-                return cut(words, format!("within face {n} of {}", polygons.0), polygons);
+        for k in 0..size {
+            let Some(corner) = words.next() else {
+                let message = format!("the file ends after {k} of the {size} corners of face {n}");
+                let error = Diagnostic::error(message).at(words.end(), "the end");
+                words.complain(error.also(words.place(word.span()), "the number of its corners"));
+                return None;
             };
-            let number = words.whole(word, || format!("a vertex number of face {n}"));
+            let number = words.whole(corner, || format!("a vertex number of face {n}"));
             is_good &= number.is_some_and(|number| number < points.0);
-            if let Some(number) = number {
-                if number >= points.0 {
-                    first_beyond.get_or_insert((n, number, word));
-                    beyond += 1;
-                }
-                corners.push(number);
+            match (number, &mut beyond) {
+                (Some(number), _) if number < points.0 => corners.push(number),
+                (Some(_), Some(beyond)) => beyond.more += 1,
+                (Some(number), None) => beyond = Some(Beyond { face: n, number, word: corner, more: 0 }),
+                (None, _) => {}
             }
         }
-        let colour = colour(words, n);
+        let colour = colours.read(words, n)?;
         if is_good {
             faces.push(vertices, &corners, colour);
         }
     }
-    if let Some((n, number, word)) = first_beyond {
+    colours.complain(words);
+    // Numbers left over mean that a count is wrong; then vertex numbers out of range are its consequence.
+    if !trailing(words, points, polygons)
+        && let Some(Beyond { face, number, word, more }) = beyond
+    {
         let known = match points.0 {
             0 => "there are none".to_string(),
-            count => format!("they go from 0 to {}", count - 1),
+            count => format!("vertices go from 0 to {}", count - 1),
         };
-        let mut message = format!("face {n} has vertex {number}, but {known}");
-        if beyond > 1 {
-            message.push_str(&format!("; {} more are out of range too", beyond - 1));
+        let mut message = format!("face {face} has vertex {number}, but {known}");
+        if more > 0 {
+            message.push_str(&format!("; {} out of range too", counted(more, "other is", "others are")));
         }
         let error = Diagnostic::error(message).at(words.place(word.span()), "no such vertex");
         let error = error.also(words.place(points.1.span()), "the number of vertices");
-        let counts_from_one = beyond > 0 && number == points.0;
-        words.complain(if counts_from_one { error.hint("vertices are counted from 0") } else { error });
+        words.complain(if number == points.0 { error.hint("vertices are counted from 0") } else { error });
     }
     Some(faces)
 }
 
-/// The colour of face `n`: whatever stands between its last corner and the end of the line.
-fn colour(words: &mut Words<'_>, n: u32) -> Spec {
-    let mut given: [Option<Word<'_>>; 4] = [None; 4];
-    let mut count = 0;
-    let mut last = None;
-    while let Some(word) = words.next_in_line() {
-        if let Some(slot) = given.get_mut(count) {
-            *slot = Some(word);
-        }
-        last = Some(word);
-        count += 1;
-    }
-    let (Some(first), Some(last)) = (given[0], last) else { return Spec::Default };
-    let mut writing = Writing::Whole;
-    let mut values = [0.0; 4];
-    for (value, word) in values.iter_mut().zip(given.iter().flatten()) {
-        *value = words.number(*word, || format!("a colour component of face {n}"));
-        if word.text.contains(['.', 'e', 'E']) {
-            writing = Writing::Decimal;
-        }
-    }
-    match count {
-        1 => return Spec::Index(values[0]),
-        3 | 4 => return Spec::Components([values[0], values[1], values[2]], writing),
-        _ => {}
-    }
-    let place = words.place(first.start..last.span().end);
-    let message = format!("{count} numbers follow the corners of face {n}; a colour has 1, 3 or 4");
-    let message = if count == 2 {
-        Diagnostic::warning(message).at(place, "not used")
-    } else {
-        Diagnostic::error(message).at(place, "not a colour").hint("each face starts on a line of its own")
-    };
-    words.complain(message);
-    Spec::Default
+/// Reads the colours of faces, and remembers the first that is none.
+#[derive(Default)]
+struct Colours {
+    unused: Option<(u32, Range<usize>)>,
+    more: usize,
 }
 
-/// Whatever follows the last face: numbers mean that a count is wrong, other text belongs to someone else.
-fn trailing(words: &mut Words<'_>, polygons: Count<'_>) {
-    let Some(word) = words.next() else { return };
+impl Colours {
+    /// The colour of face `n`: whatever stands between its last corner and the end of the line. `None` when that
+    /// cannot be a colour, but is likely more faces.
+    fn read(&mut self, words: &mut Words<'_>, n: u32) -> Option<Spec> {
+        let mut given: [Option<Word<'_>>; 4] = [None; 4];
+        let (mut count, mut end) = (0, 0);
+        while let Some(word) = words.next_in_line() {
+            if let Some(slot) = given.get_mut(count) {
+                *slot = Some(word);
+            }
+            end = word.span().end;
+            count += 1;
+        }
+        let Some(first) = given[0] else { return Some(Spec::Default) };
+        if count > 4 {
+            let message = format!("{count} numbers follow the corners of face {n}; a colour has 1, 3 or 4");
+            let error = Diagnostic::error(message).at(words.place(first.start..end), "not a colour");
+            words.complain(error.hint("each face starts on a line of its own"));
+            return None;
+        }
+        let mut writing = Writing::Whole;
+        let mut values = [0.0; 4];
+        for (value, word) in values.iter_mut().zip(given.iter().flatten()) {
+            *value = words.number(*word, || format!("a colour component of face {n}"));
+            if word.text.contains(['.', 'e', 'E']) {
+                writing = Writing::Decimal;
+            }
+        }
+        Some(match count {
+            1 => Spec::Index(values[0]),
+            2 => {
+                if self.unused.is_none() {
+                    self.unused = Some((n, first.start..end))
+                } else {
+                    self.more += 1
+                }
+                Spec::Default
+            }
+            _ => Spec::Components([values[0], values[1], values[2]], writing),
+        })
+    }
+
+    /// Warns of what was no colour.
+    fn complain(self, words: &mut Words<'_>) {
+        let Some((n, span)) = self.unused else { return };
+        let mut message = format!("2 numbers follow the corners of face {n}; a colour has 1, 3 or 4");
+        if self.more > 0 {
+            message.push_str(&format!("; {} like it", counted(self.more, "other face is", "other faces are")));
+        }
+        let place = words.place(span);
+        words.complain(Diagnostic::warning(message).at(place, "not used"));
+    }
+}
+
+/// Whatever follows the last face: numbers mean that a count is wrong (then true), other text belongs to someone else.
+fn trailing(words: &mut Words<'_>, points: Count<'_>, polygons: Count<'_>) -> bool {
+    let Some(word) = words.next() else { return false };
     let place = words.place(word.span());
-    let announced = words.place(polygons.1.span());
-    let message = format!("the file goes on after its {} faces", polygons.0);
-    words.complain(if word.text.parse::<f64>().is_ok() {
-        Diagnostic::error(message).at(place, "a number too many").also(announced, "the number of faces")
+    let message = format!("the file goes on after {} vertices and {} faces", points.0, polygons.0);
+    let announced = words.place(points.1.start..polygons.1.span().end);
+    let is_number = word.text.parse::<f64>().is_ok();
+    words.complain(if is_number {
+        let error = Diagnostic::error(message).at(place, "a number too many");
+        error.also(announced, "these counts").hint("one of the counts is too small")
     } else {
-        Diagnostic::warning(message).at(place, "not read").also(announced, "the number of faces")
+        Diagnostic::warning(message).at(place, "not read").also(announced, "these counts")
     });
-}
-
-fn cut<T>(words: &mut Words<'_>, place: String, polygons: Count<'_>) -> Option<T> {
-    let error = Diagnostic::error(format!("the file ends {place}")).at(words.end(), "the end");
-    words.complain(error.also(words.place(polygons.1.span()), "the number of faces"));
-    None
+    is_number
 }

@@ -9,5 +9,6 @@ pub mod kdtree;
 pub mod layout;
 pub mod model;
 pub mod read;
+pub mod reference;
 pub mod vector;
 pub mod write;

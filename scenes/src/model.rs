@@ -158,7 +158,7 @@ impl View {
         View { size, camera: Camera::Orthographic, shift: [0.0; 2], ambient: 0.1, background: [0.0; 3], bounces: 5 }
     }
 
-    /// What makes the view unusable: an empty picture, values that are not finite, negative light. At most one message a kind.
+    /// What makes the view unusable: an empty picture, values that are not finite, shifts beyond 65536 pixels, negative light. At most one message a kind.
     pub fn check(&self) -> Report {
         let mut messages = Vec::new();
         if self.size.0 == 0 || self.size.1 == 0 {
@@ -168,13 +168,15 @@ impl View {
             Camera::Orthographic => [None, None],
             Camera::Perspective { eye, look, .. } => [eye, look],
         };
-        for (name, values) in [("--shift", self.shift.to_vec())]
-            .into_iter()
-            .chain(["--eye", "--look"].into_iter().zip(points).filter_map(|(name, p)| Some((name, p?.to_vec()))))
-        {
-            if !values.iter().all(|x| x.is_finite()) {
-                messages.push(Diagnostic::error(format!("{name} is not finite: {values:?}")));
+        for (name, point) in ["--eye", "--look"].into_iter().zip(points) {
+            if let Some(point) = point.filter(|p| !p.iter().all(|x| x.is_finite())) {
+                messages.push(Diagnostic::error(format!("{name} is not finite: {point:?}")));
             }
+        }
+        if !self.shift.iter().all(|x| x.abs() <= 65_536.0) {
+            let message = Diagnostic::error(format!("a shift of {:?} leads out of any picture", self.shift));
+            messages
+                .push(message.hint("--shift counts pixel pitches; a sample is moved within its pixel by less than 1"));
         }
         if !(self.ambient.is_finite() && self.ambient >= 0.0) {
             messages.push(Diagnostic::error(format!("an ambient intensity of {} is no light", self.ambient)));

@@ -179,5 +179,12 @@ fn unusable_scenes_and_views_are_refused() {
     );
     assert!(refusal(&scene(vec![[f64::NAN; 3]; 3], vec![]), &view, 32).contains("vertex 0 is not finite"));
     assert!(refusal(&scene(vec![], vec![]), &View::new((0, 8)), 32).contains("0 x 8 pixels"));
+    assert!(
+        refusal(&scene(vec![], vec![]), &perspective(Some([f64::INFINITY; 3])), 32).contains("--eye is not finite")
+    );
+    assert!(
+        refusal(&scene(vec![], vec![]), &View { shift: [1e300, 0.0], ..view.clone() }, 32)
+            .contains("out of any picture")
+    );
     assert!(refusal(&scene(vec![], vec![]), &view, 7).contains("7 bits is not supported"));
 }

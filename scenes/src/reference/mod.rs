@@ -1,0 +1,156 @@
+//! The picture in double precision: an independent Whitted renderer that the coprocessor's pictures are measured against. It shares the
+//! scene and the cameras' rays with the rest, but neither the kd tree nor its traversal, nor any intersection, shading or rounding.
+
+mod hierarchy;
+mod search;
+#[cfg(test)]
+mod tests;
+mod triangle;
+mod whitted;
+
+use isa::diagnostic::{Diagnostic, Report};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::camera::{self, Rays};
+use crate::model::{Picture, Scene, Vec3, View};
+use crate::vector::{exponent, largest, shifted, sub};
+use hierarchy::Hierarchy;
+use search::{Exhaustive, Search};
+use triangle::Triangle;
+
+/// Pixels of the largest picture that is rendered.
+pub const MOST_PIXELS: u64 = 1 << 27;
+
+/// How many rays were sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RayCounts {
+    /// From the camera, one a pixel.
+    pub camera: u64,
+    /// Mirrored ones, totally reflected ones included.
+    pub reflected: u64,
+    /// Those that passed a surface.
+    pub refracted: u64,
+    /// Towards lights.
+    pub shadow: u64,
+}
+
+impl RayCounts {
+    /// The sum of both.
+    pub fn plus(self, other: RayCounts) -> RayCounts {
+        RayCounts {
+            camera: self.camera + other.camera,
+            reflected: self.reflected + other.reflected,
+            refracted: self.refracted + other.refracted,
+            shadow: self.shadow + other.shadow,
+        }
+    }
+}
+
+/// A picture and what it took.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendering {
+    /// The picture; linear, not clamped.
+    pub picture: Picture,
+    /// The rays that were sent.
+    pub rays: RayCounts,
+}
+
+/// How the triangle that a ray meets is found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// By a hierarchy of boxes.
+    #[default]
+    Hierarchy,
+    /// By trying all triangles: slow, and simple enough to be believed.
+    Exhaustive,
+}
+
+/// A scene made ready for rays.
+pub struct Reference {
+    search: Box<dyn Search>,
+    world: whitted::World,
+    rays: Rays,
+    size: (u32, u32),
+}
+
+impl Reference {
+    /// Prepares a scene. All coordinates are taken relative to the middle of the scene's box and multiplied by a power of two that makes the
+    /// box at most 2 long, so that scenes of any size and place keep the same relative precision.
+    ///
+    /// # Errors
+    /// What [`Scene::check`], [`View::check`] and [`Rays::new`] refuse, and pictures of more than [`MOST_PIXELS`].
+    pub fn new(scene: &Scene, view: &View, method: Method) -> Result<Reference, Report> {
+        let mut report = scene.check();
+        report.0.extend(view.check().0);
+        let pixels = u64::from(view.size.0) * u64::from(view.size.1);
+        if pixels > MOST_PIXELS {
+            report.0.push(Diagnostic::error(format!(
+                "a picture of {} x {} pixels is more than the reference renders ({MOST_PIXELS})",
+                view.size.0, view.size.1
+            )));
+        }
+        if report.has_errors() {
+            return Err(report);
+        }
+        let corners = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
+        let middle = camera::centre(corners);
+        let halves = |p: Vec3| p.map(|x| x / 2.0);
+        // Halves, because the distance of two representable points need not be representable.
+        let power = exponent(largest(sub(halves(corners.1), halves(corners.0))));
+        let local = |p: Vec3| [0, 1, 2].map(|k| shifted(p[k] / 2.0 - middle[k] / 2.0, 1 - power));
+        let triangles = (0..).zip(&scene.triangles);
+        let triangles: Vec<Triangle> = triangles
+            .filter_map(|(index, t)| Triangle::new(index, t.vertices.map(|v| local(scene.vertices[v as usize]))))
+            .collect();
+        let local_view = View { camera: camera::mapped(&view.camera, local), ..view.clone() };
+        let rays = Rays::new((local(corners.0), local(corners.1)), &local_view)?;
+        let search: Box<dyn Search> = match method {
+            Method::Hierarchy => Box::new(Hierarchy::new(triangles)),
+            Method::Exhaustive => Box::new(Exhaustive(triangles)),
+        };
+        Ok(Reference { search, world: whitted::World::new(scene, view, local), rays, size: view.size })
+    }
+
+    /// The colour of the pixel in column `c` and row `r`, row 0 on top, and the rays that it took.
+    pub fn pixel(&self, c: u32, r: u32) -> (Vec3, RayCounts) {
+        let (origin, direction) = self.rays.ray(c, r);
+        self.world.colour(self.search.as_ref(), origin, direction)
+    }
+
+    /// The whole picture, rows in parallel; the same bits for any number of threads.
+    pub fn picture(&self) -> Rendering {
+        let (width, height) = self.size;
+        let row = |r: u32| {
+            let pixels = (0..width).map(|c| self.pixel(c, r));
+            let mut rays = RayCounts::default();
+            let colours: Vec<Vec3> = pixels
+                .map(|(colour, counts)| {
+                    rays = rays.plus(counts);
+                    colour
+                })
+                .collect();
+            (colours, rays)
+        };
+        let rows: Vec<_> = (0..height).into_par_iter().map(row).collect();
+        let rays = rows.iter().fold(RayCounts::default(), |sum, (_, counts)| sum.plus(*counts));
+        let pixels = rows.into_iter().flat_map(|(colours, _)| colours).collect();
+        Rendering { picture: Picture { size: self.size, pixels }, rays }
+    }
+}
+
+/// The picture of a scene in double precision.
+///
+/// # Errors
+/// See [`Reference::new`].
+pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
+    Ok(Reference::new(scene, view, Method::Hierarchy)?.picture())
+}
+
+/// The same picture, each ray tried against all triangles.
+///
+/// # Errors
+/// See [`Reference::new`].
+pub fn render_exhaustively(scene: &Scene, view: &View) -> Result<Rendering, Report> {
+    Ok(Reference::new(scene, view, Method::Exhaustive)?.picture())
+}

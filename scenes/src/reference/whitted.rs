@@ -1,0 +1,150 @@
+//! What a ray brings back: Whitted's model as the report has it (4.1 to 4.3), with reflection, refraction, total reflection and one shadow
+//! ray a light. Which triangle a ray meets is found by [`super::search`].
+
+use super::RayCounts;
+use super::search::Search;
+use super::triangle::{Ray, Triangle};
+use crate::model::{Light, Material, Scene, Vec3, View};
+use crate::vector::{add, dot, scale, sub, unit};
+
+/// How far the origins of secondary rays are moved off the surface along its normal, as part of the scene's box (which is 1 to 2 long here).
+/// A hit point lies off its plane by some 10^-16 of the coordinates, so this is five orders above the noise, and as far below the steps of
+/// the finest grid, which are 2^-30 of the box.
+const OFFSET: f64 = 1e-10;
+
+/// Everything that shading needs beside the triangles' shapes.
+#[derive(Debug)]
+pub struct World {
+    /// Material of each triangle by its number.
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    ambient: f64,
+    background: Vec3,
+    bounces: u32,
+}
+
+/// A ray of the ray tree that is still to be followed.
+struct Branch {
+    ray: Ray,
+    /// Product of the coefficients on the way from the eye.
+    weight: f64,
+    /// 0 for the camera's ray.
+    level: u32,
+    /// Whether it runs inside a body; a refracted ray changes it, a reflected one does not.
+    is_inside: bool,
+}
+
+impl World {
+    /// The shading of a scene whose positions have been moved by `local`.
+    pub fn new(scene: &Scene, view: &View, local: impl Fn(Vec3) -> Vec3) -> World {
+        let lights = scene.lights.iter().map(|light| Light { position: local(light.position), colour: light.colour });
+        World {
+            materials: scene.triangles.iter().map(|t| scene.materials[t.material as usize]).collect(),
+            lights: lights.collect(),
+            ambient: view.ambient,
+            background: view.background,
+            bounces: view.bounces,
+        }
+    }
+
+    /// The light that comes back along a ray, and the rays that were sent. The ray tree is walked depth first on a stack of its own, so that
+    /// its depth is not bounded by the thread's.
+    pub fn colour(&self, search: &dyn Search, origin: Vec3, direction: Vec3) -> (Vec3, RayCounts) {
+        let mut counts = RayCounts { camera: 1, ..RayCounts::default() };
+        let mut colour = [0.0; 3];
+        let mut open = vec![Branch { ray: Ray::new(origin, direction), weight: 1.0, level: 0, is_inside: false }];
+        while let Some(branch) = open.pop() {
+            let Some(hit) = search.nearest(&branch.ray) else {
+                colour = add(colour, scale(self.background, branch.weight));
+                continue;
+            };
+            let triangle = &search.triangles()[hit.place as usize];
+            let material = &self.materials[triangle.index as usize];
+            let point = triangle.point(&branch.ray);
+            let normal = facing(triangle, branch.ray.direction);
+            let local = self.local(search, material, point, normal, &mut counts);
+            colour = add(colour, scale(local, branch.weight));
+            if branch.level < self.bounces {
+                self.branches(&branch, material, point, normal, &mut open, &mut counts);
+            }
+        }
+        (colour, counts)
+    }
+
+    /// Light that a surface sends out by itself: colour (ambient + kd sum max(0, N.L) light), over the lights that nothing hides.
+    fn local(
+        &self,
+        search: &dyn Search,
+        material: &Material,
+        point: Vec3,
+        normal: Vec3,
+        counts: &mut RayCounts,
+    ) -> Vec3 {
+        let mut intensity = [self.ambient; 3];
+        let origin = add(point, scale(normal, OFFSET));
+        for light in &self.lights {
+            let Some(towards) = unit(sub(light.position, point)) else { continue };
+            let cosine = dot(normal, towards);
+            if cosine <= 0.0 {
+                continue;
+            }
+            counts.shadow += 1;
+            let way = sub(light.position, origin);
+            let Some(direction) = unit(way) else { continue };
+            if !search.is_blocked(&Ray::new(origin, direction), dot(way, direction)) {
+                intensity = add(intensity, scale(light.colour, material.intensity * cosine));
+            }
+        }
+        [0, 1, 2].map(|k| material.colour[k] * intensity[k])
+    }
+
+    /// Adds the reflected and the refracted ray of a hit, as far as they have a weight.
+    fn branches(
+        &self,
+        branch: &Branch,
+        material: &Material,
+        point: Vec3,
+        normal: Vec3,
+        open: &mut Vec<Branch>,
+        counts: &mut RayCounts,
+    ) {
+        let direction = branch.ray.direction;
+        let mut reflection = material.reflection;
+        let mut child = |direction: Vec3, side: f64, weight: f64, is_inside: bool| {
+            // Weights underflow to 0 on very deep paths only, which then bring nothing.
+            if let Some(direction) = unit(direction).filter(|_| branch.weight * weight > 0.0) {
+                let ray = Ray::new(add(point, scale(normal, side * OFFSET)), direction);
+                open.push(Branch { ray, weight: branch.weight * weight, level: branch.level + 1, is_inside });
+                return 1;
+            }
+            0
+        };
+        if material.transmission() > 0.0 {
+            let eta = if branch.is_inside { material.index } else { 1.0 / material.index };
+            match refracted(direction, normal, eta) {
+                Some(onwards) => counts.refracted += child(onwards, -1.0, material.transmission(), !branch.is_inside),
+                None => reflection += material.transmission(),
+            }
+        }
+        if reflection > 0.0 {
+            counts.reflected += child(reflected(direction, normal), 1.0, reflection, branch.is_inside);
+        }
+    }
+}
+
+/// The triangle's normal on the side that a ray comes from.
+fn facing(triangle: &Triangle, direction: Vec3) -> Vec3 {
+    if dot(triangle.normal, direction) > 0.0 { scale(triangle.normal, -1.0) } else { triangle.normal }
+}
+
+/// Direction of the mirrored ray; `normal` faces where the ray comes from. Report 4.1.
+pub fn reflected(direction: Vec3, normal: Vec3) -> Vec3 {
+    sub(direction, scale(normal, 2.0 * dot(direction, normal)))
+}
+
+/// Direction of the ray behind the surface, `None` at total reflection; `eta` is the index on this side over that on the other. Report 4.2.
+pub fn refracted(direction: Vec3, normal: Vec3, eta: f64) -> Option<Vec3> {
+    let cosine = -dot(direction, normal);
+    let k = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    (k >= 0.0).then(|| add(scale(direction, eta), scale(normal, eta * cosine - k.sqrt())))
+}

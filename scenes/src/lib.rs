@@ -7,6 +7,7 @@ pub mod grid;
 pub mod image;
 pub mod kdtree;
 pub mod layout;
+pub mod metrics;
 pub mod model;
 pub mod read;
 pub mod reference;

@@ -1,1 +1,13 @@
-//! Machine of lancer: words to effects, time and counts.
+//! Machine of lancer: words to effects, time and counts. It knows no assembly text, no scene and no picture.
+
+pub mod checked;
+pub mod code;
+pub mod exec;
+pub mod machine;
+pub mod octets;
+pub mod profile;
+pub mod quantity;
+pub mod registers;
+pub mod tally;
+pub mod timing;
+pub mod trap;

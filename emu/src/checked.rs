@@ -1,0 +1,249 @@
+//! The readable interpreter: one instruction after the other, each checked, counted and timed. It is what other engines
+//! are compared with. It knows nothing of other cores: where the machine is not ready it stops and can be resumed.
+
+use isa::Op;
+use isa::number::Vector;
+use isa::table::Ending;
+
+use crate::code::Code;
+use crate::exec::{
+    BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, ScalarRoom, VectorRoom, Watch,
+    WideRoom, split_operands,
+};
+use crate::octets::Buffer;
+use crate::profile::Observer;
+use crate::registers::Registers;
+use crate::tally::Tally;
+use crate::trap::{Fault, Stop};
+
+/// Everything about one core that its program can see or change by itself, and how far it has come.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct State {
+    /// Its registers.
+    pub registers: Registers,
+    /// Its local buffer.
+    pub buffer: Buffer,
+    /// Word of the next instruction.
+    pub pc: u32,
+    /// Instructions executed since the last [`State::begin`].
+    pub steps: u64,
+    /// Clocks of those instructions, transfers and waiting left out.
+    pub clocks: u64,
+    /// Elementary operations of those instructions.
+    pub elementary: u64,
+}
+
+impl State {
+    /// A core after reset, about to execute the program's first instruction.
+    pub fn new(code: &Code, buffer: Buffer) -> State {
+        let pc = code.program.entry;
+        State { registers: Registers::default(), buffer, pc, steps: 0, clocks: 0, elementary: 0 }
+    }
+
+    /// The same core after another reset.
+    pub fn begin(&mut self, code: &Code, initial: &Buffer) {
+        self.registers = Registers::default();
+        self.buffer.reset_to(initial);
+        self.pc = code.program.entry;
+        (self.steps, self.clocks, self.elementary) = (0, 0, 0);
+    }
+}
+
+/// Who and where a core is, and how long it may run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seat {
+    /// Its number.
+    pub core: u32,
+    /// Number of cores, the main processor not counted.
+    pub cores: u32,
+    /// Instructions that a work item may take.
+    pub step_limit: u64,
+}
+
+/// Why an engine stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pause {
+    /// The program executed `halt`.
+    Halt,
+    /// The instruction at the program counter waits for the machine; running again tries it again.
+    Wait,
+    /// The instruction at the program counter went wrong; nothing of it happened.
+    Fault(Fault),
+}
+
+/// The value of an operand that a meaning reads.
+macro_rules! read {
+    ($registers:expr, $fields:expr, $letter:ident S) => {
+        $registers.scalar($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident A) => {
+        $registers.scalar($fields.$letter) as u32
+    };
+    ($registers:expr, $fields:expr, $letter:ident V) => {
+        $registers.vector($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident W) => {
+        $registers.wide($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident V2) => {
+        $registers.vectors::<2>($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident V3) => {
+        $registers.vectors::<3>($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident V5) => {
+        $registers.vectors::<5>($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident W3) => {
+        $registers.wides::<3>($fields.$letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident $immediate:ident) => {
+        $fields.$letter
+    };
+}
+
+/// Puts a value where a written operand says.
+macro_rules! write {
+    ($registers:expr, $fields:expr, $letter:ident S) => {{
+        let value: i32 = $letter;
+        $registers.set_scalar($fields.$letter, value)
+    }};
+    ($registers:expr, $fields:expr, $letter:ident V) => {{
+        let value: Vector = $letter;
+        $registers.set_vector($fields.$letter, value)
+    }};
+    ($registers:expr, $fields:expr, $letter:ident W) => {{
+        let value: i64 = $letter;
+        $registers.set_wide($fields.$letter, value)
+    }};
+    ($registers:expr, $fields:expr, $letter:ident V2) => {
+        $registers.set_vectors::<2>($fields.$letter, $letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident V3) => {
+        $registers.set_vectors::<3>($fields.$letter, $letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident V5) => {
+        $registers.set_vectors::<5>($fields.$letter, $letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident W3) => {
+        $registers.set_wides::<3>($fields.$letter, $letter)
+    };
+}
+
+/// Runs until the program halts, waits or goes wrong.
+///
+/// `T` is the machine's arithmetic, `O` who watches each instruction; both are known at compile time, so that a run
+/// without a profile pays nothing for it.
+pub fn run<T: Watch, O: Observer>(
+    code: &Code,
+    seat: Seat,
+    state: &mut State,
+    arithmetic: &T,
+    link: &mut dyn Link,
+    tally: &mut Tally,
+    observer: &mut O,
+) -> Pause {
+    let (slots, costs, passes) = (code.slots(), code.costs(), tally.passes_mut());
+    let State { registers, buffer, .. } = state;
+    let mut pc = state.pc;
+    let mut steps = state.steps;
+    let mut clocks = state.clocks;
+    let mut elementary = state.elementary;
+
+    let pause = loop {
+        let Some(slot) = slots.get(pc as usize) else {
+            break Pause::Fault(Fault::OutsideProgram { words: slots.len() as u32 });
+        };
+        if steps >= seat.step_limit {
+            break Pause::Fault(Fault::StepLimit(seat.step_limit));
+        }
+        let fields = &slot.fields;
+        let mut next = pc.wrapping_add(1);
+        let mut motion = Motion::Jump;
+        let mut end = None;
+
+        /// Writes what a meaning handed back and yields how it ended.
+        macro_rules! finish {
+            ($result:expr, []) => {{
+                let exit = $result;
+                (exit.index(), exit.units())
+            }};
+            ($result:expr, [$(($letter:ident $kind:ident))+]) => {{
+                let ($($letter,)+ exit) = $result;
+                $(write!(registers, fields, $letter $kind);)+
+                (exit.index(), exit.units())
+            }};
+        }
+        /// Executes one row: its operands are read, its meaning is asked, its results are written.
+        macro_rules! execute {
+            ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+                finish!($trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*), $written)
+            };
+            ({ local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+                match $trait::$name(buffer $(, read!(registers, fields, $letter $kind))*) {
+                    Ok(result) => finish!(result, $written),
+                    Err(fault) => break Pause::Fault(fault),
+                }
+            };
+            ({ bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+                match $trait::$name(&mut Port { buffer, link } $(, read!(registers, fields, $letter $kind))*) {
+                    Ok(result) => finish!(result, $written),
+                    Err(Stop::Wait) => break Pause::Wait,
+                    Err(Stop::Fault(fault)) => break Pause::Fault(fault),
+                }
+            };
+            ({ control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
+                let mut flow = Flow::new(pc, seat.core, seat.cores);
+                let exit = finish!($trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*), $written);
+                (next, motion, end) = (flow.next, flow.motion, flow.end);
+                exit
+            }};
+        }
+        macro_rules! dispatch {
+            ($($style:ident $room:ident $trait:ident $room_doc:literal {
+                $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
+            })*) => {
+                match slot.op {
+                    $($(Some(Op::$name) => {
+                        split_operands! { execute { $style $trait $name } [] [] ($($operands)*) }
+                    })*)*
+                    // Bodies of extensions are spliced in here; without one the word cannot be executed.
+                    Some(Op::Ext(_)) => break Pause::Fault(Fault::NoMeaning(code.program.words[pc as usize])),
+                    None => break Pause::Fault(Fault::IllegalWord(code.program.words[pc as usize])),
+                }
+            };
+        }
+
+        let (exit, units): (usize, u32) = isa::rows!(dispatch);
+
+        if T::IS_WATCHING && arithmetic.take_division_by_zero() {
+            break Pause::Fault(Fault::DivisionByZero);
+        }
+        let number = slot.first_exit as usize + exit;
+        let pass = &mut passes[number];
+        pass.count += 1;
+        steps += 1;
+        let cost = costs[number];
+        clocks += u64::from(cost.clocks);
+        elementary += u64::from(cost.elementary);
+        if units != 0 {
+            pass.units += u64::from(units);
+            let (more_clocks, more_elementary) = code.unit_cost(pc, exit, units);
+            clocks += more_clocks.0;
+            elementary += more_elementary;
+        }
+        if O::IS_ACTIVE {
+            observer.step(pc, number, units, next, motion);
+        }
+        match end {
+            None => pc = next,
+            Some(End::Halt) => break Pause::Halt,
+            Some(End::Trap(number)) => break Pause::Fault(Fault::User(number)),
+        }
+    };
+    state.pc = pc;
+    state.steps = steps;
+    state.clocks = clocks;
+    state.elementary = elementary;
+    pause
+}

@@ -1,0 +1,162 @@
+//! Meanings of the rows that ask the machine for something: global memory, messages, barriers. When that happens, and
+//! how long it takes, is the machine's business, behind [`Link`].
+
+use isa::number::Vector;
+use isa::table::{Done, Each};
+
+use super::BusRoom;
+use crate::octets::Buffer;
+use crate::trap::{Fault, Stop};
+
+/// Most vectors that a message carries.
+const LONGEST: usize = 5;
+
+/// A few vectors on their way from one core to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Message {
+    vectors: [Vector; LONGEST],
+    length: u8,
+}
+
+impl Message {
+    /// A message of `N` vectors.
+    pub fn new<const N: usize>(sent: [Vector; N]) -> Message {
+        const { assert!(N >= 1 && N <= LONGEST, "a message carries one to five vectors") };
+        let mut vectors = [[0; 3]; LONGEST];
+        vectors[..N].copy_from_slice(&sent);
+        Message { vectors, length: N as u8 }
+    }
+
+    /// Length on the bus.
+    pub const fn octets(&self) -> u32 {
+        12 * self.length as u32
+    }
+
+    /// The first vector: what identifies a work item when the message starts one.
+    pub const fn first(&self) -> Vector {
+        self.vectors[0]
+    }
+
+    /// The `N` vectors that a receiver takes.
+    fn open<const N: usize>(self) -> Result<[Vector; N], Fault> {
+        if usize::from(self.length) != N {
+            return Err(Fault::MessageSize { sent: self.octets(), expected: 12 * N as u32 });
+        }
+        Ok(std::array::from_fn(|at| self.vectors[at]))
+    }
+}
+
+/// The machine as one core sees it. Every call either happens whole or not at all: `Stop::Wait` means that the core is
+/// to try the same instruction again when the machine says so.
+pub trait Link {
+    /// Copies `octets` octets from global memory at `from` to the buffer at `to`.
+    ///
+    /// # Errors
+    /// A range that leaves buffer or memory, or not yet.
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
+
+    /// Copies `octets` octets from the buffer at `from` to global memory at `to`.
+    ///
+    /// # Errors
+    /// A range that leaves buffer or memory, or not yet.
+    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
+
+    /// The 32 bits of global memory at `address`.
+    ///
+    /// # Errors
+    /// An address beyond the memory, or not yet.
+    fn read(&mut self, address: u32) -> Result<i32, Stop>;
+
+    /// Writes words of 32 bits to global memory from `address` on, in one transfer.
+    ///
+    /// # Errors
+    /// An address beyond the memory, or not yet.
+    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop>;
+
+    /// Adds to the 32 bits of global memory at `address`, modulo 2^32, and returns what they were.
+    ///
+    /// # Errors
+    /// An address beyond the memory, or not yet.
+    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop>;
+
+    /// Puts a message into the mailbox that core `to` has for this core.
+    ///
+    /// # Errors
+    /// No such core, or not yet.
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop>;
+
+    /// Takes the message that arrived first, of several at the same time that of the lowest sender.
+    ///
+    /// # Errors
+    /// None there yet.
+    fn receive(&mut self) -> Result<(Message, u32), Stop>;
+
+    /// Waits for the others.
+    ///
+    /// # Errors
+    /// Some have not come yet.
+    fn barrier(&mut self) -> Result<(), Stop>;
+}
+
+/// What the bus rows work on: a core's buffer and its link to the machine.
+pub struct Port<'a> {
+    /// The local buffer.
+    pub buffer: &'a mut Buffer,
+    /// The machine.
+    pub link: &'a mut dyn Link,
+}
+
+impl BusRoom for Port<'_> {
+    fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
+        self.link.load(self.buffer, a, b, c as u32)?;
+        Ok(Each(c as u32))
+    }
+
+    fn store(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
+        self.link.store(self.buffer, a, b, c as u32)?;
+        Ok(Each(c as u32))
+    }
+
+    fn ldw(&mut self, a: u32, i: i32) -> Result<(i32, Done), Stop> {
+        Ok((self.link.read(a.wrapping_add_signed(i))?, Done))
+    }
+
+    fn stw(&mut self, b: i32, a: u32, i: i32) -> Result<Done, Stop> {
+        self.link.write(a.wrapping_add_signed(i), &[b])?;
+        Ok(Done)
+    }
+
+    fn stv(&mut self, b: Vector, a: u32, i: i32) -> Result<Done, Stop> {
+        self.link.write(a.wrapping_add_signed(i), &b)?;
+        Ok(Done)
+    }
+
+    fn fetchadd(&mut self, a: u32, b: i32) -> Result<(i32, Done), Stop> {
+        Ok((self.link.fetch_add(a, b)?, Done))
+    }
+
+    fn send2(&mut self, a: i32, b: [Vector; 2]) -> Result<Done, Stop> {
+        self.link.send(a, Message::new(b))?;
+        Ok(Done)
+    }
+
+    fn send5(&mut self, a: i32, b: [Vector; 5]) -> Result<Done, Stop> {
+        self.link.send(a, Message::new(b))?;
+        Ok(Done)
+    }
+
+    fn recv2(&mut self) -> Result<([Vector; 2], i32, Done), Stop> {
+        let (message, sender) = self.link.receive()?;
+        Ok((message.open()?, sender as i32, Done))
+    }
+
+    fn recv5(&mut self) -> Result<([Vector; 5], i32, Done), Stop> {
+        let (message, sender) = self.link.receive()?;
+        Ok((message.open()?, sender as i32, Done))
+    }
+
+    fn barrier(&mut self) -> Result<Done, Stop> {
+        self.link.barrier()?;
+        Ok(Done)
+    }
+}

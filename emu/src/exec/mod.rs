@@ -1,0 +1,101 @@
+//! What instructions do: one trait a room, stamped from the rows, so that a row without a meaning does not compile.
+//! Moving registers, counting and choosing when a transfer happens belong to engines and machines.
+
+mod bus;
+mod control;
+mod integer;
+mod local;
+mod scalar;
+mod split;
+mod vector;
+mod watch;
+mod wide;
+
+use isa::number::Vector;
+use isa::table::exit;
+
+pub use bus::{Link, Message, Port};
+pub use control::{End, Flow, Motion};
+pub use watch::{Watch, Watching};
+
+pub(crate) use split::split_operands;
+
+use crate::trap::{Fault, Stop};
+
+/// The type of an operand's value: registers by kind, every immediate an `i32`.
+macro_rules! value {
+    (S) => {
+        i32
+    };
+    (A) => {
+        u32
+    };
+    (V) => {
+        Vector
+    };
+    (W) => {
+        i64
+    };
+    (V2) => {
+        [Vector; 2]
+    };
+    (V3) => {
+        [Vector; 3]
+    };
+    (V5) => {
+        [Vector; 5]
+    };
+    (W3) => {
+        [i64; 3]
+    };
+    ($immediate:ident) => {
+        i32
+    };
+}
+
+/// What a meaning hands back: the written values in the order of the row, then the exit.
+macro_rules! outcome {
+    ($name:ident []) => { exit::$name::Exit };
+    ($name:ident [$(($letter:ident $kind:ident))+]) => { ($(value!($kind),)+ exit::$name::Exit) };
+}
+
+/// One method of a room's trait.
+macro_rules! method {
+    ({ pure $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        $(#[doc = $doc])*
+        fn $name(&self, $($letter: value!($kind)),*) -> outcome!($name $written);
+    };
+    ({ control $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        $(#[doc = $doc])*
+        fn $name(&mut self, $($letter: value!($kind)),*) -> outcome!($name $written);
+    };
+    ({ local $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        $(#[doc = $doc])*
+        ///
+        /// # Errors
+        /// An access beyond the end of the buffer.
+        fn $name(&mut self, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Fault>;
+    };
+    ({ bus $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        $(#[doc = $doc])*
+        ///
+        /// # Errors
+        /// A fault, or that the machine is not ready: then nothing has happened and the instruction is tried again.
+        fn $name(&mut self, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Stop>;
+    };
+}
+
+macro_rules! rooms {
+    ($($style:ident $room:ident $trait:ident $room_doc:literal {
+        $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
+    })*) => {
+        $(
+            #[doc = $room_doc]
+            pub trait $trait {
+                $(split_operands! { method { $style $name [$(#[doc = $doc])*] } [] [] ($($operands)*) })*
+            }
+        )*
+    };
+}
+
+isa::rows!(rooms);

@@ -1,0 +1,273 @@
+//! The machine as a file describes it: every key with its unit and where its default comes from.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Place, Report, Source, did_you_mean};
+use isa::number::{Modes, Overflow, Quantization};
+use isa::{Class, Counts};
+use serde::{Deserialize, Serialize};
+
+use super::arbiter::ArbiterKind;
+use crate::quantity::{Clocks, Octets};
+use crate::timing::Timing;
+
+/// Most cores that a machine may have.
+pub const MOST_CORES: u32 = 256;
+
+/// Most octets of a local buffer.
+pub const MOST_BUFFER_OCTETS: u32 = 1 << 24;
+
+/// Most clocks of an operation, a beat or a set-up, and most units of a class.
+pub const MOST_CLOCKS: u64 = 1_000_000;
+
+/// A machine. The defaults are the report's.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// Number of cores, 1 to 256, the main processor not counted; 4. Report 6.1.
+    pub cores: u32,
+    /// Clock rate in hertz; 100 MHz. Report 6.1.
+    pub clock_hz: u64,
+    /// Octets of each core's local buffer; 18,525, the sum of the list. Report 6.2.
+    pub buffer_octets: u32,
+    /// Instructions that a work item may take; 10^8, thousands of times what a pixel takes.
+    pub step_limit: u64,
+    /// Word and modes.
+    pub arithmetic: ArithmeticConfig,
+    /// Clocks of an operation, by class; 1 for add, sub, mul, div and cmp, 0 for the rest. Report 6.1.
+    pub clocks: ClassClocks,
+    /// Operations that run at once, by class; 1.
+    pub units: ClassUnits,
+    /// The shared bus.
+    pub bus: BusConfig,
+    /// The main processor.
+    pub main: MainConfig,
+}
+
+impl Default for Config {
+    fn default() -> Config {
+        Config {
+            cores: 4,
+            clock_hz: 100_000_000,
+            buffer_octets: 18_525,
+            step_limit: 100_000_000,
+            arithmetic: ArithmeticConfig::default(),
+            clocks: ClassClocks::default(),
+            units: ClassUnits::default(),
+            bus: BusConfig::default(),
+            main: MainConfig::default(),
+        }
+    }
+}
+
+/// Word length and modes of the machine's arithmetic.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ArithmeticConfig {
+    /// Bits of a word, 8 to 32; 32.
+    pub word: u32,
+    /// Rounding, by its name in IEEE 1666 without `SC_`; RND, to nearest with ties up.
+    #[serde(with = "quantization_name")]
+    pub quantization: Quantization,
+    /// Overflow, by its name in IEEE 1666 without `SC_`; SAT, the nearest number that fits.
+    #[serde(with = "overflow_name")]
+    pub overflow: Overflow,
+    /// Whether a division by zero stops the machine instead of saturating; no.
+    pub trap_division_by_zero: bool,
+}
+
+impl Default for ArithmeticConfig {
+    fn default() -> ArithmeticConfig {
+        let Modes { word, quantization, overflow } = Modes::default();
+        ArithmeticConfig { word, quantization, overflow, trap_division_by_zero: false }
+    }
+}
+
+impl ArithmeticConfig {
+    /// The modes that `isa` computes with.
+    pub fn modes(&self) -> Modes {
+        Modes { word: self.word, quantization: self.quantization, overflow: self.overflow }
+    }
+}
+
+/// Reads and writes a mode by its name.
+macro_rules! mode_name {
+    ($module:ident $type:ident) => {
+        mod $module {
+            use isa::number::$type;
+            use serde::{Deserialize, Deserializer, Serializer};
+
+            pub fn serialize<S: Serializer>(mode: &$type, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(mode.name())
+            }
+
+            pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<$type, D::Error> {
+                let name = String::deserialize(deserializer)?;
+                let names: Vec<&str> = $type::ALL.iter().map(|mode| mode.name()).collect();
+                $type::from_name(&name).ok_or_else(|| {
+                    serde::de::Error::custom(format!("unknown mode `{name}`, expected one of {}", names.join(", ")))
+                })
+            }
+        }
+    };
+}
+
+mode_name!(quantization_name Quantization);
+mode_name!(overflow_name Overflow);
+
+/// One number a class, written as a table of the classes that differ from the default.
+macro_rules! class_table {
+    ($(#[doc = $doc:literal])* $type:ident $field:ident) => {
+        $(#[doc = $doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(try_from = "BTreeMap<String, u64>", into = "BTreeMap<String, u64>")]
+        pub struct $type(pub Counts);
+
+        impl Default for $type {
+            fn default() -> $type {
+                $type(Timing::default().$field)
+            }
+        }
+
+        impl TryFrom<BTreeMap<String, u64>> for $type {
+            type Error = String;
+
+            fn try_from(table: BTreeMap<String, u64>) -> Result<$type, String> {
+                let mut counts = Timing::default().$field;
+                for (name, number) in table {
+                    let names = || Class::ALL.iter().map(|class| format!("`{}`", class.name())).collect::<Vec<_>>();
+                    let class = Class::from_name(&name)
+                        .ok_or_else(|| format!("unknown class `{name}`, expected one of {}", names().join(", ")))?;
+                    counts[class] = number;
+                }
+                Ok($type(counts))
+            }
+        }
+
+        impl From<$type> for BTreeMap<String, u64> {
+            fn from(table: $type) -> BTreeMap<String, u64> {
+                table.0.iter().map(|(class, number)| (class.name().to_owned(), number)).collect()
+            }
+        }
+    };
+}
+
+class_table! {
+    /// Clocks of an operation of each class.
+    ClassClocks clocks
+}
+
+class_table! {
+    /// Operations of each class that run at once.
+    ClassUnits units
+}
+
+/// The shared bus.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BusConfig {
+    /// Octets that go over the bus at once; 1. Report 6.1.
+    pub octets_per_beat: u64,
+    /// Clocks for that; 2, "a memory access takes twice an elementary operation". Report 6.1.
+    pub clocks_per_beat: u64,
+    /// Clocks before the first beat of a transfer; 0. The report has none.
+    pub setup_clocks: u64,
+    /// Who gets the bus next; round-robin.
+    pub arbiter: ArbiterKind,
+}
+
+impl Default for BusConfig {
+    fn default() -> BusConfig {
+        BusConfig { octets_per_beat: 1, clocks_per_beat: 2, setup_clocks: 0, arbiter: ArbiterKind::default() }
+    }
+}
+
+impl BusConfig {
+    /// How long a transfer holds the bus.
+    pub fn length(&self, octets: Octets) -> Clocks {
+        Clocks(self.setup_clocks + octets.0.div_ceil(self.octets_per_beat) * self.clocks_per_beat)
+    }
+}
+
+/// The main processor.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MainConfig {
+    /// Whether its transfers, and messages to and from it, use the bus; yes. Otherwise they take no time.
+    pub traffic: bool,
+    /// Octets of its local buffer; 65,536. The report does not limit it.
+    pub buffer_octets: u32,
+    /// Instructions that its whole program may take; 10^11.
+    pub step_limit: u64,
+}
+
+impl Default for MainConfig {
+    fn default() -> MainConfig {
+        MainConfig { traffic: true, buffer_octets: 65_536, step_limit: 100_000_000_000 }
+    }
+}
+
+impl Config {
+    /// What operations take.
+    pub fn timing(&self) -> Timing {
+        Timing { clocks: self.clocks.0, units: self.units.0 }
+    }
+
+    /// Reads a machine file; keys that it leaves out have their defaults.
+    ///
+    /// # Errors
+    /// A file that is not TOML, a key that does not exist, a value out of its range.
+    pub fn parse(source: &Arc<Source>) -> Result<Config, Report> {
+        let config: Config = toml::from_str(&source.text).map_err(|error| {
+            let first_line = error.message().lines().next().unwrap_or_default().to_owned();
+            let mut message = Diagnostic::error(first_line.clone());
+            if let Some(span) = error.span() {
+                message = message.at(Place::new(source, span), "");
+            }
+            let mut quoted = first_line.split('`').skip(1).step_by(2);
+            if first_line.contains("unknown")
+                && let Some(wrong) = quoted.next()
+                && let Some(near) = did_you_mean(wrong, quoted)
+            {
+                message = message.hint(format!("did you mean `{near}`?"));
+            }
+            Report::from(message)
+        })?;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Whether every number lies in its range.
+    ///
+    /// # Errors
+    /// One message for each that does not.
+    pub fn check(&self) -> Result<(), Report> {
+        let mut messages = Vec::new();
+        let mut check = |key: &str, value: u64, least: u64, most: u64| {
+            if !(least..=most).contains(&value) {
+                messages.push(Diagnostic::error(format!("`{key}` is {value}, but must lie in {least}..={most}")));
+            }
+        };
+        check("cores", self.cores.into(), 1, MOST_CORES.into());
+        check("clock_hz", self.clock_hz, 1, 1_000_000_000_000);
+        check("buffer_octets", self.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("step_limit", self.step_limit, 1, 1 << 62);
+        check("arithmetic.word", self.arithmetic.word.into(), 8, 32);
+        for &class in Class::ALL {
+            check(&format!("clocks.{}", class.name()), self.clocks.0[class], 0, MOST_CLOCKS);
+            check(&format!("units.{}", class.name()), self.units.0[class], 1, MOST_CLOCKS);
+        }
+        check("bus.octets_per_beat", self.bus.octets_per_beat, 1, MOST_CLOCKS);
+        check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
+        check("bus.setup_clocks", self.bus.setup_clocks, 0, MOST_CLOCKS);
+        check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("main.step_limit", self.main.step_limit, 1, 1 << 62);
+        if messages.is_empty() { Ok(()) } else { Err(Report(messages)) }
+    }
+
+    /// The machine as a file with every key.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("a machine has nothing that TOML cannot hold")
+    }
+}

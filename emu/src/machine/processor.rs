@@ -1,0 +1,217 @@
+//! One processor of the machine: its state, what it waits for, and where its clocks went.
+
+use isa::number::Vector;
+
+use super::frame::ProcessorUse;
+use super::station::{Request, Shared, Station};
+use crate::checked::{self, Pause, Seat, State};
+use crate::code::Code;
+use crate::exec::{Message, Watch};
+use crate::octets::Buffer;
+use crate::profile::{Observer, Unobserved};
+use crate::quantity::{Clocks, Octets};
+use crate::tally::Tally;
+use crate::trap::Fault;
+
+/// What a processor does without the bus, at its own clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Act {
+    /// It moves octets beside the bus.
+    Aside,
+    /// It takes a message.
+    Receive,
+    /// It leaves a barrier.
+    Leave,
+    /// It has halted.
+    Halt,
+    /// It stops the machine.
+    Stop,
+}
+
+/// What a processor is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// Between two work items, the first thing of the next one being a receive: a message wakes it.
+    Asleep,
+    /// It waits for the bus.
+    Asks,
+    /// It does something at its own clock, or later.
+    Acts {
+        /// When.
+        at: Clocks,
+        /// What.
+        act: Act,
+    },
+    /// It waits until the mailbox that this receiver has for it is free.
+    Blocked {
+        /// The receiver.
+        to: u32,
+    },
+    /// It waits for a message.
+    Listens,
+    /// It waits for the others.
+    Meets,
+    /// It has halted and is not to start again, unless a message comes.
+    Rests,
+}
+
+/// The work item that a core is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// When it was begun.
+    pub start: Clocks,
+    /// First vector of its first message; `None` before that.
+    pub subject: Option<Vector>,
+    /// Whether it has used the bus, a mailbox or a barrier.
+    pub has_acted: bool,
+}
+
+impl Work {
+    /// Nothing received yet.
+    pub fn new(start: Clocks) -> Work {
+        Work { start, subject: None, has_acted: false }
+    }
+}
+
+/// What an engine's run was given leave for and did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Advance {
+    /// Why it stopped.
+    pub pause: Pause,
+    /// The message that it took, and its sender.
+    pub taken: Option<(Message, u32)>,
+    /// Instructions executed.
+    pub steps: u64,
+}
+
+/// One processor.
+pub struct Processor<'a, O> {
+    /// Its program.
+    pub code: &'a Code<'a>,
+    /// Who it is.
+    pub seat: Seat,
+    /// What its program sees.
+    pub state: State,
+    /// The buffer after reset.
+    pub initial: Buffer,
+    /// Passes of its program.
+    pub tally: Tally,
+    /// Who watches it.
+    pub observer: O,
+    /// How far it has come.
+    pub clock: Clocks,
+    /// What it is at.
+    pub standing: Standing,
+    /// What it asked for last.
+    pub request: Option<Request>,
+    /// What went wrong.
+    pub fault: Option<Fault>,
+    /// Where its clocks went.
+    pub used: ProcessorUse,
+    /// The work item that it is at.
+    pub work: Work,
+    /// Whether the first thing that its program does outside itself is a receive.
+    pub begins_by_receiving: bool,
+}
+
+impl<'a, O: Observer> Processor<'a, O> {
+    /// A processor after reset.
+    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32) -> Processor<'a, O> {
+        let initial = Buffer::new(&code.program.buffer, buffer_octets);
+        Processor {
+            code,
+            seat,
+            state: State::new(code, initial.clone()),
+            initial,
+            tally: Tally::new(code),
+            observer: O::new(code),
+            clock: Clocks(0),
+            standing: Standing::Asleep,
+            request: None,
+            fault: None,
+            used: ProcessorUse::default(),
+            work: Work::new(Clocks(0)),
+            begins_by_receiving: false,
+        }
+    }
+
+    /// Whether the program, from reset, comes to a receive before it does anything else outside itself. What runs for
+    /// that is not counted.
+    pub fn probe<T: Watch>(&self, shared: &mut Shared, arithmetic: &T) -> bool {
+        let mut state = State::new(self.code, self.initial.clone());
+        let mut station = Station::new(shared, self.seat.core, None);
+        let mut tally = Tally::new(self.code);
+        let mut nobody = Unobserved;
+        let pause = checked::run(self.code, self.seat, &mut state, arithmetic, &mut station, &mut tally, &mut nobody);
+        pause == Pause::Wait && station.request == Some(Request::Receive)
+    }
+
+    /// Runs the engine up to the next thing that concerns others, with leave for the one that it waits for, done at
+    /// the processor's clock, or without.
+    pub fn advance<T: Watch>(&mut self, shared: &mut Shared, arithmetic: &T, has_leave: bool) -> Advance {
+        let (clocks, steps) = (self.state.clocks, self.state.steps);
+        let mut station = Station::new(shared, self.seat.core, has_leave.then_some(self.clock));
+        let pause = checked::run(
+            self.code,
+            self.seat,
+            &mut self.state,
+            arithmetic,
+            &mut station,
+            &mut self.tally,
+            &mut self.observer,
+        );
+        self.request = station.request;
+        let taken = station.taken;
+        let spent = Clocks(self.state.clocks - clocks);
+        let steps = self.state.steps - steps;
+        self.clock += spent;
+        self.used.busy += spent;
+        self.used.instructions += steps;
+        self.work.has_acted |= has_leave;
+        Advance { pause, taken, steps }
+    }
+
+    /// Does nothing until a clock.
+    pub fn idle_until(&mut self, clock: Clocks) {
+        self.used.idle += clock - self.clock;
+        self.clock = clock;
+    }
+
+    /// Waits for the bus and its transfer until a clock.
+    pub fn wait_until(&mut self, granted: Clocks, end: Clocks) {
+        self.used.longest_wait = self.used.longest_wait.max(granted - self.clock);
+        self.used.waiting += end - self.clock;
+        self.clock = end;
+    }
+
+    /// Octets of the transfer that it asked for.
+    pub fn asked_octets(&self) -> Octets {
+        match self.request {
+            Some(Request::Transfer { octets, .. } | Request::Send { octets, .. }) => octets,
+            _ => Octets(0),
+        }
+    }
+
+    /// Something is next that needs no bus, at its clock.
+    pub fn act(&mut self, act: Act) {
+        self.standing = Standing::Acts { at: self.clock, act };
+    }
+
+    /// It went wrong at its clock.
+    pub fn stop(&mut self, fault: Fault) {
+        self.fault = Some(fault);
+        self.act(Act::Stop);
+    }
+
+    /// What it waits for, for a message about a deadlock.
+    pub fn waits_for(&self) -> String {
+        let what = match self.standing {
+            Standing::Blocked { to } => format!("waits until core {to} takes its last message"),
+            Standing::Listens => "waits for a message".to_owned(),
+            Standing::Meets => "waits at a barrier".to_owned(),
+            _ => "has more to do".to_owned(),
+        };
+        let place = self.code.program.place(self.state.pc).map_or(String::new(), |place| format!(" at {place}"));
+        format!("core {} {what}{place}", self.seat.core)
+    }
+}

@@ -1,0 +1,122 @@
+//! One program on one core with a memory of its own: no main processor, no other cores, a bus without rivals.
+
+use isa::diagnostic::Report;
+use isa::number::{Modes, Nearest32};
+use isa::{Isa, Program};
+
+use super::check_buffer;
+use super::config::Config;
+use super::mailbox::Mailboxes;
+use super::processor::Processor;
+use super::station::{Request, Shared};
+use crate::checked::{Pause, Seat, State};
+use crate::code::Code;
+use crate::exec::{Watch, Watching};
+use crate::octets::Memory;
+use crate::profile::{Observer, Profile, Profiler, Unobserved};
+use crate::quantity::Clocks;
+use crate::registers::Registers;
+use crate::tally::Tally;
+use crate::trap::{Fault, Trap};
+
+/// What is run.
+pub struct Single<'a> {
+    /// The machine; its number of cores and main processor play no part.
+    pub config: &'a Config,
+    /// The rows of the program.
+    pub isa: &'a Isa,
+    /// The program.
+    pub program: &'a Program,
+    /// Registers at the start.
+    pub registers: Registers,
+    /// Instructions that it may take.
+    pub step_limit: u64,
+    /// Whether calls are measured.
+    pub has_profile: bool,
+}
+
+/// How a program left the core, whether it halted or trapped.
+#[derive(Clone, Debug)]
+pub struct SingleRun {
+    /// Registers, buffer, program counter, instructions.
+    pub state: State,
+    /// Global memory.
+    pub memory: Memory,
+    /// Clocks, transfers included.
+    pub clocks: Clocks,
+    /// Clocks of transfers.
+    pub waiting: Clocks,
+    /// Passes through the program's exits.
+    pub tally: Tally,
+    /// Functions and regions, where a profile was asked for.
+    pub profile: Option<Profile>,
+    /// Why it stopped before its `halt`.
+    pub trap: Option<Trap>,
+}
+
+/// Runs a program to its `halt` or its trap. A message can only go to the core itself, which has number 0 of 1; waiting
+/// for one that cannot come is a deadlock.
+///
+/// # Errors
+/// A machine out of its ranges, or initial data that do not fit the buffer.
+pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
+    single.config.check()?;
+    check_buffer("a core", single.program, single.config.buffer_octets)?;
+    let arithmetic = &single.config.arithmetic;
+    let traps = arithmetic.trap_division_by_zero;
+    Ok(if arithmetic.modes() == Modes::default() && !traps {
+        run_on(single, memory, &Nearest32)
+    } else {
+        run_on(single, memory, &Watching::new(arithmetic.modes(), traps))
+    })
+}
+
+fn run_on<T: Watch>(single: &Single, memory: Memory, arithmetic: &T) -> SingleRun {
+    if single.has_profile {
+        run_observed::<T, Profiler>(single, memory, arithmetic)
+    } else {
+        run_observed::<T, Unobserved>(single, memory, arithmetic)
+    }
+}
+
+fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmetic: &T) -> SingleRun {
+    let code = Code::new(single.program, single.isa, single.config.timing());
+    let seat = Seat { core: 0, cores: 1, step_limit: single.step_limit };
+    let mut processor: Processor<O> = Processor::new(&code, seat, single.config.buffer_octets);
+    let mut shared = Shared { memory, mailboxes: Mailboxes::new(1) };
+    processor.state.registers = single.registers.clone();
+    processor.observer.begin(processor.state.pc);
+    let mut has_leave = false;
+    let fault = loop {
+        match processor.advance(&mut shared, arithmetic, has_leave).pause {
+            Pause::Halt => break None,
+            Pause::Fault(fault) => break Some(fault),
+            Pause::Wait => {}
+        }
+        let is_stuck = match processor.request {
+            Some(Request::Receive) => shared.mailboxes.next(0).is_none(),
+            Some(Request::Send { .. }) => shared.mailboxes.is_full(0, 0),
+            _ => false,
+        };
+        if is_stuck {
+            break Some(Fault::Deadlock);
+        }
+        let octets = processor.asked_octets();
+        if octets.0 != 0 {
+            let start = processor.clock;
+            processor.wait_until(start, start + single.config.bus.length(octets));
+        }
+        has_leave = true;
+    };
+    processor.observer.end();
+    let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, single.program));
+    SingleRun {
+        profile: processor.observer.into_profile(&code, &processor.tally),
+        state: processor.state,
+        memory: shared.memory,
+        clocks: processor.clock,
+        waiting: processor.used.waiting,
+        tally: processor.tally,
+        trap,
+    }
+}

@@ -1,0 +1,136 @@
+//! A core's link to the machine: it asks first, and acts when the machine says that its time has come.
+
+use super::mailbox::Mailboxes;
+use crate::exec::{Link, Message};
+use crate::octets::{Buffer, Memory};
+use crate::quantity::{Clocks, Octets};
+use crate::trap::{Fault, Stop};
+
+/// What a core waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// A transfer between it and global memory.
+    Transfer {
+        /// First octet in global memory.
+        address: u32,
+        /// Octets that go over the bus.
+        octets: Octets,
+    },
+    /// A message to another processor.
+    Send {
+        /// The receiver.
+        to: u32,
+        /// Octets that go over the bus.
+        octets: Octets,
+    },
+    /// A message for it.
+    Receive,
+    /// The others, at a barrier.
+    Barrier,
+}
+
+/// What all processors share.
+#[derive(Clone, Debug)]
+pub struct Shared {
+    /// Global memory.
+    pub memory: Memory,
+    /// Messages on their way.
+    pub mailboxes: Mailboxes,
+}
+
+/// The link of one core while its engine runs. An instruction is tried twice: without leave it only says what it asks
+/// for, so that range errors show at once; with leave it happens.
+#[derive(Debug)]
+pub struct Station<'a> {
+    /// What it shares with the others.
+    pub shared: &'a mut Shared,
+    /// Number of the processor.
+    pub processor: u32,
+    /// Leave for one instruction, with the clock at which it is done.
+    pub leave: Option<Clocks>,
+    /// What the core waits for, set when it stops to wait.
+    pub request: Option<Request>,
+    /// The message that was taken with this leave, and its sender.
+    pub taken: Option<(Message, u32)>,
+}
+
+impl<'a> Station<'a> {
+    /// A link with or without leave.
+    pub fn new(shared: &'a mut Shared, processor: u32, leave: Option<Clocks>) -> Station<'a> {
+        Station { shared, processor, leave, request: None, taken: None }
+    }
+
+    /// Uses up the leave, or notes what is asked for.
+    fn enter(&mut self, request: Request) -> Result<Clocks, Stop> {
+        self.leave.take().ok_or_else(|| {
+            self.request = Some(request);
+            Stop::Wait
+        })
+    }
+}
+
+fn transfer(address: u32, octets: u32) -> Request {
+    Request::Transfer { address, octets: Octets(octets.into()) }
+}
+
+impl Link for Station<'_> {
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let place = buffer.slice_mut(to, octets)?;
+        self.shared.memory.slice(from, octets)?;
+        self.enter(transfer(from, octets))?;
+        place.copy_from_slice(self.shared.memory.slice(from, octets)?);
+        Ok(())
+    }
+
+    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let data = buffer.slice(from, octets)?;
+        self.shared.memory.slice(to, octets)?;
+        self.enter(transfer(to, octets))?;
+        self.shared.memory.slice_mut(to, octets)?.copy_from_slice(data);
+        Ok(())
+    }
+
+    fn read(&mut self, address: u32) -> Result<i32, Stop> {
+        self.shared.memory.slice(address, 4)?;
+        self.enter(transfer(address, 4))?;
+        Ok(self.shared.memory.word(address)?)
+    }
+
+    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
+        let octets = 4 * words.len() as u32;
+        self.shared.memory.slice(address, octets)?;
+        self.enter(transfer(address, octets))?;
+        Ok(self.shared.memory.put_words(address, words)?)
+    }
+
+    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
+        self.shared.memory.slice(address, 4)?;
+        // It is read and written back in one transfer.
+        self.enter(transfer(address, 8))?;
+        let before = self.shared.memory.word(address)?;
+        self.shared.memory.put_words(address, &[before.wrapping_add(more)])?;
+        Ok(before)
+    }
+
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        let largest = self.shared.mailboxes.processors() - 1;
+        let receiver =
+            u32::try_from(to).ok().filter(|&to| to <= largest).ok_or(Fault::NoSuchCore { number: to, largest })?;
+        let arrival = self.enter(Request::Send { to: receiver, octets: Octets(message.octets().into()) })?;
+        self.shared.mailboxes.put(receiver, self.processor, arrival, message);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<(Message, u32), Stop> {
+        self.enter(Request::Receive)?;
+        let (_, sender) = self.shared.mailboxes.next(self.processor).ok_or(Stop::Wait)?;
+        let message = self.shared.mailboxes.take(self.processor, sender).ok_or(Stop::Wait)?;
+        self.taken = Some((message, sender));
+        Ok((message, sender))
+    }
+
+    fn barrier(&mut self) -> Result<(), Stop> {
+        self.enter(Request::Barrier)?;
+        Ok(())
+    }
+}

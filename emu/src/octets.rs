@@ -1,0 +1,190 @@
+//! Octets that programs address: a core's local buffer and the global memory. Who may touch them when is not said here.
+
+use isa::number::Vector;
+
+use crate::trap::Fault;
+
+/// What a work item finds where nobody has written: a pattern that stands out in a dump.
+pub const POISON: u8 = 0xa5;
+
+/// Where `length` octets from `address` on lie in something of `size` octets, if they do.
+#[inline]
+fn range(address: u32, length: u32, size: usize) -> Option<std::ops::Range<usize>> {
+    let start = address as usize;
+    let end = start.checked_add(length as usize)?;
+    (end <= size).then_some(start..end)
+}
+
+/// The local buffer of a core: octet addresses from 0, little-endian, any alignment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Buffer {
+    octets: Vec<u8>,
+}
+
+impl Buffer {
+    /// A buffer of `size` octets that starts with `image` and is poisoned beyond it; an image that is too long is cut.
+    pub fn new(image: &[u8], size: u32) -> Buffer {
+        let mut octets = image[..image.len().min(size as usize)].to_vec();
+        octets.resize(size as usize, POISON);
+        Buffer { octets }
+    }
+
+    /// Makes it equal to another one of the same size.
+    pub fn reset_to(&mut self, initial: &Buffer) {
+        self.octets.copy_from_slice(&initial.octets);
+    }
+
+    /// All octets.
+    pub fn octets(&self) -> &[u8] {
+        &self.octets
+    }
+
+    fn fault(&self, address: u32, octets: u32) -> Fault {
+        Fault::Buffer { address, octets, size: self.octets.len() as u32 }
+    }
+
+    /// `N` octets from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    #[inline]
+    pub fn get<const N: usize>(&self, address: u32) -> Result<[u8; N], Fault> {
+        let start = address as usize;
+        let slice = self.octets.get(start..start + N).and_then(|slice| slice.first_chunk());
+        slice.copied().ok_or_else(|| self.fault(address, N as u32))
+    }
+
+    /// Writes `N` octets from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer; nothing is written then.
+    #[inline]
+    pub fn put<const N: usize>(&mut self, address: u32, octets: [u8; N]) -> Result<(), Fault> {
+        let start = address as usize;
+        match self.octets.get_mut(start..start + N) {
+            Some(slice) => slice.copy_from_slice(&octets),
+            None => return Err(self.fault(address, N as u32)),
+        }
+        Ok(())
+    }
+
+    /// The 32 bits at `address`.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    #[inline]
+    pub fn word(&self, address: u32) -> Result<i32, Fault> {
+        Ok(i32::from_le_bytes(self.get(address)?))
+    }
+
+    /// The three words of 32 bits at `address`.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    #[inline]
+    pub fn vector(&self, address: u32) -> Result<Vector, Fault> {
+        let octets: [u8; 12] = self.get(address)?;
+        Ok(std::array::from_fn(|k| i32::from_le_bytes(std::array::from_fn(|at| octets[4 * k + at]))))
+    }
+
+    /// Writes three words of 32 bits at `address`.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    #[inline]
+    pub fn put_vector(&mut self, address: u32, vector: Vector) -> Result<(), Fault> {
+        let octets: [u8; 12] = std::array::from_fn(|at| vector[at / 4].to_le_bytes()[at % 4]);
+        self.put(address, octets)
+    }
+
+    /// `length` octets from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    pub fn slice(&self, address: u32, length: u32) -> Result<&[u8], Fault> {
+        match range(address, length, self.octets.len()) {
+            Some(range) => Ok(&self.octets[range]),
+            None => Err(self.fault(address, length)),
+        }
+    }
+
+    /// `length` octets from `address` on, to write.
+    ///
+    /// # Errors
+    /// A range that leaves the buffer.
+    pub fn slice_mut(&mut self, address: u32, length: u32) -> Result<&mut [u8], Fault> {
+        match range(address, length, self.octets.len()) {
+            Some(range) => Ok(&mut self.octets[range]),
+            None => Err(self.fault(address, length)),
+        }
+    }
+}
+
+/// Global memory: octet addresses from 0, little-endian, any alignment.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    octets: Vec<u8>,
+}
+
+impl Memory {
+    /// Memory that holds an image and nothing else.
+    pub fn new(image: Vec<u8>) -> Memory {
+        Memory { octets: image }
+    }
+
+    /// All octets.
+    pub fn octets(&self) -> &[u8] {
+        &self.octets
+    }
+
+    /// All octets, without a copy.
+    pub fn into_octets(self) -> Vec<u8> {
+        self.octets
+    }
+
+    /// `length` octets from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the memory.
+    #[inline]
+    pub fn slice(&self, address: u32, length: u32) -> Result<&[u8], Fault> {
+        match range(address, length, self.octets.len()) {
+            Some(range) => Ok(&self.octets[range]),
+            None => Err(Fault::Memory { address, octets: length, size: self.octets.len() as u64 }),
+        }
+    }
+
+    /// `length` octets from `address` on, to write.
+    ///
+    /// # Errors
+    /// A range that leaves the memory.
+    #[inline]
+    pub fn slice_mut(&mut self, address: u32, length: u32) -> Result<&mut [u8], Fault> {
+        let size = self.octets.len();
+        match range(address, length, size) {
+            Some(range) => Ok(&mut self.octets[range]),
+            None => Err(Fault::Memory { address, octets: length, size: size as u64 }),
+        }
+    }
+
+    /// The 32 bits at `address`.
+    ///
+    /// # Errors
+    /// A range that leaves the memory.
+    pub fn word(&self, address: u32) -> Result<i32, Fault> {
+        let slice = self.slice(address, 4)?;
+        Ok(i32::from_le_bytes(std::array::from_fn(|at| slice[at])))
+    }
+
+    /// Writes words of 32 bits from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the memory; nothing is written then.
+    pub fn put_words(&mut self, address: u32, words: &[i32]) -> Result<(), Fault> {
+        let slice = self.slice_mut(address, 4 * words.len() as u32)?;
+        for (place, word) in slice.chunks_exact_mut(4).zip(words) {
+            place.copy_from_slice(&word.to_le_bytes());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,178 @@
+//! What functions and regions cost: who is told of each instruction, and the totals that come of it.
+
+mod profiler;
+
+use isa::Counts;
+
+pub use profiler::Profiler;
+
+use crate::code::Code;
+use crate::exec::Motion;
+use crate::tally::Tally;
+
+/// Someone who is told of each executed instruction.
+pub trait Observer {
+    /// Whether engines have to tell at all.
+    const IS_ACTIVE: bool;
+
+    /// For a program.
+    fn new(code: &Code) -> Self;
+
+    /// A run begins at a word.
+    fn begin(&mut self, pc: u32);
+
+    /// The word at `pc` ended by exit `exit` (numbered over the whole program) with `units` units, and control goes to
+    /// `next`.
+    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion);
+
+    /// The run is over.
+    fn end(&mut self);
+
+    /// What it found, given the passes of the same runs.
+    fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile>;
+}
+
+/// Nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {
+    const IS_ACTIVE: bool = false;
+
+    fn new(_: &Code) -> Unobserved {
+        Unobserved
+    }
+
+    fn begin(&mut self, _: u32) {}
+
+    fn step(&mut self, _: u32, _: usize, _: u32, _: u32, _: Motion) {}
+
+    fn end(&mut self) {}
+
+    fn into_profile(self, _: &Code, _: &Tally) -> Option<Profile> {
+        None
+    }
+}
+
+/// What one function or region cost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RegionProfile {
+    /// Its name.
+    pub name: String,
+    /// Whether it is a function, entered by calls, or a region, entered by running into it.
+    pub is_function: bool,
+    /// The region around it, an index into [`Profile::regions`].
+    pub parent: Option<u16>,
+    /// How often it was entered.
+    pub calls: u64,
+    /// Instructions in it, inner regions and called functions left out.
+    pub instructions: u64,
+    /// Their operations.
+    pub exclusive: Counts,
+    /// Operations between entering and leaving it, all that was called included; of nested calls of itself only the
+    /// outermost counts.
+    pub inclusive: Counts,
+    /// Least of each class in one call, nested calls of itself being calls too; zero when there was none.
+    pub least: Counts,
+    /// Most of each class in one call.
+    pub most: Counts,
+    /// Least elementary operations in one call.
+    pub least_elementary: u64,
+    /// Most elementary operations in one call.
+    pub most_elementary: u64,
+}
+
+/// What the functions and regions of a program cost in a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Profile {
+    /// In the order of the program's regions.
+    pub regions: Vec<RegionProfile>,
+    /// Operations in no region. With the exclusive counts of all regions they add up to all operations of the run.
+    pub outside: Counts,
+    /// Instructions in no region.
+    pub outside_instructions: u64,
+}
+
+impl Profile {
+    /// The exclusive part, which the passes alone tell; nothing was entered.
+    pub fn exclusive(code: &Code, tally: &Tally) -> Profile {
+        let regions = code.program.regions.iter().map(|region| RegionProfile {
+            name: region.name.clone(),
+            is_function: region.is_function,
+            parent: region.parent,
+            calls: 0,
+            instructions: 0,
+            exclusive: Counts::ZERO,
+            inclusive: Counts::ZERO,
+            least: Counts::ZERO,
+            most: Counts::ZERO,
+            least_elementary: 0,
+            most_elementary: 0,
+        });
+        let mut profile = Profile { regions: regions.collect(), ..Profile::default() };
+        for pc in 0..code.slots().len() as u32 {
+            let word = tally.word(code, pc);
+            let region = code.program.region_of.get(pc as usize).copied().flatten();
+            match region.and_then(|region| profile.regions.get_mut(region as usize)) {
+                Some(region) => {
+                    region.instructions += word.instructions;
+                    region.exclusive += word.counts;
+                }
+                None => {
+                    profile.outside_instructions += word.instructions;
+                    profile.outside += word.counts;
+                }
+            }
+        }
+        profile
+    }
+
+    /// Adds the profile of other runs of the same program.
+    pub fn merge(&mut self, other: &Profile) {
+        for (region, more) in self.regions.iter_mut().zip(&other.regions) {
+            region.instructions += more.instructions;
+            region.exclusive += more.exclusive;
+            region.inclusive += more.inclusive;
+            if more.calls != 0 {
+                region.note_extremes(more.least, more.most, more.least_elementary, more.most_elementary);
+                region.calls += more.calls;
+            }
+        }
+        self.outside += other.outside;
+        self.outside_instructions += other.outside_instructions;
+    }
+
+    /// Operations of the whole run.
+    pub fn total(&self) -> Counts {
+        self.regions.iter().fold(self.outside, |total, region| total + region.exclusive)
+    }
+}
+
+impl RegionProfile {
+    /// Widens least and most; before `calls` counts the calls that they come from.
+    fn note_extremes(&mut self, least: Counts, most: Counts, least_elementary: u64, most_elementary: u64) {
+        if self.calls == 0 {
+            (self.least, self.most) = (least, most);
+            (self.least_elementary, self.most_elementary) = (least_elementary, most_elementary);
+            return;
+        }
+        for (at, count) in self.least.0.iter_mut().enumerate() {
+            *count = least.0[at].min(*count);
+        }
+        for (at, count) in self.most.0.iter_mut().enumerate() {
+            *count = most.0[at].max(*count);
+        }
+        self.least_elementary = self.least_elementary.min(least_elementary);
+        self.most_elementary = self.most_elementary.max(most_elementary);
+    }
+
+    /// One call is over.
+    fn note_call(&mut self, cost: Counts, is_outermost: bool) {
+        let elementary = cost.elementary();
+        self.note_extremes(cost, cost, elementary, elementary);
+        self.calls += 1;
+        if is_outermost {
+            self.inclusive += cost;
+        }
+    }
+}

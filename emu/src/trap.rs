@@ -1,0 +1,190 @@
+//! What stops a program that did not end by itself, and how that is told to a person.
+
+use std::fmt;
+
+use isa::Program;
+use isa::diagnostic::{Diagnostic, Place};
+
+/// What went wrong, without where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The word is no instruction.
+    IllegalWord(u32),
+    /// The row of an extension for which no meaning was loaded.
+    NoMeaning(u32),
+    /// The program counter left the program, which has this many words.
+    OutsideProgram {
+        /// Words of the program.
+        words: u32,
+    },
+    /// An access that leaves the local buffer.
+    Buffer {
+        /// First octet.
+        address: u32,
+        /// How many.
+        octets: u32,
+        /// Octets of the buffer.
+        size: u32,
+    },
+    /// An access that leaves global memory.
+    Memory {
+        /// First octet.
+        address: u32,
+        /// How many.
+        octets: u32,
+        /// Octets of the memory.
+        size: u64,
+    },
+    /// The program executed `trap`, with this number.
+    User(u32),
+    /// A message of another length than the receiver asked for.
+    MessageSize {
+        /// Octets that were sent.
+        sent: u32,
+        /// Octets that the receiver takes.
+        expected: u32,
+    },
+    /// A message for a core that does not exist.
+    NoSuchCore {
+        /// The number that was asked for.
+        number: i32,
+        /// The largest number there is.
+        largest: u32,
+    },
+    /// Every core waits for another one.
+    Deadlock,
+    /// More instructions than a work item may take.
+    StepLimit(u64),
+    /// A division by zero, where the machine traps on it.
+    DivisionByZero,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Fault::IllegalWord(word) => write!(f, "the word {word:#010x} is no instruction"),
+            Fault::NoMeaning(word) => write!(f, "the extension instruction {word:#010x} has no meaning"),
+            Fault::OutsideProgram { words } => write!(f, "the program counter left the program of {words} words"),
+            Fault::Buffer { address, octets, size } => {
+                write!(f, "octets {} of the buffer, which has {size}", span(address, octets))
+            }
+            Fault::Memory { address, octets, size } => {
+                write!(f, "octets {} of global memory, which has {size}", span(address, octets))
+            }
+            Fault::User(number) => write!(f, "trap {number}"),
+            Fault::MessageSize { sent, expected } => {
+                write!(f, "a message of {sent} octets where one of {expected} is received")
+            }
+            Fault::NoSuchCore { number, largest } => {
+                write!(f, "a message for core {number}, where the largest number is {largest}")
+            }
+            Fault::Deadlock => write!(f, "every core waits for another one"),
+            Fault::StepLimit(limit) => write!(f, "more than {limit} instructions in a work item"),
+            Fault::DivisionByZero => write!(f, "division by zero"),
+        }
+    }
+}
+
+/// `address..end`, the end without wrapping.
+fn span(address: u32, octets: u32) -> String {
+    format!("{address}..{}", u64::from(address) + u64::from(octets))
+}
+
+/// Why an instruction was not executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// Something is wrong.
+    Fault(Fault),
+    /// The machine is not ready; the instruction is to be tried again.
+    Wait,
+}
+
+impl From<Fault> for Stop {
+    fn from(fault: Fault) -> Stop {
+        Stop::Fault(fault)
+    }
+}
+
+/// A fault with the place where it happened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trap {
+    /// What went wrong.
+    pub kind: Fault,
+    /// Number of the core; the main processor is the number of cores.
+    pub core: u32,
+    /// Word of the instruction.
+    pub pc: u32,
+    /// Name of the function around it.
+    pub function: Option<String>,
+    /// `file:line` of the instruction.
+    pub place: Option<String>,
+    /// Its source line.
+    pub line: Option<Place>,
+    /// What else is known: the work item, what others wait for. Empty when nothing is.
+    pub detail: String,
+}
+
+impl Trap {
+    /// The trap of a fault at word `pc` of a program.
+    pub fn new(kind: Fault, core: u32, pc: u32, program: &Program) -> Trap {
+        let function = program.function(pc).map(str::to_owned);
+        Trap {
+            kind,
+            core,
+            pc,
+            function,
+            place: program.place(pc),
+            line: line_place(program, pc),
+            detail: String::new(),
+        }
+    }
+
+    /// The same with more to say.
+    pub fn with_detail(mut self, detail: impl Into<String>) -> Trap {
+        self.detail = detail.into();
+        self
+    }
+
+    /// Exit code of a command that ends with this trap: 5 for a step limit, else 3.
+    pub fn exit_code(&self) -> u8 {
+        if matches!(self.kind, Fault::StepLimit(_)) { 5 } else { 3 }
+    }
+
+    /// The message with the source line.
+    pub fn diagnostic(&self) -> Diagnostic {
+        let message = Diagnostic::error(self.to_string());
+        match &self.line {
+            Some(line) => message.at(line.clone(), "stopped here"),
+            None => message,
+        }
+    }
+}
+
+impl fmt::Display for Trap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, on core {} at word {}", self.kind, self.core, self.pc)?;
+        if let Some(function) = &self.function {
+            write!(f, " in `{function}`")?;
+        }
+        if let Some(place) = &self.place {
+            write!(f, " ({place})")?;
+        }
+        if !self.detail.is_empty() {
+            write!(f, "; {}", self.detail)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Trap {}
+
+/// The source line of a word, without the blanks around it.
+fn line_place(program: &Program, pc: u32) -> Option<Place> {
+    let line = program.lines.get(pc as usize)?;
+    let source = program.sources.get(line.source as usize)?;
+    let before = line.line.checked_sub(1)? as usize;
+    let start: usize = source.text.split_inclusive('\n').take(before).map(str::len).sum();
+    let text = source.text[start..].lines().next()?;
+    let blanks = text.len() - text.trim_start().len();
+    Some(Place::new(source, start + blanks..start + blanks + text.trim().len()))
+}

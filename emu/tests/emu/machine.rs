@@ -1,0 +1,79 @@
+//! Cores, messages and the bus together.
+
+use emu::machine::{self, Config, Frame, Options, Setup};
+use emu::octets::Memory;
+use isa::{Isa, Op, Program};
+
+use super::builder::program;
+
+/// Main program that hands out `items` pieces of work, one at a time to each core, and stores what comes back.
+///
+/// The answer's first vector holds the number of the item, which is also where its word of the answer goes.
+pub fn dispatch(items: i32) -> Program {
+    program(|p| {
+        let (feed, drain, done) = (p.label(), p.label(), p.label());
+        p.emit(Op::movi, &[1, 0]).constant(2, items).emit(Op::cores, &[3]).emit(Op::movi, &[4, 0]);
+        // s1 next item, s4 answers so far, s5 core to feed first.
+        p.emit(Op::movi, &[5, 0]);
+        p.place(feed);
+        p.branch(Op::bge, &[5, 3], drain);
+        p.branch(Op::bge, &[1, 2], drain);
+        p.emit(Op::vsplat, &[0, 1]).emit(Op::send5, &[5, 0]);
+        p.emit(Op::iaddi, &[1, 1, 1]).emit(Op::iaddi, &[5, 5, 1]);
+        p.branch(Op::jump, &[], feed);
+        p.place(drain);
+        p.branch(Op::beq, &[4, 2], done);
+        p.emit(Op::recv2, &[8, 6]);
+        p.emit(Op::vget, &[7, 8, 0]).emit(Op::vget, &[8, 9, 0]);
+        p.emit(Op::slli, &[7, 7, 2]).emit(Op::stw, &[8, 7, 0]);
+        p.emit(Op::iaddi, &[4, 4, 1]);
+        p.branch(Op::bge, &[1, 2], drain);
+        p.emit(Op::vsplat, &[0, 1]).emit(Op::send5, &[6, 0]).emit(Op::iaddi, &[1, 1, 1]);
+        p.branch(Op::jump, &[], drain);
+        p.place(done);
+        p.emit(Op::halt, &[]);
+    })
+}
+
+/// Core program: `segments` times some computation and a load, then the answer 3 n + 1.
+pub fn worker(segments: i32, spin: i32, octets: i32) -> Program {
+    program(|p| {
+        p.emit(Op::recv5, &[0, 20]);
+        p.constant(3, octets);
+        p.repeat(1, segments, |p| {
+            p.repeat(2, spin, |_| {});
+            p.emit(Op::load, &[0, 0, 3]);
+        });
+        p.emit(Op::vget, &[4, 0, 0]).emit(Op::iadd, &[5, 4, 4]).emit(Op::iadd, &[5, 5, 4]).emit(Op::iaddi, &[5, 5, 1]);
+        p.emit(Op::vmov, &[6, 0]).emit(Op::vsplat, &[7, 5]);
+        p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+    })
+}
+
+pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> Frame {
+    let isa = Isa::base();
+    let options = Options { has_profile: true, has_items: true };
+    let setup = Setup { config, isa: &isa, core, main, kinds: vec![(0..400, "answer".to_owned())], options };
+    match machine::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
+        Ok(frame) => frame,
+        Err(failure) => panic!("{}", failure.report().render(false)),
+    }
+}
+
+#[test]
+fn work_goes_out_and_answers_come_back_on_any_number_of_cores() {
+    let (core, main) = (worker(3, 10, 100), dispatch(50));
+    for cores in [1, 2, 3, 4, 8] {
+        let config = Config { cores, ..Config::default() };
+        let frame = run(&config, &core, &main, 1000);
+        for item in 0..50 {
+            assert_eq!(frame.memory.word(4 * item), Ok(3 * item as i32 + 1), "item {item} on {cores} cores");
+        }
+        assert_eq!(frame.item_count, 50);
+        assert_eq!(frame.items.len(), 50);
+        assert_eq!(frame.asked, frame.bus.moved);
+        for used in &frame.processors {
+            assert_eq!(used.busy + used.waiting + used.idle, frame.clocks);
+        }
+    }
+}

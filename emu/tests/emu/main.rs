@@ -1,0 +1,4 @@
+//! Programs on the machine, and what they must do, take and count.
+
+mod builder;
+mod machine;

@@ -1,0 +1,386 @@
+//! The two passes: the first reads all lines, places words and octets and encodes what is known; the second encodes
+//! what had to wait for names defined further on.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use isa::diagnostic::{Report, Source};
+use isa::program::Line as ProgramLine;
+use isa::table::Op;
+use isa::{Isa, Program};
+
+use crate::Options;
+use crate::cursor::Cursor;
+use crate::definition::Alias;
+use crate::directive::DIRECTIVES;
+use crate::explain;
+use crate::expression::Expression;
+use crate::frame::{Frame, Origin, file_lines};
+use crate::instruction::Argument;
+use crate::limits::{FRACTION_BITS, SOURCES, TEXT_OCTETS, WORDS};
+use crate::line::Line;
+use crate::macros::Macro;
+use crate::message::{Among, At, Messages, Parsed, Problem};
+use crate::pseudo::PSEUDOS;
+use crate::region::OpenRegion;
+use crate::structure::Structure;
+use crate::symbol::{Meaning, Names};
+use crate::token::{Kind, tokens};
+
+/// Where statements go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Section {
+    /// Instruction words.
+    Code,
+    /// The initial contents of the local buffer.
+    Buffer,
+}
+
+/// What is put in when all names are known.
+#[derive(Debug)]
+pub(crate) enum Fixup {
+    Instruction { op: Op, arguments: Vec<Argument>, pc: usize },
+    Word { expression: Expression, pc: usize },
+    Data { expression: Expression, octet: usize, width: usize },
+}
+
+/// Everything that is known while assembling.
+pub(crate) struct Assembler<'a> {
+    pub isa: &'a Isa,
+    pub options: &'a Options<'a>,
+    pub operations: HashMap<&'a str, Op>,
+    pub nop: u32,
+    pub program: Program,
+    pub messages: Messages,
+    pub names: Names,
+    pub macros: HashMap<Rc<str>, Rc<Macro>>,
+    pub aliases: Vec<HashMap<Rc<str>, Alias>>,
+    pub frames: Vec<Frame>,
+    pub section: Section,
+    pub structure: Option<Structure>,
+    pub regions: Vec<OpenRegion>,
+    pub known_regions: HashMap<(String, bool, Option<u16>), u16>,
+    pub numeric: HashMap<Rc<str>, u32>,
+    pub fixups: Vec<Fixup>,
+    pub asserts: Vec<(Expression, String, At)>,
+    pub entry: Option<Expression>,
+    included: HashMap<(String, u16), u16>,
+    pub expansions: usize,
+    pub lines_read: usize,
+    pub octets_read: usize,
+    /// Some text could not be read, so that missing names say nothing.
+    pub is_incomplete: bool,
+    pub is_last_pass: bool,
+}
+
+/// Assembles a source as far as possible; the program is whole when the report has no errors.
+pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> (Program, Report) {
+    let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.row(op).name, op)).collect();
+    let nop = operations.get("mov").and_then(|&op| isa.encode(op, &[0, 0]).ok()).unwrap_or(0);
+    let mut assembler = Assembler {
+        isa,
+        options,
+        operations,
+        nop,
+        program: Program::default(),
+        messages: Messages::default(),
+        names: Names::default(),
+        macros: HashMap::new(),
+        aliases: vec![HashMap::new()],
+        frames: Vec::new(),
+        section: Section::Code,
+        structure: None,
+        regions: Vec::new(),
+        known_regions: HashMap::new(),
+        numeric: HashMap::new(),
+        fixups: Vec::new(),
+        asserts: Vec::new(),
+        entry: None,
+        included: HashMap::new(),
+        expansions: 0,
+        lines_read: 0,
+        octets_read: 0,
+        is_incomplete: false,
+        is_last_pass: false,
+    };
+    assembler.take_options(source);
+    assembler.first_pass(source);
+    assembler.second_pass();
+    assembler.finish()
+}
+
+impl Assembler<'_> {
+    fn take_options(&mut self, source: &Arc<Source>) {
+        self.program.sources.push(source.clone());
+        for (text, value) in &self.options.defines {
+            let name = self.names.intern(text);
+            self.names.set(name, Meaning::Constant(*value), None);
+        }
+        for (text, bits) in &self.options.formats {
+            if (0..=FRACTION_BITS).contains(bits) {
+                let name = self.names.intern(text);
+                self.names.set_format(name, *bits as u32);
+            } else {
+                let message =
+                    format!("the format `{text}` cannot have {bits} fraction bits, only 0 to {FRACTION_BITS}");
+                let mut problem = Problem::new(explain::RANGE, message, At::default(), "");
+                problem.at = None;
+                self.messages.add(problem);
+            }
+        }
+    }
+
+    fn first_pass(&mut self, source: &Arc<Source>) {
+        if source.text.len() > TEXT_OCTETS {
+            let message = format!("the file is longer than {TEXT_OCTETS} octets");
+            self.messages.add(Problem::new(explain::SIZE, message, At::default(), "starts here"));
+            return;
+        }
+        self.frames.push(Frame::new(file_lines(&source.text, 0), Origin::File(0)));
+        while let Some(line) = self.fetch() {
+            self.line(&line);
+        }
+        if self.is_incomplete {
+            return;
+        }
+        for open in std::mem::take(&mut self.regions) {
+            self.messages.add(open.unclosed());
+        }
+        if let Some(open) = self.structure.take() {
+            self.messages.add(Problem::new(explain::UNCLOSED, "`.endstruct` is missing", open.at, "opened here"));
+        }
+    }
+
+    fn line(&mut self, line: &Line) {
+        if self.is_skipping() {
+            let word = crate::frame::leading_directive(&line.text);
+            let matters = word.is_some_and(|word| word.starts_with(".if") || word.starts_with(".e"));
+            if !matters {
+                return;
+            }
+        }
+        let (tokens, unreadable) = tokens(&line.text);
+        let mut cursor = Cursor { line, tokens: &tokens, position: 0 };
+        if let Some(unreadable) = &unreadable
+            && !self.is_skipping()
+        {
+            let at = line.at(unreadable.start, unreadable.end);
+            self.messages.add(Problem::new(unreadable.code, &*unreadable.message, at, unreadable.label));
+            self.messages.is_muted = true;
+        }
+        let result = self.statement(&mut cursor);
+        if let Err(problem) = result {
+            self.messages.add(problem);
+        }
+        self.messages.is_muted = false;
+    }
+
+    fn statement(&mut self, cursor: &mut Cursor) -> Parsed<()> {
+        let is_skipping = self.is_skipping();
+        while let (Some(first), Some(second)) = (cursor.peek(), cursor.peek_second()) {
+            let is_name = matches!(first.kind, Kind::Name | Kind::Directive | Kind::Integer);
+            if !is_name || second.kind != Kind::Mark(":") {
+                break;
+            }
+            cursor.skip();
+            cursor.skip();
+            if !is_skipping {
+                self.label(first.kind, cursor.text(first), cursor.at(first));
+            }
+        }
+        let Some(first) = cursor.peek() else { return Ok(()) };
+        let (text, at) = (cursor.text(first), cursor.at(first));
+        if is_skipping {
+            let steers =
+                matches!(text, ".if" | ".ifdef" | ".ifndef" | ".ifb" | ".ifnb" | ".elseif" | ".else" | ".endif");
+            if !steers {
+                return Ok(());
+            }
+        }
+        match first.kind {
+            Kind::Directive => {
+                cursor.skip();
+                self.directive(text, at, cursor)
+            }
+            Kind::Name if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("=")) => {
+                self.assign("=", cursor)
+            }
+            Kind::Name if !self.macros.contains_key(text) && !self.takes_instructions() => {
+                Err(self.no_instruction_here(text, at))
+            }
+            Kind::Name => {
+                cursor.skip();
+                self.instruction(text, at, cursor);
+                Ok(())
+            }
+            _ => Err(cursor.expected("an instruction, a directive or a label")),
+        }
+    }
+
+    fn label(&mut self, kind: Kind, text: &str, at: At) {
+        if let Some(open) = &self.structure {
+            let message = format!("the label `{text}` stands in a structure");
+            self.messages.add(
+                Problem::new(explain::SECTION, message, at, "no place for a label").also(Some(open.at), "opened here"),
+            );
+        } else if kind == Kind::Integer && !text.bytes().all(|c| c.is_ascii_digit()) {
+            let message = format!("`{text}` cannot be a label");
+            self.messages.add(Problem::new(explain::SYNTAX, message, at, "a name, or a decimal number"));
+        } else {
+            self.define_label(text, at);
+        }
+    }
+
+    fn takes_instructions(&self) -> bool {
+        self.section == Section::Code && self.structure.is_none()
+    }
+
+    fn no_instruction_here(&mut self, text: &str, at: At) -> Box<Problem> {
+        if let Some(open) = &self.structure {
+            let message = format!("`{text}` does not stand in a structure");
+            return Problem::new(explain::SECTION, message, at, "in a structure")
+                .also(Some(open.at), "opened here")
+                .hint("`.endstruct` ends the structure");
+        }
+        let is_known = self.operations.contains_key(text) || crate::pseudo::find(text).is_some();
+        if is_known {
+            let message = format!("the instruction `{text}` stands in the buffer");
+            return Problem::new(explain::SECTION, message, at, "the section is the buffer here")
+                .hint("write `.text` before code");
+        }
+        let message = format!("`{text}` is not an instruction");
+        Problem::new(explain::INSTRUCTION, message, at, "unknown mnemonic").suggest(text, Among::Instructions)
+    }
+
+    /// The current place: in words in the code, in octets in the buffer.
+    pub(crate) fn location(&self) -> i64 {
+        match self.section {
+            Section::Code => self.program.words.len() as i64,
+            Section::Buffer => self.program.buffer.len() as i64,
+        }
+    }
+
+    /// Appends a word to the code.
+    pub(crate) fn emit(&mut self, word: u32, line: &Line) {
+        if self.program.words.len() >= WORDS {
+            let message = format!("the program has more than {WORDS} words");
+            self.give_up(Problem::new(explain::SIZE, message, line.at_all(), "one too many"));
+            return;
+        }
+        self.program.words.push(word);
+        self.program.lines.push(ProgramLine { source: line.source, line: line.number });
+        self.program.region_of.push(self.regions.last().map(|open| open.index));
+    }
+
+    /// Reads another file here.
+    pub(crate) fn include_file(&mut self, name: &str, at: At) -> Parsed<()> {
+        let refuse = |assembler: &mut Self, code, message: String, label: String| {
+            assembler.is_incomplete = true;
+            Err(Problem::new(code, message, at, label))
+        };
+        let from = at.source;
+        let known = self.included.get(&(name.to_string(), from)).copied();
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let source = match (self.options.include)(name, &self.program.sources[from as usize].name) {
+                    Ok(source) => source,
+                    Err(why) => return refuse(self, explain::INCLUDE, format!("cannot include `{name}`"), why),
+                };
+                let same = self.program.sources.iter().position(|other| other.name == source.name);
+                let index = same.unwrap_or(self.program.sources.len());
+                if index > SOURCES {
+                    let message = format!("the program has more than {SOURCES} files");
+                    return refuse(self, explain::SIZE, message, "one too many".into());
+                }
+                if source.text.len() > TEXT_OCTETS {
+                    let message = format!("`{name}` is longer than {TEXT_OCTETS} octets");
+                    return refuse(self, explain::SIZE, message, "included here".into());
+                }
+                if same.is_none() {
+                    self.program.sources.push(source);
+                }
+                self.included.insert((name.to_string(), from), index as u16);
+                index as u16
+            }
+        };
+        if self.frames.iter().any(|frame| frame.origin == Origin::File(index)) {
+            let message = format!("`{name}` includes itself");
+            return refuse(self, explain::DEPTH, message, "it is being read already".into());
+        }
+        let text = self.program.sources[index as usize].clone();
+        self.enter(Frame::new(file_lines(&text.text, index), Origin::File(index)), at);
+        Ok(())
+    }
+
+    fn second_pass(&mut self) {
+        self.is_last_pass = true;
+        self.resolve_pending();
+        for fixup in std::mem::take(&mut self.fixups) {
+            match fixup {
+                Fixup::Instruction { op, arguments, pc } => match self.encode(op, &arguments, pc) {
+                    Ok(word) => self.program.words[pc] = word,
+                    Err(failures) => failures.into_iter().for_each(|failure| self.report_failure(failure)),
+                },
+                Fixup::Word { expression, pc } => match self.data_value(4, &expression) {
+                    Ok(value) => self.program.words[pc] = value as u32,
+                    Err(failure) => self.report_failure(failure),
+                },
+                Fixup::Data { expression, octet, width } => match self.data_value(width, &expression) {
+                    Ok(value) => {
+                        self.program.buffer[octet..octet + width].copy_from_slice(&value.to_le_bytes()[..width]);
+                    }
+                    Err(failure) => self.report_failure(failure),
+                },
+            }
+        }
+        for (expression, text, _) in std::mem::take(&mut self.asserts) {
+            match self.evaluate(&expression) {
+                Ok(0) => self.messages.add(Problem::new(explain::ASSERTED, text, expression.at, "this is 0")),
+                Ok(_) => {}
+                Err(failure) => self.report_failure(failure),
+            }
+        }
+        self.resolve_entry();
+    }
+
+    fn finish(mut self) -> (Program, Report) {
+        for (_, text, symbol) in self.names.symbols() {
+            let value = match symbol.meaning {
+                Meaning::Code(value) | Meaning::Buffer(value) | Meaning::Constant(value) => value,
+                Meaning::Variable(value, _) => value,
+                Meaning::Pending(_) | Meaning::Broken => continue,
+            };
+            if !text.contains(['$', '#']) {
+                self.program.symbols.insert(text.to_string(), value);
+            }
+        }
+        let registers: Vec<String> = [('s', 32), ('v', 32), ('w', 8)]
+            .into_iter()
+            .flat_map(|(file, count)| (0..count).map(move |number| format!("{file}{number}")))
+            .collect();
+        let known = |among: Among| -> Vec<&str> {
+            match among {
+                Among::Instructions => (self.operations.keys().copied())
+                    .chain(PSEUDOS.iter().map(|pseudo| pseudo.name))
+                    .chain(self.macros.keys().map(|name| &**name))
+                    .collect(),
+                Among::Directives => DIRECTIVES.iter().flat_map(|d| d.also.iter().copied().chain([d.name])).collect(),
+                Among::Symbols => {
+                    let symbols = self.names.symbols().map(|(_, text, _)| &**text);
+                    symbols.filter(|text| !text.contains(['$', '#'])).chain(self.names.formats()).collect()
+                }
+                Among::Formats => self.names.formats().collect(),
+                Among::Sizes => self.names.sized().collect(),
+                Among::Registers => {
+                    let aliases = self.aliases.iter().flat_map(|scope| scope.keys().map(|name| &**name));
+                    aliases.chain(registers.iter().map(String::as_str)).collect()
+                }
+            }
+        };
+        let messages = std::mem::take(&mut self.messages);
+        let report = messages.report(&self.program.sources, known);
+        (self.program, report)
+    }
+}

@@ -1,0 +1,285 @@
+//! What expressions are worth. All arithmetic is on 64 bits with the sign; what does not fit is an error.
+
+use std::collections::HashSet;
+use std::rc::Rc;
+
+use crate::assembler::Assembler;
+use crate::explain;
+use crate::expression::{Binary, Expression, Function, Step};
+use crate::message::{Among, At, Parsed, Problem};
+use crate::symbol::{Meaning, Name};
+
+/// Why an expression has no value.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// A name that may be defined further on.
+    Later(Step, At),
+    /// The reason has been reported already.
+    Reported,
+    /// The arithmetic fails whatever follows.
+    Wrong(Box<Problem>),
+}
+
+/// Result of a checked operation; the error is the sentence about it and its code.
+pub(crate) type Checked = Result<i64, (&'static str, &'static str)>;
+
+const OVERFLOW: (&str, &str) = (explain::OVERFLOW, "the result does not fit 64 bits");
+
+/// Applies an operator.
+pub(crate) fn binary(operator: Binary, a: i64, b: i64) -> Checked {
+    let shift = || u32::try_from(b).ok().filter(|&count| count < 64).ok_or((explain::SHIFT, "shifts go from 0 to 63"));
+    let divided = |result: Option<i64>| {
+        if b == 0 { Err((explain::DIVISION, "division by zero")) } else { result.ok_or(OVERFLOW) }
+    };
+    match operator {
+        Binary::Or => Ok(a | b),
+        Binary::ExclusiveOr => Ok(a ^ b),
+        Binary::And => Ok(a & b),
+        Binary::Equal => Ok((a == b).into()),
+        Binary::Different => Ok((a != b).into()),
+        Binary::Less => Ok((a < b).into()),
+        Binary::LessOrEqual => Ok((a <= b).into()),
+        Binary::Greater => Ok((a > b).into()),
+        Binary::GreaterOrEqual => Ok((a >= b).into()),
+        Binary::Left => shift().and_then(|count| {
+            let shifted = a << count;
+            if shifted >> count == a { Ok(shifted) } else { Err(OVERFLOW) }
+        }),
+        Binary::Right => shift().map(|count| a >> count),
+        Binary::Add => a.checked_add(b).ok_or(OVERFLOW),
+        Binary::Subtract => a.checked_sub(b).ok_or(OVERFLOW),
+        Binary::Multiply => a.checked_mul(b).ok_or(OVERFLOW),
+        Binary::Divide => divided(a.checked_div(b)),
+        Binary::Remainder => divided(a.checked_rem(b)),
+    }
+}
+
+/// Applies a function; `b` is 0 where it takes one number.
+pub(crate) fn function(function: Function, a: i64, b: i64) -> Checked {
+    let word = |half: i64| {
+        let fits = (-(1 << 31)..1 << 32).contains(&a);
+        if fits { Ok(half) } else { Err((explain::RANGE, "the number does not fit 32 bits")) }
+    };
+    match function {
+        Function::Min => Ok(a.min(b)),
+        Function::Max => Ok(a.max(b)),
+        Function::Abs => a.checked_abs().ok_or(OVERFLOW),
+        Function::Bits if a < 0 => Err((explain::OVERFLOW, "`bits` takes a number that is not negative")),
+        Function::Bits => Ok(i64::from(64 - a.leading_zeros())),
+        Function::Low => word(i64::from(a as i16)),
+        Function::High => word(a >> 16 & 0xffff),
+    }
+}
+
+impl Assembler<'_> {
+    /// The value of an expression as far as it is known.
+    pub(crate) fn evaluate(&self, expression: &Expression) -> Result<i64, Failure> {
+        if let [(Step::Number(value), _)] = expression.steps[..] {
+            return Ok(value);
+        }
+        let mut stack: Vec<i64> = Vec::with_capacity(8);
+        let mut next = 0;
+        while let Some((step, at)) = expression.steps.get(next) {
+            next += 1;
+            let checked = |result: Checked| {
+                result.map_err(|(code, message)| Failure::Wrong(Problem::new(code, message, *at, "here")))
+            };
+            let mut pop = || stack.pop().expect("the parser pushes operands before operators");
+            let value = match step {
+                Step::Number(value) => *value,
+                Step::Symbol(name) => self.symbol_value(*name, step, *at)?,
+                Step::Size(name) => self.names.size(*name).ok_or_else(|| Failure::Later(step.clone(), *at))?,
+                Step::Fixed(decimal, format) => {
+                    let bits = self.names.format(*format).ok_or_else(|| Failure::Later(step.clone(), *at))?;
+                    checked(decimal.to_fixed(bits).ok_or(OVERFLOW))?
+                }
+                Step::Negate => checked(pop().checked_neg().ok_or(OVERFLOW))?,
+                Step::Complement => !pop(),
+                Step::Not => i64::from(pop() == 0),
+                Step::Truth => i64::from(pop() != 0),
+                Step::UnlessZero(end) => {
+                    if pop() != 0 {
+                        continue;
+                    }
+                    next = *end;
+                    0
+                }
+                Step::IfZero(end) => {
+                    if pop() == 0 {
+                        continue;
+                    }
+                    next = *end;
+                    1
+                }
+                Step::Binary(operator) => {
+                    let b = pop();
+                    checked(binary(*operator, pop(), b))?
+                }
+                Step::Function(name) => {
+                    let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
+                    checked(function(*name, pop(), b))?
+                }
+            };
+            stack.push(value);
+        }
+        Ok(stack.pop().expect("an expression has a value"))
+    }
+
+    fn symbol_value(&self, name: Name, step: &Step, at: At) -> Result<i64, Failure> {
+        let later = || Failure::Later(step.clone(), at);
+        match self.names.get(name).map(|symbol| &symbol.meaning) {
+            None => self.names.format(name).map(i64::from).ok_or_else(later),
+            Some(Meaning::Code(value) | Meaning::Buffer(value) | Meaning::Constant(value)) => Ok(*value),
+            Some(Meaning::Pending(_)) => Err(later()),
+            Some(Meaning::Broken) => Err(Failure::Reported),
+            Some(Meaning::Variable(value, times)) => {
+                if self.is_last_pass && *times > 1 {
+                    let text = self.names.text(name);
+                    return Err(Failure::Wrong(
+                        Problem::new(explain::UNSET, format!("`{text}` is used before it is set"), at, "not set yet")
+                            .hint("it is set more than once, so that its value depends on the place"),
+                    ));
+                }
+                Ok(*value)
+            }
+        }
+    }
+
+    /// Puts the numbers of names that may change into an expression that is evaluated later.
+    pub(crate) fn settle(&self, expression: &mut Expression) {
+        for (step, _) in &mut expression.steps {
+            if let Step::Symbol(name) = step
+                && let Some(Meaning::Variable(value, _)) = self.names.get(*name).map(|symbol| &symbol.meaning)
+            {
+                *step = Step::Number(*value);
+            }
+        }
+    }
+
+    /// The value of an expression that decides the layout; `None` when that was reported.
+    ///
+    /// # Errors
+    /// What is wrong with it, or the name that is not known at this line.
+    pub(crate) fn value_now(&self, expression: &Expression) -> Parsed<Option<i64>> {
+        match self.evaluate(expression) {
+            Ok(value) => Ok(Some(value)),
+            Err(Failure::Reported) => Ok(None),
+            Err(Failure::Wrong(problem)) => Err(problem),
+            Err(Failure::Later(step, at)) => match self.later_place(&step) {
+                Some(place) => Err(Problem::new(
+                    explain::LAYOUT,
+                    "the value must be known at this line",
+                    at,
+                    "depends on what is defined further on",
+                )
+                .also(place, "defined here")
+                .hint("the layout of the program depends on it: define the names that it uses before this line")),
+                None if self.is_incomplete => Ok(None),
+                None => {
+                    let mut problem = self.undefined(&step, at);
+                    problem.hint =
+                        Some("the layout of the program depends on it: it must be defined before this line".into());
+                    Err(problem)
+                }
+            },
+        }
+    }
+
+    fn later_place(&self, step: &Step) -> Option<Option<At>> {
+        match step {
+            Step::Symbol(name) => self.names.get(*name).map(|symbol| symbol.at),
+            _ => None,
+        }
+    }
+
+    /// A name without a definition.
+    pub(crate) fn undefined(&self, step: &Step, at: At) -> Box<Problem> {
+        let (text, what, code, among) = match step {
+            Step::Fixed(_, name) => (self.names.text(*name), "format", explain::FORMAT, Among::Formats),
+            Step::Size(name) => (self.names.text(*name), "structure", explain::UNDEFINED, Among::Sizes),
+            Step::Symbol(name) => (self.names.text(*name), "symbol", explain::UNDEFINED, Among::Symbols),
+            _ => unreachable!("only names are defined later"),
+        };
+        if let Some((number, _)) = text.split_once('#') {
+            let message = format!("there is no label `{number}:` after this line");
+            return Problem::new(explain::NUMERIC_LABEL, message, at, "looks forward");
+        }
+        let label = if what == "symbol" { "not defined".into() } else { format!("no such {what}") };
+        Problem::new(code, format!("`{text}` is not defined"), at, label).suggest(text, among)
+    }
+
+    /// Gives all constants that wait for later definitions their values, without recursion.
+    pub(crate) fn resolve_pending(&mut self) {
+        let waiting: Vec<Name> = self
+            .names
+            .symbols()
+            .filter(|(_, _, symbol)| matches!(symbol.meaning, Meaning::Pending(_)))
+            .map(|(name, ..)| name)
+            .collect();
+        let mut visited = HashSet::new();
+        for name in waiting {
+            let mut open = vec![(name, false)];
+            while let Some(&(name, is_visited)) = open.last() {
+                let Some((expression, at)) = self.pending(name) else {
+                    open.pop();
+                    continue;
+                };
+                if is_visited {
+                    open.pop();
+                    let meaning = match self.evaluate(&expression) {
+                        Ok(value) => Meaning::Constant(value),
+                        Err(failure) => {
+                            self.report_failure(failure);
+                            Meaning::Broken
+                        }
+                    };
+                    self.names.set(name, meaning, at);
+                    continue;
+                }
+                open.last_mut().expect("not empty").1 = true;
+                visited.insert(name);
+                for (step, step_at) in &expression.steps {
+                    let Step::Symbol(used) = step else { continue };
+                    if self.pending(*used).is_none() {
+                        continue;
+                    }
+                    if visited.contains(used) {
+                        let text = self.names.text(*used).clone();
+                        let message = format!("`{text}` is defined by itself");
+                        let other = self.names.get(*used).and_then(|symbol| symbol.at);
+                        self.messages.add(
+                            Problem::new(explain::CYCLE, message, *step_at, "needs its own value")
+                                .also(other, "defined here"),
+                        );
+                        self.names.set(*used, Meaning::Broken, other);
+                    } else {
+                        open.push((*used, false));
+                    }
+                }
+            }
+        }
+    }
+
+    fn pending(&self, name: Name) -> Option<(Rc<Expression>, Option<At>)> {
+        match self.names.get(name) {
+            Some(symbol) => match &symbol.meaning {
+                Meaning::Pending(expression) => Some((expression.clone(), symbol.at)),
+                _ => None,
+            },
+            None => None,
+        }
+    }
+
+    /// Reports why an expression has no value, now that everything is defined that ever will be.
+    pub(crate) fn report_failure(&mut self, failure: Failure) {
+        match failure {
+            Failure::Reported => {}
+            Failure::Wrong(problem) => self.messages.add(problem),
+            Failure::Later(..) if self.is_incomplete => {}
+            Failure::Later(step, at) => {
+                let problem = self.undefined(&step, at);
+                self.messages.add(problem);
+            }
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! The codes of messages, each with an explanation that a command can print.
+
+/// A code with its explanation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code {
+    /// `E001` and so on; warnings begin with `W`. A code keeps its meaning for ever.
+    pub code: &'static str,
+    /// What it is about, in a few words.
+    pub title: &'static str,
+    /// What the assembler means and what to do, with an example.
+    pub text: &'static str,
+}
+
+/// The code of that name, in capital or small letters.
+pub fn find(code: &str) -> Option<&'static Code> {
+    CODES.iter().find(|known| known.code.eq_ignore_ascii_case(code))
+}
+
+macro_rules! codes {
+    ($($name:ident $code:literal $title:literal $text:literal;)*) => {
+        $(pub(crate) const $name: &str = $code;)*
+
+        /// All codes, in their order.
+        pub const CODES: &[Code] = &[$(Code { code: $code, title: $title, text: $text }),*];
+    };
+}
+
+codes! {
+    INSTRUCTION "E001" "unknown instruction"
+"The first word of the statement is neither an instruction, a pseudo-instruction nor a macro defined above it.
+Names are written in small letters. A label needs a colon behind it.
+
+    vdto s4, v1, v2, 16     ; there is `vdot`
+    loop                    ; a label is `loop:`";
+    DIRECTIVE "E002" "unknown directive"
+"Words that begin with a point are directives; the manual lists them.
+
+    .globl start            ; there is no such directive: all labels are known everywhere";
+    UNDEFINED "E003" "undefined symbol"
+"The name is used but nowhere defined: no label, no `.equ` or `.set`, no field of a structure, no constant given from
+outside. Capital and small letters differ.
+
+    beqz s1, done           ; needs a line `done:` somewhere";
+    DUPLICATE "E004" "defined twice"
+"A name may be defined once, wherever it stands; only `.set` names a number that may change. Labels that are needed
+many times can be numbers, reached by `1b` and `1f`, or `.local` names of a macro.
+
+    .equ size, 4
+    .equ size, 8            ; write `.set` for both if it is to change";
+    OPERAND_COUNT "E005" "wrong number of operands"
+"The instruction has more or fewer operands than were written. The message shows how it is written.
+
+    mul s1, s2, s3          ; `mul d, a, b, i`: the shift is missing";
+    OPERAND_KIND "E006" "wrong kind of operand"
+"A register stands where a number belongs, a number where a register belongs, or a register of another file.
+
+    vadd v1, v2, s3         ; all three are vectors
+    add s1, s2, 4           ; write `iaddi s1, s2, 4`";
+    REGISTER "E007" "no such register"
+"There are scalar registers s0 to s31, vector registers v0 to v31 and wide accumulators w0 to w7. Other names of
+registers come from `.reg`.
+
+    mov s32, s1             ; the last one is s31";
+    RANGE "E008" "number out of range"
+"The number does not fit the place where it is used. Nothing is cut off silently: the message names the least and the
+largest number that fit.
+
+    movi s1, 40000          ; 16 bits with the sign: -32768 to 32767; `li` takes any 32 bits
+    .byte 256               ; -128 to 255";
+    REACH "E009" "target out of reach"
+"A branch holds the distance to its target in a field of its word. The message names the distance and the reach.
+
+    beq s1, s2, far         ; more than 32767 words away: `bne s1, s2, .+2` and then `jump far`";
+    SYNTAX "E010" "unexpected text"
+"Something else was expected at this place. Operands are separated by commas; each line is one statement; comments
+begin with `;`, `#` or `//`.
+
+    add s1 s2, s3           ; a comma is missing";
+    NUMBER "E011" "malformed number"
+"Numbers are decimal, 0x hexadecimal, 0b binary or 0o octal, with `_` between digits as you like, of 64 bits with the
+sign. A leading 0 alone is refused because it means octal to some. Fixed-point literals have at most 38 digits after
+the point.
+
+    movi s1, 012            ; write 12 or 0o12";
+    TEXT "E012" "malformed text or character"
+"A text stands between quotation marks on one line, a character between apostrophes. Escapes are \\n \\t \\r \\0 \\\\ \\'
+\\\" and \\x with two hexadecimal digits.
+
+    .ascii \"open           ; the closing quotation mark is missing";
+    CHARACTER "E013" "unexpected character"
+"The character has no meaning outside of texts and comments. A backslash means something in macros only, before the
+name of a parameter.
+
+    mov \\a, s1              ; `a` is no parameter here";
+    OVERFLOW "E014" "arithmetic overflow"
+"Expressions are computed with 64 bits and their sign. A result that does not fit is an error; it never wraps.
+
+    .equ big, 1 << 63       ; the largest power of two is 1 << 62";
+    DIVISION "E015" "division by zero"
+"The right operand of `/` or `%` is 0.
+
+    .equ each, total / count    ; with `count` 0";
+    LAYOUT "E016" "value needed too early"
+"The number decides what the program looks like (a condition, a count, an alignment), so that it must be known when the
+line is read. Labels and constants from further on are not known yet.
+
+    .if end > 100           ; `end` is defined below";
+    CYCLE "E017" "defined by itself"
+"The value of a constant depends on the constant itself, perhaps through others.
+
+    .equ a, b + 1
+    .equ b, a - 1";
+    FRACTION "E018" "fraction without format"
+"A number with a point means a fixed-point number, and the assembler must know its format: its fraction bits.
+
+    .format pos, 16
+    li s1, 0.5              ; write `0.5:pos`";
+    FORMAT "E019" "unknown format"
+"The name after the colon of a literal, or after `.fixed`, is no format. Formats come from `.format name, bits` or from
+outside.
+
+    li s1, 0.5:pso          ; with `.format pos, 16`";
+    INCLUDE "E020" "file cannot be included"
+"The file that `.include` names could not be read. Its name is relative to the file that includes it. Names that are
+missing because of this are not reported.
+
+    .include \"layout.s\"";
+    DEPTH "E021" "too deep"
+"Files that include each other, or macros and repetitions inside each other, come back to themselves or go deeper than
+the limit. A macro that calls itself needs a condition that ends it.
+
+    .macro again n
+    again \\n + 1            ; never ends
+    .endm";
+    UNCLOSED "E022" "not closed"
+"A block is opened but not closed in the same file, macro or repetition: `.if` and `.endif`, `.macro` and `.endm`,
+`.rept` and `.endr`, `.struct` and `.endstruct`, `.func` and `.endfunc`, `.region` and `.endregion`.
+
+    .func trace             ; `.endfunc` is missing";
+    UNOPENED "E023" "not opened"
+"A closing directive has no opening one, or closes something else than the innermost block.
+
+    .func trace
+    .region test
+    .endfunc                ; `.endregion` comes first";
+    MACRO "E024" "wrong macro arguments"
+"The call has too many arguments, or one without a default is missing. Arguments are separated by commas, and may be
+named as in `copy to=s1`.
+
+    .macro copy to, from
+    mov \\to, \\from
+    .endm
+    copy s1                 ; `from` is missing";
+    SIZE "E025" "program too large"
+"The program, with all its expansions, goes beyond a limit of the assembler: words, lines, octets of text, files. A
+repetition without end looks like this, too.
+
+    .rept 1000000000";
+    BUFFER "E026" "buffer too large"
+"The initial contents of the buffer go beyond the limit of 16 MiB.
+
+    .space 1 << 40";
+    SECTION "E027" "wrong section"
+"Instructions stand in the code (`.text`), data stand in the buffer (`.buffer`); only words of 32 bits stand in both.
+In a structure stand fields only. A branch leads to code.
+
+    .buffer
+    add s1, s2, s3          ; write `.text` before";
+    SAID "E028" "error of the program"
+"The program says so itself, by `.error`.
+
+    .error \"no such layout\"";
+    ASSERTED "E029" "assertion failed"
+"The expression of an `.assert` is 0. It is evaluated when all names are known.
+
+    .assert sizeof(node) == 55, \"a node has 55 octets\"";
+    RESERVED "E030" "reserved name"
+"The name means something already: a register, another name of a register, a function of expressions, or, for a macro,
+an instruction.
+
+s1: nop                     ; `s1` is a register";
+    PLACE "E031" "impossible place"
+"`.align` takes a power of two, and `.org` only goes forward.
+
+    .align 3";
+    NESTING "E032" "too many parentheses"
+"Parentheses stand inside each other more than a hundred deep.";
+    ENTRY "E033" "impossible entry"
+"`.entry` must lead to an instruction of the program.
+
+    .entry table            ; `table` is in the buffer";
+    NUMERIC_LABEL "E034" "no such numeric label"
+"`1b` is the last label `1:` before the line, `1f` the next one after it.
+
+    jump 1f                 ; no `1:` follows";
+    UNSET "E035" "used before it is set"
+"A name that `.set` gives several values has none before the first.
+
+    li s1, n
+    .set n, 1
+    .set n, 2";
+    ALIAS "E036" "no such register name"
+"`.unreg` ends what `.reg` began; names from `.reg` inside a function end with the function.
+
+    .unreg count            ; `.reg count, s5` is missing";
+    SHIFT "E037" "impossible shift"
+"The right operand of `<<` and `>>` in an expression is 0 to 63.
+
+    .equ mask, 1 << -1";
+    WARNED "W001" "warning of the program"
+"The program says so itself, by `.warning`.
+
+    .warning \"built without shadows\"";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_numbered_and_explained() {
+        for (place, code) in CODES.iter().filter(|code| code.code.starts_with('E')).enumerate() {
+            assert_eq!(code.code, format!("E{:03}", place + 1));
+            assert!(code.text.len() > 60, "{}", code.code);
+        }
+        assert_eq!(find("e012").map(|code| code.title), Some("malformed text or character"));
+        assert_eq!(find("E999"), None);
+    }
+}

@@ -1,0 +1,395 @@
+//! Expressions: C's operators and precedence, kept in postfix order so that neither evaluation nor disposal recurses.
+
+use std::rc::Rc;
+
+use crate::assembler::Assembler;
+use crate::cursor::Cursor;
+use crate::decimal::Decimal;
+use crate::explain;
+use crate::limits::PARENTHESES;
+use crate::message::{At, Parsed, Problem};
+use crate::symbol::Name;
+use crate::token::{Kind, Token, character_value, integer_value};
+
+/// An operator with two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Binary {
+    Or,
+    ExclusiveOr,
+    And,
+    Equal,
+    Different,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Left,
+    Right,
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Remainder,
+}
+
+/// A function of one or two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Min,
+    Max,
+    Abs,
+    Bits,
+    Low,
+    High,
+}
+
+/// Functions of numbers, with how many they take.
+const FUNCTIONS: [(&str, Function, usize); 6] = [
+    ("min", Function::Min, 2),
+    ("max", Function::Max, 2),
+    ("abs", Function::Abs, 1),
+    ("bits", Function::Bits, 1),
+    ("low", Function::Low, 1),
+    ("high", Function::High, 1),
+];
+
+/// Functions of names.
+const NAME_FUNCTIONS: [&str; 3] = ["sizeof", "offsetof", "defined"];
+
+/// Whether the text is a function's name, which nothing else may have.
+pub(crate) fn is_function(text: &str) -> bool {
+    NAME_FUNCTIONS.contains(&text) || FUNCTIONS.iter().any(|&(name, ..)| name == text)
+}
+
+/// One step of an evaluation on a stack.
+#[derive(Clone, Debug)]
+pub(crate) enum Step {
+    Number(i64),
+    Symbol(Name),
+    Size(Name),
+    Fixed(Rc<Decimal>, Name),
+    Negate,
+    Complement,
+    Not,
+    Binary(Binary),
+    /// Ends at that step with 0 when the top is 0.
+    UnlessZero(usize),
+    /// Ends at that step with 1 when the top is not 0.
+    IfZero(usize),
+    /// 1 for anything but 0.
+    Truth,
+    Function(Function),
+}
+
+/// An expression.
+#[derive(Clone, Debug)]
+pub(crate) struct Expression {
+    pub steps: Vec<(Step, At)>,
+    pub at: At,
+}
+
+impl Expression {
+    /// The symbol that is the whole expression.
+    pub fn symbol(&self) -> Option<Name> {
+        match self.steps[..] {
+            [(Step::Symbol(name), _)] => Some(name),
+            _ => None,
+        }
+    }
+
+    /// A function of this expression.
+    pub fn under(&self, function: Function) -> Expression {
+        let mut steps = self.steps.clone();
+        steps.push((Step::Function(function), self.at));
+        Expression { steps, at: self.at }
+    }
+}
+
+enum Infix {
+    Binary(Binary),
+    BothTrue,
+    OneTrue,
+}
+
+fn infix(mark: &str) -> Option<(Infix, u8)> {
+    use Binary::*;
+    let (operator, level) = match mark {
+        "||" => return Some((Infix::OneTrue, 1)),
+        "&&" => return Some((Infix::BothTrue, 2)),
+        "|" => (Or, 3),
+        "^" => (ExclusiveOr, 4),
+        "&" => (And, 5),
+        "==" => (Equal, 6),
+        "!=" => (Different, 6),
+        "<" => (Less, 7),
+        "<=" => (LessOrEqual, 7),
+        ">" => (Greater, 7),
+        ">=" => (GreaterOrEqual, 7),
+        "<<" => (Left, 8),
+        ">>" => (Right, 8),
+        "+" => (Add, 9),
+        "-" => (Subtract, 9),
+        "*" => (Multiply, 10),
+        "/" => (Divide, 10),
+        "%" => (Remainder, 10),
+        _ => return None,
+    };
+    Some((Infix::Binary(operator), level))
+}
+
+impl Assembler<'_> {
+    /// Reads an expression.
+    pub(crate) fn expression(&mut self, cursor: &mut Cursor) -> Parsed<Expression> {
+        let first = cursor.position;
+        let mut steps = Vec::with_capacity(1);
+        self.infix_expression(cursor, &mut steps, 1, 0)?;
+        Ok(Expression { steps, at: cursor.since(first) })
+    }
+
+    /// Reads a number of a `.fixed` list: a plain decimal is in `format`, anything else is raw.
+    pub(crate) fn fixed_expression(&mut self, cursor: &mut Cursor, format: Name) -> Parsed<Expression> {
+        let first = cursor.position;
+        let mut ahead = *cursor;
+        let is_negative = ahead.accept("-");
+        if let Some(token) = ahead.peek()
+            && matches!(token.kind, Kind::Integer | Kind::Decimal)
+            && ahead.text(token).starts_with(|c: char| c.is_ascii_digit())
+            && !ahead.text(token).contains(['x', 'X', 'o'])
+        {
+            let ends = ahead.peek_second().is_none_or(|after| after.kind == Kind::Mark(","));
+            if ends {
+                ahead.skip();
+                *cursor = ahead;
+                let at = cursor.since(first);
+                let decimal = decimal(cursor.text(token), at, is_negative)?;
+                return Ok(Expression { steps: vec![(Step::Fixed(decimal, format), at)], at });
+            }
+        }
+        self.expression(cursor)
+    }
+
+    fn infix_expression(
+        &mut self,
+        cursor: &mut Cursor,
+        steps: &mut Vec<(Step, At)>,
+        least: u8,
+        depth: usize,
+    ) -> Parsed<()> {
+        self.prefixed(cursor, steps, depth)?;
+        while let Some(token) = cursor.peek()
+            && let Kind::Mark(mark) = token.kind
+            && let Some((operator, level)) = infix(mark)
+            && level >= least
+        {
+            let at = cursor.at(token);
+            cursor.skip();
+            let jump = steps.len();
+            match operator {
+                Infix::Binary(operator) => {
+                    self.infix_expression(cursor, steps, level + 1, depth)?;
+                    steps.push((Step::Binary(operator), at));
+                }
+                Infix::BothTrue | Infix::OneTrue => {
+                    steps.push((Step::Truth, at));
+                    self.infix_expression(cursor, steps, level + 1, depth)?;
+                    steps.push((Step::Truth, at));
+                    let end = steps.len();
+                    let is_both = matches!(operator, Infix::BothTrue);
+                    steps[jump].0 = if is_both { Step::UnlessZero(end) } else { Step::IfZero(end) };
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn prefixed(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+        let first = cursor.position;
+        while matches!(cursor.kind(), Some(Kind::Mark("-" | "+" | "~" | "!"))) {
+            cursor.skip();
+        }
+        let mut prefixes = &cursor.tokens[first..cursor.position];
+        let is_negative = prefixes.last().is_some_and(|token| token.kind == Kind::Mark("-"));
+        if is_negative && let Some(literal) = self.negative_literal(cursor)? {
+            steps.push(literal);
+            prefixes = &prefixes[..prefixes.len() - 1];
+        } else {
+            self.primary(cursor, steps, depth)?;
+        }
+        for &prefix in prefixes.iter().rev() {
+            let step = match prefix.kind {
+                Kind::Mark("-") => Step::Negate,
+                Kind::Mark("~") => Step::Complement,
+                Kind::Mark("!") => Step::Not,
+                _ => continue,
+            };
+            steps.push((step, cursor.at(prefix)));
+        }
+        Ok(())
+    }
+
+    /// A literal whose rounding or range needs to know of the minus sign before it.
+    fn negative_literal(&mut self, cursor: &mut Cursor) -> Parsed<Option<(Step, At)>> {
+        let Some(token) = cursor.peek() else { return Ok(None) };
+        let first = cursor.position - 1;
+        if let Some(step) = self.fixed_literal(cursor, token, true)? {
+            return Ok(Some((step, cursor.since(first))));
+        }
+        if token.kind == Kind::Integer && integer_value(cursor.text(token)) == Ok(1 << 63) {
+            cursor.skip();
+            return Ok(Some((Step::Number(i64::MIN), cursor.since(first))));
+        }
+        Ok(None)
+    }
+
+    /// `0.5:format`, without blanks.
+    fn fixed_literal(&mut self, cursor: &mut Cursor, token: Token, is_negative: bool) -> Parsed<Option<Step>> {
+        let tokens = &cursor.tokens[cursor.position..];
+        if let [number, colon, format, ..] = tokens
+            && matches!(number.kind, Kind::Integer | Kind::Decimal)
+            && colon.kind == Kind::Mark(":")
+            && format.kind == Kind::Name
+            && number.end == colon.start
+            && colon.end == format.start
+        {
+            let decimal = decimal(cursor.text(token), cursor.at(token), is_negative)?;
+            let name = self.names.intern(cursor.text(*format));
+            cursor.position += 3;
+            return Ok(Some(Step::Fixed(decimal, name)));
+        }
+        if token.kind == Kind::Decimal {
+            let text = cursor.text(token);
+            return Err(Problem::new(
+                explain::FRACTION,
+                "a number with a fraction needs a format",
+                cursor.at(token),
+                "in which format?",
+            )
+            .hint(format!("write `{text}:name` with the name of a `.format`")));
+        }
+        Ok(None)
+    }
+
+    fn primary(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+        let Some(token) = cursor.peek() else { return Err(cursor.expected("a number")) };
+        let at = cursor.at(token);
+        let text = cursor.text(token);
+        let first = cursor.position;
+        let step = match token.kind {
+            Kind::Integer | Kind::Decimal => match self.fixed_literal(cursor, token, false)? {
+                Some(step) => {
+                    steps.push((step, cursor.since(first)));
+                    return Ok(());
+                }
+                None => Step::Number(integer(text, at)?),
+            },
+            Kind::Character => Step::Number(character_value(text).ok_or_else(|| {
+                Problem::new(explain::TEXT, format!("{text} is not a character"), at, "no such escape")
+                    .hint("escapes are \\n \\t \\r \\0 \\\\ \\' \\\" and \\x41")
+            })?),
+            Kind::Local => Step::Symbol(self.numeric_label(text, at)?),
+            Kind::Mark(".") => Step::Number(self.location()),
+            Kind::Mark("(") => {
+                if depth >= PARENTHESES {
+                    return Err(Problem::new(
+                        explain::NESTING,
+                        format!("more than {PARENTHESES} parentheses inside each other"),
+                        at,
+                        "one too many",
+                    ));
+                }
+                cursor.skip();
+                self.infix_expression(cursor, steps, 1, depth + 1)?;
+                return cursor.expect(")");
+            }
+            Kind::Name
+                if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("(")) && is_function(text) =>
+            {
+                return self.function(cursor, steps, depth);
+            }
+            Kind::Name => {
+                if let Some((file, number)) = self.register(text, at)? {
+                    return Err(Problem::new(
+                        explain::OPERAND_KIND,
+                        format!("expected a number, found the register `{text}`"),
+                        at,
+                        format!("register {file}{number}"),
+                    ));
+                }
+                Step::Symbol(self.names.intern(text))
+            }
+            Kind::Directive => Step::Symbol(self.names.intern(text)),
+            _ => return Err(cursor.expected("a number")),
+        };
+        cursor.skip();
+        steps.push((step, at));
+        Ok(())
+    }
+
+    fn function(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+        let first = cursor.position;
+        let (text, _) = cursor.name("a function")?;
+        let open = cursor.here();
+        cursor.skip();
+        if depth >= PARENTHESES {
+            let message = format!("more than {PARENTHESES} parentheses inside each other");
+            return Err(Problem::new(explain::NESTING, message, open, "one too many"));
+        }
+        if NAME_FUNCTIONS.contains(&text) {
+            let token = cursor.peek();
+            let (argument, argument_at) = match token {
+                Some(token) if token.kind == Kind::Directive => {
+                    cursor.skip();
+                    (cursor.text(token), cursor.at(token))
+                }
+                _ => cursor.name("a name")?,
+            };
+            cursor.expect(")")?;
+            let step = match text {
+                "sizeof" => Step::Size(self.names.intern(argument)),
+                "offsetof" if !argument.contains('.') => {
+                    return Err(Problem::new(
+                        explain::SYNTAX,
+                        "`offsetof` takes a field",
+                        argument_at,
+                        "expected `structure.field`",
+                    ));
+                }
+                "offsetof" => Step::Symbol(self.names.intern(argument)),
+                _ => Step::Number(self.is_defined(argument).into()),
+            };
+            steps.push((step, cursor.since(first)));
+            return Ok(());
+        }
+        let (_, function, count) = FUNCTIONS.into_iter().find(|&(name, ..)| name == text).expect("a function's name");
+        for argument in 0..count {
+            if argument > 0 {
+                cursor.expect(",")?;
+            }
+            self.infix_expression(cursor, steps, 1, depth + 1)?;
+        }
+        cursor.expect(")")?;
+        steps.push((Step::Function(function), cursor.since(first)));
+        Ok(())
+    }
+}
+
+fn integer(text: &str, at: At) -> Parsed<i64> {
+    let value = integer_value(text)
+        .map_err(|why| Problem::new(explain::NUMBER, format!("`{text}` is not a number"), at, why))?;
+    i64::try_from(value).map_err(|_| {
+        Problem::new(explain::NUMBER, format!("{text} is too large"), at, "numbers have 64 bits with their sign")
+    })
+}
+
+fn decimal(text: &str, at: At, is_negative: bool) -> Parsed<Rc<Decimal>> {
+    let wrong = |why: String| Problem::new(explain::NUMBER, format!("`{text}` is not a decimal number"), at, why);
+    if text.contains(['x', 'X', 'o', 'O', 'b', 'B']) {
+        return Err(wrong("fixed-point numbers are written with decimal digits".into()));
+    }
+    if let Some(odd) = text.chars().find(|c| !matches!(c, '0'..='9' | '_' | '.' | 'e' | 'E' | '+' | '-')) {
+        return Err(wrong(format!("`{odd}` is not a decimal digit")));
+    }
+    let mut decimal = Decimal::parse(text).map_err(wrong)?;
+    decimal.is_negative = is_negative;
+    Ok(Rc::new(decimal))
+}

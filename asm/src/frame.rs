@@ -1,0 +1,236 @@
+//! Where lines come from: files, macro calls and repetitions, each inside another.
+
+use std::rc::Rc;
+
+use crate::assembler::Assembler;
+use crate::conditional::Condition;
+use crate::explain;
+use crate::limits::{EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
+use crate::line::{Line, Substitution};
+use crate::message::{At, Problem};
+use crate::symbol::{Meaning, Name};
+use crate::token::{continues_name, starts_name};
+
+/// What a frame repeats.
+#[derive(Debug)]
+pub(crate) enum Repeat {
+    /// `.rept`: passes that follow, the counter and its number.
+    Count { remaining: i64, counter: Option<Name>, index: i64 },
+    /// `.irp`: the parameter and the texts that follow, last one first.
+    Texts { parameter: Rc<str>, remaining: Vec<Rc<str>> },
+}
+
+/// What kind of text a frame reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Origin {
+    /// A file, by its index.
+    File(u16),
+    /// A macro call.
+    Macro,
+    /// A repetition.
+    Repetition,
+}
+
+/// Text that is being read.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    pub lines: Rc<[Line]>,
+    pub next: usize,
+    pub origin: Origin,
+    pub substitution: Option<Rc<Substitution>>,
+    /// Context of the lines of a macro call; `None` keeps their own.
+    pub context: Option<u32>,
+    pub conditions: Vec<Condition>,
+    pub repeat: Option<Repeat>,
+}
+
+impl Frame {
+    /// A frame at its first line.
+    pub fn new(lines: Rc<[Line]>, origin: Origin) -> Frame {
+        Frame { lines, next: 0, origin, substitution: None, context: None, conditions: Vec::new(), repeat: None }
+    }
+}
+
+/// The lines of a file.
+pub(crate) fn file_lines(text: &str, source: u16) -> Rc<[Line]> {
+    let mut start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let mut lines = Vec::new();
+    for (number, line) in text[start..].split_inclusive('\n').enumerate() {
+        let shown = line.trim_end_matches(['\n', '\r']);
+        lines.push(Line::of_file(shown, source, number as u32 + 1, start, 0));
+        start += line.len();
+    }
+    lines.into()
+}
+
+/// The directive of a line behind its labels, without looking at the rest.
+pub(crate) fn leading_directive(text: &str) -> Option<&str> {
+    let mut rest = text.trim_start();
+    loop {
+        let length = rest.strip_prefix('.').unwrap_or(rest).find(|c| !continues_name(c));
+        let dot = usize::from(rest.starts_with('.'));
+        let word = &rest[..length.map_or(rest.len(), |length| length + dot)];
+        let after = rest[word.len()..].trim_start();
+        if word.is_empty() {
+            return None;
+        }
+        match after.strip_prefix(':') {
+            Some(after) => rest = after.trim_start(),
+            None if dot == 1 && word[1..].starts_with(starts_name) => return Some(word),
+            None => return None,
+        }
+    }
+}
+
+impl Assembler<'_> {
+    /// The next line to assemble.
+    pub(crate) fn fetch(&mut self) -> Option<Line> {
+        loop {
+            if let Some(line) = self.fetch_in_frame() {
+                return Some(line);
+            }
+            let frame = self.frames.last_mut()?;
+            if let Some(problem) = frame.conditions.drain(..).next_back().map(|condition| condition.unclosed()) {
+                self.messages.add(problem);
+            }
+            if !self.repeat_again() {
+                self.frames.pop();
+            }
+        }
+    }
+
+    /// The next line of the innermost frame.
+    pub(crate) fn fetch_in_frame(&mut self) -> Option<Line> {
+        let frame = self.frames.last_mut()?;
+        let line = frame.lines.get(frame.next)?;
+        frame.next += 1;
+        let context = frame.context.unwrap_or(line.context);
+        let line = match &frame.substitution {
+            Some(substitution) => line.substituted(substitution, context),
+            None => {
+                let mut line = line.clone();
+                line.context = context;
+                line
+            }
+        };
+        self.lines_read += 1;
+        self.octets_read += line.text.len();
+        let excess = if self.lines_read > LINES {
+            Some(format!("the program has more than {LINES} lines with all its expansions"))
+        } else if self.octets_read > TEXT_OCTETS {
+            Some(format!("the program has more than {TEXT_OCTETS} octets of text with all its expansions"))
+        } else if line.text.len() > LINE_OCTETS {
+            Some(format!("the line is longer than {LINE_OCTETS} octets"))
+        } else {
+            None
+        };
+        if let Some(message) = excess {
+            self.give_up(Problem::new(
+                explain::SIZE,
+                message,
+                line.at(0, line.text.len().min(1)),
+                "reading stops here",
+            ));
+            return None;
+        }
+        Some(line)
+    }
+
+    /// Reports what makes going on pointless and drops the rest of the text.
+    pub(crate) fn give_up(&mut self, problem: Box<Problem>) {
+        self.messages.add(problem);
+        self.frames.clear();
+        self.is_incomplete = true;
+    }
+
+    /// Starts the next pass of the innermost frame; `false` when it was the last one.
+    fn repeat_again(&mut self) -> bool {
+        let Some(frame) = self.frames.last_mut() else { return false };
+        match &mut frame.repeat {
+            None => return false,
+            Some(Repeat::Count { remaining: 0, .. }) => return false,
+            Some(Repeat::Count { remaining, counter, index }) => {
+                *remaining -= 1;
+                *index += 1;
+                if let Some(name) = *counter {
+                    let (index, at) = (*index, self.names.get(name).and_then(|symbol| symbol.at));
+                    self.names.set(name, Meaning::Variable(index, 2), at);
+                }
+            }
+            Some(Repeat::Texts { parameter, remaining }) => {
+                let Some(text) = remaining.pop() else { return false };
+                let arguments = [(parameter.clone(), text)].into();
+                frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
+            }
+        }
+        let frame = self.frames.last_mut().expect("looked at above");
+        frame.next = 0;
+        true
+    }
+
+    /// Reads a block of the innermost frame up to its end, which is taken and left out.
+    pub(crate) fn capture(&mut self, openings: &[&str], closing: &str, at: At) -> Option<Rc<[Line]>> {
+        let mut depth = 0;
+        let mut lines = Vec::new();
+        while let Some(line) = self.fetch_in_frame() {
+            match leading_directive(&line.text) {
+                Some(word) if word == closing && depth == 0 => return Some(lines.into()),
+                Some(word) if word == closing => depth -= 1,
+                Some(word) if openings.contains(&word) => depth += 1,
+                _ => {}
+            }
+            lines.push(line);
+        }
+        let message = format!("`{closing}` is missing");
+        self.messages.add(Problem::new(explain::UNCLOSED, message, at, "opened here"));
+        None
+    }
+
+    /// Enters a frame, unless there are too many inside each other.
+    pub(crate) fn enter(&mut self, frame: Frame, at: At) {
+        let (is_file, most) = match frame.origin {
+            Origin::File(_) => (true, INCLUDE_DEPTH),
+            _ => (false, EXPANSION_DEPTH),
+        };
+        let depth = self.frames.iter().filter(|other| matches!(other.origin, Origin::File(_)) == is_file).count();
+        if depth >= most {
+            let what = if is_file {
+                "files include each other"
+            } else {
+                "macro calls and repetitions stand inside each other"
+            };
+            let message = format!("more than {most} {what}");
+            self.give_up(Problem::new(explain::DEPTH, message, at, "one too many"));
+            return;
+        }
+        self.frames.push(frame);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directives_are_found_behind_labels() {
+        for (text, word) in [
+            ("  .if x", Some(".if")),
+            ("a: 1: .endm", Some(".endm")),
+            (".L1: add", None),
+            ("add s1, s2", None),
+            (".", None),
+            ("", None),
+            (". = 3", None),
+            ("\\a: .rept 3", None),
+        ] {
+            assert_eq!(leading_directive(text), word, "{text}");
+        }
+    }
+
+    #[test]
+    fn lines_keep_their_places() {
+        let lines = file_lines("\u{feff}a\r\nbc", 0);
+        let places: Vec<_> = lines.iter().map(|line| (&*line.text, line.number, line.at(0, 1).start)).collect();
+        assert_eq!(places, [("a", 1, 3), ("bc", 2, 6)]);
+    }
+}

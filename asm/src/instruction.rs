@@ -1,0 +1,304 @@
+//! Instructions: written operands held against a row, encoded now or when the names that they use are known.
+
+use isa::row::{Kind, Row};
+use isa::table::Op;
+
+use crate::assembler::{Assembler, Fixup};
+use crate::cursor::Cursor;
+use crate::evaluation::Failure;
+use crate::explain;
+use crate::expression::Expression;
+use crate::message::{Among, At, Problem};
+use crate::operand::{Operand, Written, file_name};
+use crate::symbol::Meaning;
+
+/// An operand as a row takes it.
+#[derive(Clone, Debug)]
+pub(crate) struct Argument {
+    pub value: Value,
+    pub at: At,
+}
+
+/// The number of an argument.
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Known(i64),
+    Expression(Expression),
+}
+
+/// What an operand of a kind is, for messages and manuals.
+pub(crate) fn describe(kind: Kind) -> &'static str {
+    match kind {
+        Kind::S => "a scalar register",
+        Kind::V => "a vector register",
+        Kind::W => "a wide accumulator",
+        Kind::A => "a scalar register with an address",
+        Kind::Sh => "a shift in bits",
+        Kind::Im => "a signed number",
+        Kind::Un => "an unsigned number",
+        Kind::Off => "an offset in octets",
+        Kind::Rel => "a label or a word address",
+        Kind::Lane => "a lane: 0, 1, 2 or x, y, z",
+        _ => match (kind.register_file(), kind.registers()) {
+            (Some('v'), 2) => "the first of two vector registers",
+            (Some('v'), 3) => "the first of three vector registers",
+            (Some('v'), _) => "the first of several vector registers",
+            (Some('w'), _) => "the first of several wide accumulators",
+            _ => "the first of several scalar registers",
+        },
+    }
+}
+
+fn takes_offset(row: &Row, at: usize) -> bool {
+    row.operands[at].kind.register_file() == Some('s') && row.operands.get(at + 1).is_some_and(|o| o.kind == Kind::Off)
+}
+
+/// The row as a person writes it, such as `lw d, i(a)`.
+pub fn usage(row: &Row) -> String {
+    let mut parts = Vec::new();
+    let mut at = 0;
+    while at < row.operands.len() {
+        let letter = row.operands[at].letter as char;
+        if takes_offset(row, at) {
+            parts.push(format!("{}({letter})", row.operands[at + 1].letter as char));
+            at += 2;
+        } else {
+            parts.push(letter.to_string());
+            at += 1;
+        }
+    }
+    format!("{} {}", row.name, parts.join(", ")).trim_end().to_string()
+}
+
+fn legend(row: &Row) -> String {
+    let parts: Vec<String> =
+        row.operands.iter().map(|o| format!("{} is {}", o.letter as char, describe(o.kind))).collect();
+    if parts.is_empty() { "it takes no operands".into() } else { parts.join(", ") }
+}
+
+impl Assembler<'_> {
+    /// Assembles an instruction, a pseudo-instruction or a macro call.
+    pub(crate) fn instruction(&mut self, name: &str, at: At, cursor: &mut Cursor) {
+        if let Some(definition) = self.macros.get(name).cloned() {
+            self.call_macro(&definition, at, cursor);
+            return;
+        }
+        let op = self.operations.get(name).copied();
+        let pseudo = crate::pseudo::find(name);
+        if op.is_none() && pseudo.is_none() {
+            if !self.is_incomplete {
+                let message = format!("`{name}` is not an instruction");
+                self.messages.add(
+                    Problem::new(explain::INSTRUCTION, message, at, "unknown mnemonic")
+                        .suggest(name, Among::Instructions),
+                );
+            }
+            self.emit(0, cursor.line);
+            return;
+        }
+        let operands = match self.operands(cursor) {
+            Ok(operands) => operands,
+            Err(problem) => {
+                self.messages.add(problem);
+                self.emit(0, cursor.line);
+                return;
+            }
+        };
+        match (op, pseudo) {
+            (Some(op), _) => self.row_instruction(op, &operands, at, cursor),
+            (None, Some(pseudo)) => self.pseudo_instruction(pseudo, &operands, at, cursor),
+            (None, None) => unreachable!("refused above"),
+        }
+    }
+
+    /// Assembles one instruction of a row.
+    pub(crate) fn row_instruction(&mut self, op: Op, operands: &[Operand], at: At, cursor: &Cursor) {
+        let isa = self.isa;
+        let row = isa.row(op);
+        let Some(mut arguments) = self.arguments(row, operands, at) else {
+            self.emit(row.picture.value, cursor.line);
+            return;
+        };
+        let pc = self.program.words.len();
+        let word = match self.encode(op, &arguments, pc) {
+            Ok(word) => word,
+            Err(failures) => {
+                let mut is_later = false;
+                for failure in failures {
+                    match failure {
+                        Failure::Later(..) => is_later = true,
+                        other => self.report_failure(other),
+                    }
+                }
+                if is_later {
+                    for argument in &mut arguments {
+                        if let Value::Expression(expression) = &mut argument.value {
+                            self.settle(expression);
+                        }
+                    }
+                    self.fixups.push(Fixup::Instruction { op, arguments, pc });
+                }
+                row.picture.value
+            }
+        };
+        self.emit(word, cursor.line);
+    }
+
+    /// Holds written operands against the row; `None` when what is wrong was reported.
+    fn arguments(&mut self, row: &Row, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
+        let mut found = Vec::with_capacity(row.operands.len());
+        let mut rest = operands.iter();
+        let mut place = 0;
+        let mut is_right = true;
+        while place < row.operands.len() {
+            let kind = row.operands[place].kind;
+            let Some(operand) = rest.next() else { break };
+            let known = |value: u8| Argument { value: Value::Known(value.into()), at: operand.at };
+            match &operand.written {
+                Written::Memory(offset, (file, number), register_at) if takes_offset(row, place) => {
+                    if *file == 's' {
+                        found.push(Argument { value: Value::Known((*number).into()), at: *register_at });
+                        found.push(Argument { value: Value::Expression(offset.clone()), at: offset.at });
+                    } else {
+                        let message = "an address is in a scalar register".to_string();
+                        self.messages.add(Problem::new(explain::OPERAND_KIND, message, *register_at, "not scalar"));
+                        is_right = false;
+                    }
+                    place += 2;
+                    continue;
+                }
+                Written::Register((file, number)) if kind.register_file() == Some(*file) => found.push(known(*number)),
+                _ if kind == Kind::Lane && operand.lane.is_some() => {
+                    found.push(known(operand.lane.unwrap_or(0) as u8));
+                }
+                Written::Number(expression) if kind.register_file().is_none() => {
+                    found.push(Argument { value: Value::Expression(expression.clone()), at: operand.at });
+                }
+                _ => {
+                    is_right = false;
+                    let problem = self.wrong_kind(row, place, operand);
+                    self.messages.add(problem);
+                }
+            }
+            place += 1;
+        }
+        let left = rest.count();
+        if left > 0 || place < row.operands.len() {
+            if is_right {
+                self.messages.add(wrong_count(row, operands, at));
+            }
+            return None;
+        }
+        is_right.then_some(found)
+    }
+
+    fn wrong_kind(&self, row: &Row, place: usize, operand: &Operand) -> Box<Problem> {
+        let wanted = row.operands[place];
+        let message = format!(
+            "operand `{}` of `{}` is {}, not {}",
+            wanted.letter as char,
+            row.name,
+            describe(wanted.kind),
+            operand.describe()
+        );
+        let label = match wanted.kind.register_file() {
+            Some(_) => format!("expected {}", describe(wanted.kind)),
+            None => "expected a number".into(),
+        };
+        let problem = Problem::new(explain::OPERAND_KIND, message, operand.at, label);
+        match &operand.written {
+            Written::Number(expression) if wanted.kind.register_file().is_some() => match expression.symbol() {
+                Some(name) => problem.suggest(&self.names.text(name).clone(), Among::Registers),
+                None if takes_offset(row, place) => problem.hint(format!("it is written `{}`", usage(row))),
+                None => problem,
+            },
+            Written::Memory(..) => problem.hint(format!("it is written `{}`", usage(row))),
+            _ => problem,
+        }
+    }
+
+    /// Encodes an instruction as far as its names are known.
+    pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<Failure>> {
+        let isa = self.isa;
+        let row = isa.row(op);
+        let mut numbers = Vec::with_capacity(arguments.len());
+        let mut failures = Vec::new();
+        for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
+            let value = match &argument.value {
+                Value::Known(value) => Ok(*value),
+                Value::Expression(expression) if operand.kind == Kind::Rel => {
+                    self.evaluate(expression).and_then(|target| self.distance(expression, target, pc))
+                }
+                Value::Expression(expression) => self.evaluate(expression),
+            };
+            let width = row.picture.field(operand.letter).map_or(32, |field| field.width);
+            let (least, most) = operand.kind.range(width);
+            match value {
+                Err(failure) => failures.push(failure),
+                Ok(number) if number < least || number > most => {
+                    failures.push(Failure::Wrong(out_of_range(row, *operand, argument.at, number, (least, most))));
+                }
+                Ok(number) => numbers.push(number),
+            }
+        }
+        if !failures.is_empty() {
+            return Err(failures);
+        }
+        Ok(isa.encode(op, &numbers).expect("count and ranges were checked"))
+    }
+
+    fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, Failure> {
+        if let Some(name) = expression.symbol()
+            && let Some(symbol) = self.names.get(name)
+            && matches!(symbol.meaning, Meaning::Buffer(_))
+        {
+            let text = self.names.text(name);
+            let message = format!("`{text}` is an address in the buffer, not in the code");
+            return Err(Failure::Wrong(
+                Problem::new(explain::SECTION, message, expression.at, "cannot be branched to")
+                    .also(symbol.at, "defined here"),
+            ));
+        }
+        let overflow = || {
+            Failure::Wrong(Problem::new(explain::OVERFLOW, "the distance does not fit 64 bits", expression.at, "here"))
+        };
+        target.checked_sub(pc as i64).ok_or_else(overflow)
+    }
+}
+
+fn wrong_count(row: &Row, operands: &[Operand], at: At) -> Box<Problem> {
+    let wanted = match row.operands.len() {
+        0 => "no operands".to_string(),
+        1 => "1 operand".to_string(),
+        count => format!("{count} operands"),
+    };
+    let written = operands.iter().map(|o| if matches!(o.written, Written::Memory(..)) { 2 } else { 1 }).sum::<usize>();
+    let place = operands.last().map_or(at, |last| at.to(last.at));
+    let message = format!("`{}` takes {wanted}, not {written}", row.name);
+    Problem::new(explain::OPERAND_COUNT, message, place, format!("it is written `{}`", usage(row))).hint(legend(row))
+}
+
+fn out_of_range(row: &Row, operand: isa::row::Operand, at: At, number: i64, (least, most): (i64, i64)) -> Box<Problem> {
+    let (letter, kind) = (operand.letter as char, operand.kind.name());
+    let name = &row.name;
+    if operand.kind == Kind::Rel {
+        let message = format!("the target is {number} words away, beyond the reach of `{name}`");
+        let problem =
+            Problem::new(explain::REACH, message, at, format!("operand `{letter}` ({kind}) reaches {least} to {most}"));
+        return if name == "jump" || name == "call" {
+            problem
+        } else {
+            problem.hint("branch the other way around a `jump`, which reaches further")
+        };
+    }
+    if let (Some(file), true) = (operand.kind.register_file(), operand.kind.registers() > 1) {
+        let count = operand.kind.registers();
+        let message = format!("`{file}{number}` cannot be the first of {count} registers");
+        let (hint, _) = file_name(file);
+        let label = format!("operand `{letter}` ({kind}) is {file}{least} to {file}{most}");
+        return Problem::new(explain::RANGE, message, at, label).hint(hint);
+    }
+    let message = format!("{number} does not fit operand `{letter}` of `{name}`");
+    let what = describe(operand.kind);
+    Problem::new(explain::RANGE, message, at, format!("{what} ({kind}) is {least} to {most} here"))
+}

@@ -1,0 +1,32 @@
+//! How much one source may ask for. A limit is an error with a place, never a long wait or a lack of memory.
+
+/// Words of a program.
+pub const WORDS: usize = 1 << 20;
+/// Octets of the initial buffer.
+pub const BUFFER: usize = 16 << 20;
+/// Lines of all files, expansions and repetitions together.
+pub const LINES: usize = 1_000_000;
+/// Octets of one line, after substitution.
+pub const LINE_OCTETS: usize = 1 << 20;
+/// Octets of all lines together.
+pub const TEXT_OCTETS: usize = 64 << 20;
+/// Macro calls and repetitions inside each other.
+pub const EXPANSION_DEPTH: usize = 64;
+/// Files that include each other.
+pub const INCLUDE_DEPTH: usize = 32;
+/// Parentheses inside each other.
+pub const PARENTHESES: usize = 100;
+/// Functions and regions of a program.
+pub const REGIONS: usize = 65_535;
+/// Files of a program.
+pub const SOURCES: usize = 65_535;
+/// Messages that are shown; the others are counted.
+pub const MESSAGES: usize = 100;
+/// Messages that are kept before the first ones in the order of the text are chosen.
+pub const KEPT_MESSAGES: usize = 2_000;
+/// Most digits after the point of a fixed-point literal.
+pub const FRACTION_DIGITS: usize = 38;
+/// Most fraction bits of a number format.
+pub const FRACTION_BITS: i64 = 63;
+/// Structures and their fields, in octets.
+pub const STRUCTURE: i64 = 1 << 31;

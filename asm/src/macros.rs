@@ -1,0 +1,290 @@
+//! Macros and repetitions: blocks of text that are read again with something put in.
+
+use std::rc::Rc;
+
+use crate::assembler::Assembler;
+use crate::cursor::Cursor;
+use crate::explain;
+use crate::frame::{Frame, Origin, Repeat, leading_directive};
+use crate::limits::LINES;
+use crate::line::{Line, Substitution};
+use crate::message::{At, Call, Parsed, Problem};
+use crate::symbol::Meaning;
+use crate::token::{Kind, tokens};
+
+/// A parameter of a macro.
+#[derive(Clone, Debug)]
+pub(crate) struct Parameter {
+    name: Rc<str>,
+    default: Option<Rc<str>>,
+    takes_rest: bool,
+}
+
+/// A macro.
+#[derive(Debug)]
+pub(crate) struct Macro {
+    pub name: Rc<str>,
+    parameters: Vec<Parameter>,
+    lines: Rc<[Line]>,
+    /// Names that every expansion has for itself.
+    locals: Vec<Rc<str>>,
+    pub at: At,
+}
+
+/// The text of the tokens `from..to` of a line.
+fn text_of<'t>(cursor: &Cursor<'t>, from: usize, to: usize) -> &'t str {
+    match cursor.tokens.get(from..to) {
+        Some([first, .., last]) => &cursor.line.text[first.start as usize..last.end as usize],
+        Some([only]) => &cursor.line.text[only.start as usize..only.end as usize],
+        _ => "",
+    }
+}
+
+/// Splits the rest of a line at the commas outside of parentheses: token ranges.
+fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
+    let mut parts = Vec::new();
+    let mut start = cursor.position;
+    let mut depth = 0usize;
+    for (place, token) in cursor.tokens.iter().enumerate().skip(start) {
+        match token.kind {
+            Kind::Mark("(") => depth += 1,
+            Kind::Mark(")") => depth = depth.saturating_sub(1),
+            Kind::Mark(",") if depth == 0 => {
+                parts.push((start, place));
+                start = place + 1;
+            }
+            _ => {}
+        }
+    }
+    if !cursor.is_at_end() {
+        parts.push((start, cursor.tokens.len()));
+    }
+    parts
+}
+
+impl Assembler<'_> {
+    /// `.macro name a, b=default, rest...`
+    pub(crate) fn define_macro(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
+        let header = self.macro_header(cursor);
+        let Some(lines) = self.capture(&[".macro"], ".endm", at) else { return header.map(|_| ()) };
+        let (name, name_at, parameters) = header?;
+        if self.operations.contains_key(&*name) || crate::pseudo::find(&name).is_some() {
+            let message = format!("`{name}` is an instruction and cannot be a macro");
+            return Err(Problem::new(explain::RESERVED, message, name_at, "choose another name"));
+        }
+        if let Some(other) = self.macros.get(&name) {
+            let message = format!("the macro `{name}` is defined twice");
+            return Err(Problem::new(explain::DUPLICATE, message, name_at, "second definition")
+                .also(Some(other.at), "first definition"));
+        }
+        let locals = self.local_names(&lines);
+        self.macros.insert(name.clone(), Rc::new(Macro { name, parameters, lines, locals, at: name_at }));
+        Ok(())
+    }
+
+    fn macro_header(&mut self, cursor: &mut Cursor) -> Parsed<(Rc<str>, At, Vec<Parameter>)> {
+        let (name, name_at) = cursor.name("the name of the macro")?;
+        let mut parameters: Vec<Parameter> = Vec::new();
+        cursor.accept(",");
+        while !cursor.is_at_end() {
+            let (text, at) = cursor.name("a parameter")?;
+            if parameters.iter().any(|other| &*other.name == text) {
+                let message = format!("the parameter `{text}` is there twice");
+                return Err(Problem::new(explain::DUPLICATE, message, at, "second one"));
+            }
+            if parameters.last().is_some_and(|last| last.takes_rest) {
+                return Err(Problem::new(
+                    explain::MACRO,
+                    "nothing follows a parameter that takes the rest",
+                    at,
+                    "too late",
+                ));
+            }
+            let mut parameter = Parameter { name: text.into(), default: None, takes_rest: false };
+            if cursor.accept("...") {
+                parameter.takes_rest = true;
+                parameter.default = Some("".into());
+            } else if cursor.accept("=") {
+                let start = cursor.position;
+                let end = split(cursor).first().map_or(start, |&(_, end)| end);
+                parameter.default = Some(text_of(cursor, start, end).into());
+                cursor.position = end;
+            }
+            parameters.push(parameter);
+            if !cursor.accept(",") && !matches!(cursor.kind(), None | Some(Kind::Name)) {
+                return Err(cursor.expected("a comma"));
+            }
+        }
+        Ok((name.into(), name_at, parameters))
+    }
+
+    /// The names on the `.local` lines of a macro, nested definitions left out.
+    fn local_names(&mut self, lines: &[Line]) -> Vec<Rc<str>> {
+        let mut names = Vec::new();
+        let mut depth = 0usize;
+        for line in lines {
+            match leading_directive(&line.text) {
+                Some(".macro") => depth += 1,
+                Some(".endm") => depth = depth.saturating_sub(1),
+                Some(".local") if depth == 0 => {
+                    let (found, _) = tokens(&line.text);
+                    let cursor = Cursor { line, tokens: &found, position: 0 };
+                    names.extend(found.iter().filter(|t| t.kind == Kind::Name).map(|&t| Rc::from(cursor.text(t))));
+                }
+                _ => {}
+            }
+        }
+        names
+    }
+
+    /// Starts a macro call.
+    pub(crate) fn call_macro(&mut self, definition: &Rc<Macro>, at: At, cursor: &mut Cursor) {
+        match self.macro_arguments(definition, at, cursor) {
+            Err(problem) => self.messages.add(problem),
+            Ok(substitution) => {
+                self.messages.calls.push(Call { at: cursor.line.at_all(), name: definition.name.clone() });
+                let context = self.messages.calls.len() as u32;
+                let mut frame = Frame::new(definition.lines.clone(), Origin::Macro);
+                frame.substitution = Some(Rc::new(substitution));
+                frame.context = Some(context);
+                self.enter(frame, at);
+            }
+        }
+    }
+
+    fn macro_arguments(&mut self, definition: &Macro, at: At, cursor: &mut Cursor) -> Parsed<Substitution> {
+        let parameters = &definition.parameters;
+        let mut values: Vec<Option<Rc<str>>> = vec![None; parameters.len()];
+        let mut next = 0;
+        for (start, end) in split(cursor) {
+            let place = cursor.tokens.get(start).map_or(cursor.here(), |&token| cursor.at(token));
+            if parameters.get(next).is_some_and(|parameter| parameter.takes_rest) {
+                values[next] = Some(text_of(cursor, start, cursor.tokens.len()).into());
+                break;
+            }
+            let named = match cursor.tokens.get(start..end) {
+                Some([name, equals, ..]) if name.kind == Kind::Name && equals.kind == Kind::Mark("=") => {
+                    parameters.iter().position(|parameter| *parameter.name == *cursor.text(*name))
+                }
+                _ => None,
+            };
+            let (slot, start) = match named {
+                Some(slot) => (slot, start + 2),
+                None => (next, start),
+            };
+            let Some(value) = values.get_mut(slot) else {
+                let message = format!("the macro `{}` takes at most {} arguments", definition.name, parameters.len());
+                return Err(Problem::new(explain::MACRO, message, place, "one too many")
+                    .also(Some(definition.at), "defined here"));
+            };
+            if value.is_some() {
+                let message = format!("the argument `{}` is there twice", parameters[slot].name);
+                return Err(Problem::new(explain::MACRO, message, place, "second one"));
+            }
+            let text = text_of(cursor, start, end);
+            *value = (!text.is_empty()).then(|| text.into());
+            next += usize::from(named.is_none());
+        }
+        cursor.position = cursor.tokens.len();
+        self.expansions += 1;
+        let number = self.expansions;
+        let mut substitution = Substitution { number: Some(number), ..Substitution::default() };
+        for (parameter, value) in parameters.iter().zip(values) {
+            let Some(text) = value.or_else(|| parameter.default.clone()) else {
+                let message = format!("the macro `{}` needs an argument `{}`", definition.name, parameter.name);
+                return Err(Problem::new(explain::MACRO, message, at, "argument missing")
+                    .also(Some(definition.at), "defined here"));
+            };
+            substitution.arguments.insert(parameter.name.clone(), text);
+        }
+        for name in &definition.locals {
+            substitution.locals.insert(name.clone(), format!("{name}${number}").into());
+        }
+        Ok(substitution)
+    }
+
+    /// `.exitm`
+    pub(crate) fn exit_macro(&mut self, at: At) -> Parsed<()> {
+        let Some(place) = self.frames.iter().rposition(|frame| frame.origin == Origin::Macro) else {
+            return Err(Problem::new(explain::UNOPENED, "`.exitm` stands outside of macros", at, "no macro to leave"));
+        };
+        self.frames.truncate(place);
+        Ok(())
+    }
+
+    /// `.rept count, counter`
+    pub(crate) fn repeat_count(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
+        let header = self.repeat_header(cursor);
+        let Some(lines) = self.capture(&[".rept", ".irp"], ".endr", at) else { return header.map(|_| ()) };
+        let Some((count, count_at, counter)) = header? else { return Ok(()) };
+        if count < 0 {
+            return Err(Problem::new(explain::RANGE, format!("{count} repetitions"), count_at, "negative"));
+        }
+        if count.saturating_mul(lines.len() as i64) > LINES as i64 {
+            let message = format!("{count} repetitions of {} lines make more than {LINES} lines", lines.len());
+            return Err(Problem::new(explain::SIZE, message, count_at, "too many"));
+        }
+        if count == 0 || lines.is_empty() {
+            return Ok(());
+        }
+        if let Some((text, counter_at)) = &counter {
+            self.set_variable(text, *counter_at, 0)?;
+        }
+        let counter = counter.map(|(text, _)| self.names.intern(&text));
+        let mut frame = Frame::new(lines, Origin::Repetition);
+        frame.repeat = Some(Repeat::Count { remaining: count - 1, counter, index: 0 });
+        self.enter(frame, at);
+        Ok(())
+    }
+
+    #[allow(clippy::type_complexity, reason = "the parts of one header")]
+    fn repeat_header(&mut self, cursor: &mut Cursor) -> Parsed<Option<(i64, At, Option<(Rc<str>, At)>)>> {
+        let count = self.expression(cursor)?;
+        let mut counter = None;
+        if cursor.accept(",") {
+            let (text, at) = cursor.name("the name of the counter")?;
+            counter = Some((text.into(), at));
+        }
+        cursor.end()?;
+        let value = self.value_now(&count)?;
+        Ok(value.map(|value| (value, count.at, counter)))
+    }
+
+    /// `.irp parameter, text, text`
+    pub(crate) fn repeat_texts(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
+        let header = cursor.name("a parameter").and_then(|(text, _)| {
+            if !cursor.is_at_end() {
+                cursor.expect(",")?;
+            }
+            Ok(Rc::<str>::from(text))
+        });
+        let Some(lines) = self.capture(&[".rept", ".irp"], ".endr", at) else { return header.map(|_| ()) };
+        let parameter = header?;
+        let mut texts: Vec<Rc<str>> =
+            split(cursor).into_iter().rev().map(|(start, end)| text_of(cursor, start, end).into()).collect();
+        let Some(first) = texts.pop() else { return Ok(()) };
+        let mut frame = Frame::new(lines, Origin::Repetition);
+        let arguments = [(parameter.clone(), first)].into();
+        frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
+        frame.repeat = Some(Repeat::Texts { parameter, remaining: texts });
+        self.enter(frame, at);
+        Ok(())
+    }
+
+    /// The counter of a repetition, or a name that `.set` defines.
+    pub(crate) fn set_variable(&mut self, text: &str, at: At, value: i64) -> Parsed<()> {
+        self.check_name(text, at)?;
+        let name = self.names.intern(text);
+        let times = match self.names.get(name).map(|symbol| (&symbol.meaning, symbol.at)) {
+            None => 0,
+            Some((Meaning::Variable(_, times), _)) => *times,
+            Some((Meaning::Broken, _)) => 0,
+            Some((_, other)) => {
+                let message = format!("`{text}` cannot be set: it is no variable");
+                return Err(Problem::new(explain::DUPLICATE, message, at, "set here").also(other, "defined here"));
+            }
+        };
+        self.names.set(name, Meaning::Variable(value, times.saturating_add(1)), Some(at));
+        Ok(())
+    }
+}

@@ -1,0 +1,181 @@
+//! Places in expanded text, problems, and their way into an [`isa::diagnostic::Report`] in the order of the text.
+
+use std::collections::HashSet;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Place, Report, Severity, Source, did_you_mean};
+
+use crate::limits::{KEPT_MESSAGES, MESSAGES};
+
+/// A place: octets of a file, and the chain of macro calls through which the text was reached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct At {
+    pub source: u16,
+    /// 1 + index into [`Messages::calls`]; 0 for text outside of macros.
+    pub context: u32,
+    pub start: u32,
+    pub end: u32,
+}
+
+impl At {
+    /// From the start of this place to the end of `other`.
+    pub fn to(self, other: At) -> At {
+        At { end: other.end.max(self.start), ..self }
+    }
+
+    /// The place behind this one.
+    pub fn behind(self) -> At {
+        At { start: self.end, ..self }
+    }
+}
+
+/// A macro call.
+#[derive(Clone, Debug)]
+pub(crate) struct Call {
+    /// Where the call stands; its context is the call around it.
+    pub at: At,
+    /// Name of the macro.
+    pub name: Rc<str>,
+}
+
+/// What kind of name was meant, for suggestions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Among {
+    Instructions,
+    Directives,
+    Symbols,
+    Formats,
+    Sizes,
+    Registers,
+}
+
+/// One message in the making.
+#[derive(Clone, Debug)]
+pub(crate) struct Problem {
+    pub severity: Severity,
+    pub code: &'static str,
+    pub message: String,
+    pub at: Option<At>,
+    pub label: String,
+    pub others: Vec<(At, String)>,
+    pub hint: Option<String>,
+    pub suggest: Option<(String, Among)>,
+}
+
+/// A result whose error is a problem to report.
+pub(crate) type Parsed<T> = Result<T, Box<Problem>>;
+
+impl Problem {
+    pub fn new(code: &'static str, message: impl Into<String>, at: At, label: impl Into<String>) -> Box<Problem> {
+        Box::new(Problem {
+            severity: Severity::Error,
+            code,
+            message: message.into(),
+            at: Some(at),
+            label: label.into(),
+            others: Vec::new(),
+            hint: None,
+            suggest: None,
+        })
+    }
+
+    pub fn hint(mut self: Box<Problem>, hint: impl Into<String>) -> Box<Problem> {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    pub fn also(mut self: Box<Problem>, at: Option<At>, label: impl Into<String>) -> Box<Problem> {
+        if let Some(at) = at {
+            self.others.push((at, label.into()));
+        }
+        self
+    }
+
+    pub fn suggest(mut self: Box<Problem>, name: &str, among: Among) -> Box<Problem> {
+        self.suggest = Some((name.into(), among));
+        self
+    }
+}
+
+/// The messages of an assembly.
+#[derive(Debug, Default)]
+pub(crate) struct Messages {
+    kept: Vec<Problem>,
+    seen: HashSet<(&'static str, u16, u32, u32, String)>,
+    unkept: usize,
+    errors: usize,
+    /// Set while a statement whose text was refused is still carried out.
+    pub is_muted: bool,
+    /// Macro calls, by [`At::context`].
+    pub calls: Vec<Call>,
+}
+
+impl Messages {
+    /// Adds a message, unless the same one stands at the same place of the text already.
+    #[allow(clippy::boxed_local, reason = "problems travel boxed, as errors of results")]
+    pub fn add(&mut self, problem: Box<Problem>) {
+        if self.is_muted {
+            return;
+        }
+        if problem.severity == Severity::Error {
+            self.errors += 1;
+        }
+        let at = problem.at.unwrap_or_default();
+        if self.kept.len() >= KEPT_MESSAGES {
+            self.unkept += 1;
+        } else if self.seen.insert((problem.code, at.source, at.start, at.end, problem.message.clone())) {
+            self.kept.push(*problem);
+        }
+    }
+
+    /// The report; `known` gives the names that a suggestion may come from.
+    pub fn report<'a>(mut self, sources: &[Arc<Source>], known: impl Fn(Among) -> Vec<&'a str>) -> Report {
+        self.kept.sort_by_key(|problem| problem.at.map(|at| (at.source, at.start, at.end)));
+        let beyond = self.unkept + self.kept.len().saturating_sub(MESSAGES);
+        let calls = std::mem::take(&mut self.calls);
+        let has_errors = self.errors > 0;
+        let mut shown: Vec<Diagnostic> =
+            self.kept.into_iter().take(MESSAGES).map(|problem| diagnostic(problem, sources, &calls, &known)).collect();
+        if beyond > 0 {
+            let text = format!("... and {beyond} more");
+            shown.push(if has_errors { Diagnostic::error(text) } else { Diagnostic::warning(text) });
+        }
+        Report(shown)
+    }
+}
+
+/// Most calls of a chain that a message shows.
+const SHOWN_CALLS: usize = 4;
+
+fn diagnostic<'a>(
+    problem: Problem,
+    sources: &[Arc<Source>],
+    calls: &[Call],
+    known: &impl Fn(Among) -> Vec<&'a str>,
+) -> Diagnostic {
+    let place = |at: At| Place::new(&sources[at.source as usize], at.start as usize..at.end as usize);
+    let mut message = match problem.severity {
+        Severity::Error => Diagnostic::error(problem.message),
+        Severity::Warning => Diagnostic::warning(problem.message),
+    };
+    message = message.code(problem.code);
+    if let Some(at) = problem.at {
+        message = message.at(place(at), problem.label);
+    }
+    for (at, label) in problem.others {
+        message = message.also(place(at), label);
+    }
+    let mut context = problem.at.map_or(0, |at| at.context);
+    for _ in 0..SHOWN_CALLS {
+        let Some(call) = (context as usize).checked_sub(1).and_then(|at| calls.get(at)) else { break };
+        message = message.also(place(call.at), format!("in this call of `{}`", call.name));
+        context = call.at.context;
+    }
+    let suggestion = problem.suggest.as_ref().and_then(|(name, among)| did_you_mean(name, known(*among)));
+    match (suggestion, problem.hint) {
+        (Some(word), _) => message.hint(format!("did you mean `{word}`?")),
+        (None, Some(hint)) => message.hint(hint),
+        (None, None) => message,
+    }
+}

@@ -1,0 +1,70 @@
+; Goes down from the root to the packet in which the ray is just behind its exit plane (or in which it starts: exit_axis = 3,
+; exit_run = 0, exit_slope = 1). At a split s of axis j the point's coordinate O_j + D_j run / slope is compared with s as products,
+; (s - O_j) slope with D_j run: exact, and the same for all three axes.
+;
+; In: origin, direction, backwards, exit_*. Out: packet_count, packet_refs, box_low, box_high. Returns by link_step.
+; Scratch: s12 to s15, w0, w1.
+.func descend
+    vget  s12, direction, x
+    wmul  w0, exit_run, s12
+    swide w0, RUNS(s0)
+    vget  s12, direction, y
+    wmul  w0, exit_run, s12
+    swide w0, RUNS + 8(s0)
+    vget  s12, direction, z
+    wmul  w0, exit_run, s12
+    swide w0, RUNS + 16(s0)
+    lv    box_low, ROOT_LOW(s0)
+    lv    box_high, ROOT_HIGH(s0)
+    li    s13, ROOT
+descend_node:
+    movi  s12, NODE
+    movi  s14, sizeof(node)
+    load  s12, s13, s14
+    lw    s15, NODE + node.plane(s0)
+    lw    s13, NODE + node.link(s0)
+    andi  s12, s13, 3
+    srli  s14, s12, 1
+    and   s14, s14, s12
+    xor   s13, s13, s12
+    bnez  s14, descend_leaf
+    vgetr s14, origin, s12
+    sub   s14, s15, s14
+    wmul  w0, s14, exit_slope
+    slli  s14, s12, 3
+    lwide w1, RUNS(s14)
+    bwlt  w0, w1, descend_right
+    bweq  w0, w1, descend_tie
+descend_left:
+    vputr box_high, s15, s12
+    jump  descend_node
+descend_right:
+    vputr box_low, s15, s12
+    lea   s13, sizeof(node)(s13)
+    jump  descend_node
+descend_tie:
+    ; A plane through the origin and the exit plane itself are crossed. Of the split and the exit plane, met at the same t, the split
+    ; is crossed when it is the first: for j < k when D_j > 0, for j > k when D_k < 0. A crossed plane lies behind: D_j >= 0 goes right.
+    srl   s14, backwards, s12
+    andi  s14, s14, 1
+    vgetr exit_plane, origin, s12
+    beq   s15, exit_plane, descend_crossed
+    beq   s12, exit_axis, descend_crossed
+    blt   s12, exit_axis, descend_lower
+    srl   exit_plane, backwards, exit_axis
+    andi  exit_plane, exit_plane, 1
+    bnez  exit_plane, descend_crossed
+    jump  descend_ahead
+descend_lower:
+    beqz  s14, descend_crossed
+descend_ahead:
+    bnez  s14, descend_right
+    jump  descend_left
+descend_crossed:
+    beqz  s14, descend_right
+    jump  descend_left
+descend_leaf:
+    mov   packet_count, s15
+    mov   packet_refs, s13
+    ret   link_step
+.endfunc

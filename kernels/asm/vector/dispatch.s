@@ -1,0 +1,92 @@
+; The main processor: makes the camera ray of each pixel, finds its first packet, feeds the cores and stores their answers.
+.reg pixel_at,  s20
+.reg column,    s21
+.reg row,       s22
+.reg started,   s23        ; cores that have work
+.reg target,    s19
+.reg answer,    v18        ; (pixel, -, -) and the colour
+.entry dispatch
+.func dispatch
+    mov   pixel_at, s0
+    mov   started, s0
+    li    row, FIRST_ROW
+dispatch_row:
+    li    column, FIRST_COLUMN
+dispatch_pixel:
+    call  link_node, camera
+    call  link_packet, first_packet
+    cores s12
+    bge   started, s12, dispatch_wait
+    mov   target, started
+    iaddi started, started, 1
+    jump  dispatch_send
+dispatch_wait:
+    call  link_node, receive
+dispatch_send:
+    vput  message, pixel_at, 0
+    vput  message, packet_count, 1
+    vput  message, packet_refs, 2
+    send5 target, message
+    iaddi pixel_at, pixel_at, 1
+    iaddi column, column, 1
+    li    s12, FIRST_COLUMN + WIDTH
+    blt   column, s12, dispatch_pixel
+    iaddi row, row, 1
+    li    s12, FIRST_ROW + HEIGHT
+    blt   row, s12, dispatch_row
+dispatch_drain:
+    call  link_node, receive
+    isubi started, started, 1
+    bnez  started, dispatch_drain
+    halt
+.endfunc
+
+; Waits for an answer and stores its colour in the frame. Out: target = the core that is free now. Returns by link_node.
+.func receive
+    recv2 answer, target
+    vget  s12, answer, 0
+    li    s13, FRAME
+    element s13, s13, s12, 12
+    vmov  v20, v19
+    stv   v20, (s13)
+    ret   link_node
+.endfunc
+
+; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, v6, w0 to w3.
+.func camera
+    wextend w2, column, 0
+    wextend w3, row, 0
+.if PERSPECTIVE
+    .rept 3, k
+    lwide w0, CAMERA_COLUMN + 8 * k(s0)
+    wmulw w0, w0, w2
+    lwide w1, CAMERA_BASE + 8 * k(s0)
+    wadd  w1, w1, w0
+    lwide w0, CAMERA_ROW + 8 * k(s0)
+    wmulw w0, w0, w3
+    wsub  w1, w1, w0
+    wround s12, w1, CAMERA_EXTRA
+    vput  v6, s12, k
+    .endr
+    vnorm v6, s12, v6
+    call  link_step, unit
+    vmov  direction, v6
+    lv    origin, CAMERA_EYE(s0)
+.else
+    lwide w0, CAMERA_PITCH(s0)
+    wmulw w1, w0, w2
+    wmulw w0, w0, w3
+    lwide w2, CAMERA_FIRST(s0)
+    wadd  w1, w2, w1
+    wround s12, w1, CAMERA_EXTRA
+    vput  origin, s12, x
+    lwide w2, CAMERA_FIRST + 8(s0)
+    wsub  w1, w2, w0
+    wround s12, w1, CAMERA_EXTRA
+    vput  origin, s12, y
+    li    s12, CAMERA_Z
+    vput  origin, s12, z
+    lv    direction, CAMERA_DIRECTION(s0)
+.endif
+    ret   link_node
+.endfunc

@@ -1,0 +1,28 @@
+; The packet after the current one, or packet_count = -1 when the search is over: the ray leaves the scene, any hit will do and there
+; is one, or the nearest hit is surely nearer than the exit, (t + 1 ulp) |D_k| < run_k.
+; In: the ray, the packet's box, near, near_t, any_hit. Out: the packet and its box. Returns by link_packet. Report, pseudo codes 2 and 3.
+.func next_packet
+    call  link_step, exit_face
+    beqz  any_hit, 1f
+    bnez  near, 4f
+    jump  2f
+1:  beqz  near, 3f
+2:  iaddi s12, near_t, 1
+    wmul  w0, s12, exit_slope
+    wextend w1, exit_run, t + dir - pos
+    bwlt  w0, w1, 4f
+3:  srl   s13, backwards, exit_axis
+    andi  s13, s13, 1
+    movi  s12, ROOT_HIGH
+    element s12, s12, s13, ROOT_LOW - ROOT_HIGH
+    element s12, s12, exit_axis, 4
+    lw    s12, (s12)
+    beq   s12, exit_plane, 4f
+    isubi steps, steps, 1
+    beqz  steps, 5f
+    call  link_step, descend
+    ret   link_packet
+4:  movi  packet_count, -1
+    ret   link_packet
+5:  trap  TRAP_STUCK
+.endfunc

@@ -1,0 +1,33 @@
+; Tests every triangle of the packet. The nearest hit has the smallest t, then the lowest index.
+; In: packet_count, packet_refs, near, near_t, any_hit. Out: near, near_t, near_slot. Returns by link_packet.
+; References come in blocks of REFERENCES_AT_ONCE, a triangle at a time beside the nearest one: any packet fits the buffer.
+; Scratch: s12 to s15 and what triangle needs; packet_count and packet_refs are used up.
+.func packet
+    blez  packet_count, 4f
+1:  movi  s12, REFERENCES_AT_ONCE
+    min   s12, s12, packet_count
+    isub  packet_count, packet_count, s12
+    slli  s12, s12, 2
+    movi  s13, REFERENCES
+    load  s13, packet_refs, s12
+    addr  s14, s13, s12
+    addr  packet_refs, packet_refs, s12
+2:  lwp   s15, 4(s13)
+    movi  s12, sizeof(triangle)
+    load  slot, s15, s12
+    call  link_step, triangle
+    blt   near_t, s12, 3f
+    bne   near_t, s12, packet_nearer
+    bltu  s15, near, packet_nearer
+3:  bltu  s13, s14, 2b
+    bgtz  packet_count, 1b
+4:  ret   link_packet
+packet_nearer:
+    mov   near_t, s12
+    mov   near, s15
+    mov   s12, slot
+    mov   slot, near_slot
+    mov   near_slot, s12
+    beqz  any_hit, 3b
+    ret   link_packet
+.endfunc

@@ -1,0 +1,20 @@
+; A work item of a core: receives pixel, ray and first packet, sends the colour. Report, pseudo code 5.
+.entry pixel
+.func pixel
+    recv5 message, s12
+    vget  packet_count, message, 1
+    vget  packet_refs, message, 2
+    vlt   backwards, direction, zero_vector
+    movi  slot, SLOT
+    movi  near_slot, NEAR_SLOT
+    vmov  pixel_colour, zero_vector
+.if HAS_TREE
+    call  link_tree, ray_tree
+.else
+    call  link_node, contribution
+.endif
+    vmov  pixel_head, message
+    cores s12
+    send2 s12, pixel_head
+    halt
+.endfunc

@@ -1,0 +1,28 @@
+; Whether the ray goes through the surface: the weight of the refracted ray (0: none), and for total reflection the weight that the
+; reflected ray takes over. k = 1 - eta^2 (1 - c^2) < 0 is total reflection. Report 4.2, corrected.
+; In: weight_now, inside, cosine, the material. Out: refracted_weight, reflected_weight (what is added), k and eta in the node.
+; Returns by link_node. Scratch: s12 to s15.
+.func refracts
+    mov   reflected_weight, s0
+    mov   refracted_weight, s0
+    lw    s12, MATERIAL_AT(s0)
+    lw    s13, material.transmission(s12)
+    beqz  s13, 3f
+    mul   refracted_weight, weight_now, s13, weight
+    lw    s14, material.index(s12)
+    bnez  inside, 1f
+    lw    s14, material.inverse_index(s12)
+1:  mul   s13, cosine, cosine, dir
+    li    s15, 1:dir
+    sub   s13, s15, s13
+    mul   s13, s13, s14, dir
+    mul   s13, s13, s14, index + index - dir
+    sub   s13, s15, s13
+    bgez  s13, 2f
+    mov   reflected_weight, refracted_weight
+    mov   refracted_weight, s0
+    ret   link_node
+2:  sw    s13, raynode.k(node)
+    sw    s14, raynode.eta(node)
+3:  ret   link_node
+.endfunc

@@ -1,0 +1,8 @@
+; Unit vector in the direction of v6, from a vector scaled into [2^(word-3), 2^(word-2)]: its square fits a wide number, and its
+; length a word. In: v6. Out: v6 in the direction format, within 1.1 ulp a lane. Returns by link_step. Scratch: s12, w0.
+.func unit
+    wdot  w0, v6, v6
+    call  link_leaf, sqrt
+    vdiv  v6, v6, s12, dir
+    ret   link_step
+.endfunc

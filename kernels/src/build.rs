@@ -1,0 +1,133 @@
+//! Puts a program together: the prelude of the scene, the names of registers, one file a function; and assembles it.
+
+use std::sync::Arc;
+
+use isa::diagnostic::{Report, Source};
+use isa::{Isa, Program};
+use scenes::image::Image;
+use scenes::model::{Scene, View};
+
+use crate::function::{Function, Profile};
+use crate::prelude;
+
+/// What of a scene decides which code its programs contain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Features {
+    /// Whether some triangle's material reflects.
+    pub has_mirror: bool,
+    /// Whether some triangle's material is transparent.
+    pub is_transparent: bool,
+    /// Levels of secondary rays.
+    pub bounces: u32,
+    /// Weight (in the weight format) that a secondary ray must exceed.
+    pub cutoff: i32,
+}
+
+impl Features {
+    /// The features of a scene.
+    pub fn new(scene: &Scene, view: &View, cutoff: i32) -> Features {
+        let any = |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
+        Features {
+            has_mirror: any(&|m| scene.materials[m].reflection > 0.0),
+            is_transparent: any(&|m| scene.materials[m].transmission() > 0.0),
+            bounces: view.bounces,
+            cutoff,
+        }
+    }
+
+    /// Whether any ray has children.
+    pub fn has_tree(&self) -> bool {
+        self.bounces > 0 && (self.has_mirror || self.is_transparent)
+    }
+
+    /// Whether any ray is refracted.
+    pub fn has_glass(&self) -> bool {
+        self.bounces > 0 && self.is_transparent
+    }
+}
+
+/// The part of the picture that is drawn, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// First column.
+    pub column: u32,
+    /// First row, row 0 on top.
+    pub row: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// What a user may choose of the kernels.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Which file serves which function.
+    pub profile: Profile,
+    /// Files of the user's own that serve a function instead.
+    pub replaced: Vec<(Function, Arc<Source>)>,
+    /// The part of the picture that is drawn; `None` for all of it.
+    pub crop: Option<Crop>,
+    /// Weight that a secondary ray must exceed, in [0, 1].
+    pub weight_cutoff: f64,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { profile: Profile::default(), replaced: Vec::new(), crop: None, weight_cutoff: 0.0 }
+    }
+}
+
+/// The programs that draw a scene.
+#[derive(Clone, Debug)]
+pub struct Build {
+    /// What each core runs.
+    pub cores: Program,
+    /// What the main processor runs.
+    pub main: Program,
+    /// The part of the picture that is drawn.
+    pub crop: Crop,
+    /// Warnings of the assembler.
+    pub warnings: Report,
+}
+
+/// Assembles the programs for a scene in memory.
+///
+/// # Errors
+/// What the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
+pub fn build(scene: &Scene, view: &View, image: &Image, isa: &Isa, options: &Options) -> Result<Build, Report> {
+    let cutoff = (options.weight_cutoff * f64::from(image.formats.weight).exp2()).floor() as i32;
+    let features = Features::new(scene, view, cutoff);
+    let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
+    let mut warnings = Report::default();
+    let mut program = |is_main: bool| -> Result<Program, Report> {
+        let assembled = assemble(image, &features, &crop, isa, options, is_main)?;
+        warnings.0.extend(assembled.warnings.0);
+        Ok(assembled.program)
+    };
+    let (cores, main) = (program(false)?, program(true)?);
+    Ok(Build { cores, main, crop, warnings })
+}
+
+fn assemble(
+    image: &Image,
+    features: &Features,
+    crop: &Crop,
+    isa: &Isa,
+    options: &Options,
+    is_main: bool,
+) -> Result<asm::Assembled, Report> {
+    let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, is_main))];
+    files.extend(prelude::INCLUDED.map(|(name, text)| Source::new(name, text)));
+    for function in Function::of_program(is_main, features.has_tree(), features.has_glass()) {
+        let replaced = options.replaced.iter().rev().find(|(other, _)| *other == function);
+        files.push(match replaced {
+            Some((_, source)) => source.clone(),
+            None => {
+                let (path, text) = function.file(options.profile);
+                Source::new(format!("kernels/asm/{path}"), text)
+            }
+        });
+    }
+    prelude::assemble(if is_main { "<main>" } else { "<core>" }, &files, isa)
+}

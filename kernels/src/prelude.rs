@@ -1,0 +1,200 @@
+//! What the loader tells a program about its scene, as assembly text: formats, features, structures, and the map of the local
+//! buffer with its initial contents. The text stands before the kernels and can be printed and assembled by hand.
+
+use std::fmt::Write;
+use std::sync::Arc;
+
+use isa::Isa;
+use isa::diagnostic::{Report, Source};
+use scenes::camera::RawCamera;
+use scenes::image::{Image, Kind};
+use scenes::kdtree::Content;
+use scenes::layout::Structure;
+
+use crate::build::{Crop, Features};
+
+/// Octets of the buffer's tables of materials and lights (report 6.2); what does not fit stays in global memory.
+const TABLES: u32 = 768;
+
+/// References that are fetched at once.
+const REFERENCES_AT_ONCE: u32 = 128;
+
+/// Trap number of a ray that visits more packets than there are.
+const TRAP_STUCK: u32 = 1;
+
+/// Bits of the widest difference of two coordinates, in the sense |difference| < 2^n.
+fn difference_bits(image: &Image) -> u32 {
+    let reach = image.bounds.union(&image.grid.reach);
+    let widest = (0..3).map(|k| i64::from(reach.high[k]) - i64::from(reach.low[k]) + 1).max().unwrap_or(1);
+    64 - widest.leading_zeros()
+}
+
+/// A structure as a `.struct` of the assembler.
+pub(crate) fn structure(text: &mut String, structure: &Structure) {
+    let _ = writeln!(text, ".struct {}", structure.name);
+    for field in structure.fields {
+        let _ = writeln!(text, "    .field {}, {}    ; {}", field.name, field.octets(), field.holds);
+    }
+    let _ = writeln!(text, ".endstruct");
+}
+
+/// The prelude of a core's program, or of the main processor's.
+pub fn text(image: &Image, features: &Features, crop: &Crop, is_main: bool) -> String {
+    let mut text = String::from("; Written by the loader for one scene and one machine.\n");
+    for (name, bits) in image.formats.entries() {
+        let _ = writeln!(text, ".format {name}, {bits}");
+    }
+    let _ = writeln!(text, ".format index, {}", image.formats.index);
+    for (name, value) in constants(image, features, crop) {
+        let _ = writeln!(text, ".equ {name}, {value}");
+    }
+    text.push_str(".equ T_QUOTIENT, dir + t - pos + T_SHIFT - EDGE_SHIFT\n\n");
+    for part in image.layout.structures() {
+        structure(&mut text, part);
+    }
+    text.push_str(RAY_NODE);
+    text.push_str(".buffer\n");
+    text.push_str(TRAVERSAL);
+    let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
+    let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
+    if is_main { camera(&mut text, &image.camera) } else { core(&mut text, image, features) }
+    text.push_str(".text\n");
+    text
+}
+
+/// Whether the materials, and the lights, lie in the buffer from the start.
+fn is_local(image: &Image, kind: Kind) -> bool {
+    image.region(kind).len() as u32 <= TABLES / 2
+}
+
+fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
+    let formats = &image.formats;
+    let bits = difference_bits(image);
+    let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
+    let spare = |needed: u32| needed.saturating_sub(2 * formats.word).into();
+    let leaves = image.tree.nodes.iter().filter(|node| matches!(node.content, Content::Leaf { .. })).count();
+    let largest = (1 << (formats.word - 1)) - 1;
+    vec![
+        ("WORD", formats.word.into()),
+        ("EDGE_SHIFT", spare(edge)),
+        ("T_SHIFT", spare(reach)),
+        ("OFFSET", if formats.t == formats.position { 2 } else { 3 }),
+        ("NEVER", largest - 1),
+        ("MISSED", largest),
+        ("MOST_STEPS", leaves as i64 + 1),
+        ("TRAP_STUCK", TRAP_STUCK.into()),
+        ("ROOT", image.root.into()),
+        ("FRAME", image.region(Kind::Frame).start.into()),
+        ("MATERIALS_BUS", image.region(Kind::Materials).start.into()),
+        ("MATERIALS_LOCAL", is_local(image, Kind::Materials).into()),
+        ("LIGHTS_BUS", image.region(Kind::Lights).start.into()),
+        ("LIGHTS_LOCAL", is_local(image, Kind::Lights).into()),
+        ("LIGHTS", image.counts.lights.into()),
+        ("REFERENCES_AT_ONCE", REFERENCES_AT_ONCE.into()),
+        ("AMBIENT", image.ambient.into()),
+        ("BOUNCES", features.bounces.into()),
+        ("CUTOFF", features.cutoff.into()),
+        ("HAS_TREE", features.has_tree().into()),
+        ("HAS_GLASS", features.has_glass().into()),
+        ("HAS_BACKGROUND", (image.background != [0; 3]).into()),
+        ("PERSPECTIVE", matches!(image.camera, RawCamera::Perspective { .. }).into()),
+        ("FIRST_COLUMN", crop.column.into()),
+        ("FIRST_ROW", crop.row.into()),
+        ("WIDTH", crop.width.into()),
+        ("HEIGHT", crop.height.into()),
+    ]
+}
+
+/// What descend needs in any buffer.
+const TRAVERSAL: &str = "\
+NODE: .space sizeof(node)
+RUNS: .space 24                 ; run x direction, a wide number an axis
+";
+
+/// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
+fn core(text: &mut String, image: &Image, features: &Features) {
+    text.push_str(
+        "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
+         MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
+    );
+    if features.has_tree() {
+        text.push_str("NODES: .space (BOUNCES + 1) * sizeof(raynode)\n");
+    }
+    let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));
+    if is_local(image, Kind::Materials) {
+        text.push_str("MATERIALS:\n");
+        table(text, image, Kind::Materials);
+    } else {
+        text.push_str("MATERIAL_SLOT: .space sizeof(material)\n");
+    }
+    if is_local(image, Kind::Lights) {
+        text.push_str("LIGHTS_AT:\n");
+        table(text, image, Kind::Lights);
+    } else {
+        text.push_str("LIGHT_SLOT: .space sizeof(light)\n.equ LIGHTS_AT, 0\n");
+    }
+}
+
+/// A node of the ray tree in the buffer: what its refracted child will need when the walk is back (report, table 2).
+const RAY_NODE: &str = "\
+.struct raynode
+    .field k, 4             ; 1 - eta^2 (1 - cosine^2), direction format
+    .field eta, 4           ; ratio of the indices of refraction
+    .field weight, 4        ; of the refracted child
+    .field inside, 4        ; state of the node's ray
+    .field cosine, 4
+    .field normal, 12
+    .field incident, 12
+    .field behind, 12       ; origin of the refracted child
+    .field visited, 1       ; 1 while the refracted child is still to come
+.endstruct
+";
+
+fn words(values: &[i32]) -> String {
+    values.iter().map(i32::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// The words of a region of the image, as data.
+fn table(text: &mut String, image: &Image, kind: Kind) {
+    let range = image.region(kind);
+    let octets = &image.bytes[range.start as usize..range.end as usize];
+    for row in octets.chunks(16) {
+        let (row, _) = row.as_chunks::<4>();
+        let values: Vec<i32> = row.iter().map(|&word| i32::from_le_bytes(word)).collect();
+        let _ = writeln!(text, "    .word {}", words(&values));
+    }
+}
+
+fn camera(text: &mut String, camera: &RawCamera) {
+    let wides = |values: &[i64]| values.iter().map(i64::to_string).collect::<Vec<_>>().join(", ");
+    let _ = match camera {
+        RawCamera::Orthographic { direction, extra, first, pitch, z } => writeln!(
+            text,
+            "CAMERA_PITCH: .wide {pitch}\nCAMERA_FIRST: .wide {}\nCAMERA_DIRECTION: .word {}\n.equ CAMERA_Z, {z}\n.equ CAMERA_EXTRA, {extra}",
+            wides(first),
+            words(direction)
+        ),
+        RawCamera::Perspective { eye, extra, base, column, row } => writeln!(
+            text,
+            "CAMERA_BASE: .wide {}\nCAMERA_COLUMN: .wide {}\nCAMERA_ROW: .wide {}\nCAMERA_EYE: .word {}\n.equ CAMERA_EXTRA, {extra}",
+            wides(base),
+            wides(column),
+            wides(row),
+            words(eye)
+        ),
+    };
+}
+
+/// Names of registers and macros that every program includes.
+pub(crate) const INCLUDED: [(&str, &str); 2] =
+    [("kernels/asm/registers.inc", include_str!("../asm/registers.inc")), ("kernels/asm/vector/wide.inc", include_str!("../asm/vector/wide.inc"))];
+
+/// Assembles files one after the other as one program.
+pub(crate) fn assemble(name: &str, files: &[Arc<Source>], isa: &Isa) -> Result<asm::Assembled, Report> {
+    let root: String = (0..files.len()).map(|n| format!(".include \"{n}\"\n")).collect();
+    let include = |wanted: &str, _from: &str| -> Result<Arc<Source>, String> {
+        wanted.parse().ok().and_then(|n: usize| files.get(n)).cloned().ok_or_else(|| format!("there is no file `{wanted}`"))
+    };
+    let options = asm::Options { include: &include, ..asm::Options::default() };
+    asm::assemble(&Source::new(name, root), isa, &options)
+}

@@ -11,7 +11,7 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use isa::diagnostic::{Diagnostic, Report, Source};
+use isa::diagnostic::{Diagnostic, Report};
 
 use self::mesh::Mesh;
 use crate::model::Scene;
@@ -68,7 +68,7 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
     let name = path.file_stem().map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
     match Format::of(path, &bytes)? {
         Format::Dsc => {
-            let source = Source::new(path.display().to_string(), String::from_utf8_lossy(&bytes));
+            let source = words::source(&path.display().to_string(), &bytes);
             drop(bytes);
             let description = dsc::parse(&source);
             let mesh = match mesh {

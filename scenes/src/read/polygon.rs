@@ -85,8 +85,19 @@ impl Cutter {
             split(ear, &outer, count, &mut whole);
         }
         self.ears = whole;
-        self.ears.len() == 3 * (count as usize - 2)
+        self.ears.len() == 3 * (count as usize - 2) && keeps_outline(&self.ears, count)
     }
+}
+
+/// Whether triangles have the edges of an outline of `count` corners, and otherwise edges that are theirs alone and
+/// cancel: outlines that cross themselves are cut by the library at will.
+fn keeps_outline(triangles: &[u32], count: u32) -> bool {
+    let edges = triangles.chunks_exact(3).flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
+    let mut inner: Vec<(u32, u32)> = edges.filter(|&(a, b)| b != (a + 1) % count).collect();
+    let outer = triangles.len() - inner.len();
+    inner.sort_unstable();
+    let cancels = |&(a, b): &(u32, u32)| inner.binary_search(&(b, a)).is_ok();
+    outer == count as usize && inner.windows(2).all(|pair| pair[0] != pair[1]) && inner.iter().all(cancels)
 }
 
 /// Splits an ear at the corners that lie on its `outer` edges, each given by its first corner.
@@ -119,4 +130,129 @@ fn is_convex(flat: &[[f64; 2]]) -> bool {
     let turns_left = (0..count).all(|n| turn(at(n), at(n + 1), at(n + 2)) > 0.0);
     // A star turns left everywhere but twice around; seen from corner 0 a convex outline never goes back.
     turns_left && (1..count - 1).all(|n| turn(at(0), at(n), at(n + 1)) > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::*;
+
+    fn cut(vertices: &[Vec3], corners: &[u32]) -> Vec<[u32; 3]> {
+        let mut triangles = Vec::new();
+        Cutter::default().cut(vertices, corners, |triangle| triangles.push(triangle));
+        triangles
+    }
+
+    /// Directed edges that do not cancel, with how often they are there.
+    fn outline(triangles: impl IntoIterator<Item = Vec<u32>>) -> BTreeMap<(u32, u32), i32> {
+        let mut edges = BTreeMap::new();
+        for polygon in triangles {
+            for n in 0..polygon.len() {
+                let (a, b) = (polygon[n], polygon[(n + 1) % polygon.len()]);
+                *edges.entry((a.min(b), a.max(b))).or_insert(0) += if a < b { 1 } else { -1 };
+            }
+        }
+        edges.retain(|&(a, b), count| a != b && *count != 0);
+        edges
+    }
+
+    /// Twice the area, positive where it turns with the normal.
+    fn area(vertices: &[Vec3], corners: &[u32], normal: Vec3) -> f64 {
+        let at = |n: u32| vertices[n as usize];
+        let dot = |a: Vec3, b: Vec3| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross =
+            |a: Vec3, b: Vec3| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        (0..corners.len()).map(|n| dot(normal, cross(at(corners[n]), at(corners[(n + 1) % corners.len()])))).sum()
+    }
+
+    #[test]
+    fn small_polygons_are_cut_as_expected() {
+        let flat = |points: &[[f64; 2]]| points.iter().map(|p| [p[0], p[1], 0.0]).collect::<Vec<Vec3>>();
+        let square = flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        assert_eq!(cut(&square, &[0, 1, 2]), [[0, 1, 2]]);
+        assert_eq!(cut(&square, &[0, 1, 2, 3]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(cut(&square, &[3, 2, 1, 0]), [[3, 2, 1], [3, 1, 0]], "seen from behind");
+        // An arrow head: the diagonal from 0 to 2 lies outside.
+        let arrow = flat(&[[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.5, 1.0]]);
+        let triangles = cut(&arrow, &[0, 1, 2, 3]);
+        assert!(triangles.iter().all(|t| t.contains(&1) && t.contains(&3)), "{triangles:?}");
+    }
+
+    #[test]
+    fn corners_on_edges_stay_corners() {
+        // A square with a corner in the middle of each edge, and two in the last one.
+        let points = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1], [0, 1]];
+        let vertices: Vec<Vec3> = points.iter().map(|p| [f64::from(p[0]), f64::from(p[1]), 0.0]).collect();
+        let corners: Vec<u32> = (0..9).collect();
+        let triangles = cut(&vertices, &corners);
+        assert_eq!(triangles.len(), 7);
+        assert_eq!(outline(triangles.iter().map(|t| t.to_vec())), outline([corners]));
+        assert!(triangles.iter().all(|t| area(&vertices, t, [0.0, 0.0, 1.0]) >= 0.0), "{triangles:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+        /// A star-shaped outline in any plane is covered exactly once.
+        #[test]
+        fn a_simple_polygon_is_covered_once(
+            radii in prop::collection::vec(0.2..1.0_f64, 3..40),
+            split in any::<prop::sample::Index>(),
+            (a, b) in (-3.0..3.0_f64, -3.0..3.0_f64),
+            axis in 0..3_usize,
+            is_turned in any::<bool>(),
+        ) {
+            let count = radii.len();
+            let mut points: Vec<[f64; 2]> = radii
+                .iter()
+                .enumerate()
+                .map(|(n, radius)| {
+                    let angle = n as f64 / count as f64 * std::f64::consts::TAU;
+                    [radius * angle.cos(), radius * angle.sin()]
+                })
+                .collect();
+            // One more corner in the middle of an edge.
+            let at = split.index(count);
+            let (p, q) = (points[at], points[(at + 1) % count]);
+            points.insert(at + 1, [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0]);
+            let raise = |p: &[f64; 2]| {
+                let mut point = [0.0; 3];
+                point[axis] = a * p[0] + b * p[1];
+                point[(axis + 1) % 3] = p[0];
+                point[(axis + 2) % 3] = p[1];
+                point
+            };
+            let vertices: Vec<Vec3> = points.iter().map(raise).collect();
+            let mut corners: Vec<u32> = (0..vertices.len() as u32).collect();
+            if is_turned {
+                corners.reverse();
+            }
+            let triangles = cut(&vertices, &corners);
+            prop_assert_eq!(triangles.len(), corners.len() - 2);
+            prop_assert_eq!(outline(triangles.iter().map(|t| t.to_vec())), outline([corners.clone()]));
+            let mut normal = [0.0; 3];
+            normal[axis] = if is_turned { -1.0 } else { 1.0 };
+            let whole = area(&vertices, &corners, normal);
+            let parts: f64 = triangles.iter().map(|t| area(&vertices, t, normal).abs()).sum();
+            prop_assert!((whole - parts).abs() < 1e-9, "{} {}", whole, parts);
+        }
+
+        /// Whatever the outline does, it stays the outline.
+        #[test]
+        fn any_polygon_keeps_its_edges(
+            points in prop::collection::vec([0..4_i8, 0..4_i8, 0..2_i8], 3..12),
+            repeated in prop::collection::vec(any::<prop::sample::Index>(), 0..4),
+        ) {
+            let vertices: Vec<Vec3> = points.iter().map(|p| p.map(f64::from)).collect();
+            let mut corners: Vec<u32> = (0..vertices.len() as u32).collect();
+            corners.extend(repeated.iter().map(|index| index.index(vertices.len()) as u32));
+            let triangles = cut(&vertices, &corners);
+            prop_assert_eq!(triangles.len(), corners.len() - 2);
+            prop_assert_eq!(outline(triangles.iter().map(|t| t.to_vec())), outline([corners]));
+        }
+    }
 }

@@ -208,6 +208,9 @@ fn six<'a>(
     for (k, value) in values.iter_mut().enumerate() {
         *value = words.number(at[k], || format!("{} of {name} {n}", shape.fields[k]));
     }
+    if words.is_lost() {
+        return None;
+    }
     Some(Some((values, at)))
 }
 
@@ -257,6 +260,9 @@ fn triangle_materials(
             beyond += 1;
         }
         list.push(number.unwrap_or(0));
+        if words.is_lost() {
+            return None;
+        }
     }
     if let Some((n, number, word)) = first_beyond {
         let known = match materials.0 {

@@ -6,13 +6,13 @@ mod colour;
 mod header;
 mod text;
 
-use isa::diagnostic::{Diagnostic, Report, Source};
+use isa::diagnostic::{Diagnostic, Report};
 
 use self::colour::FaceColours;
 use self::header::Header;
 use super::mesh::{Mesh, census};
 use super::polygon::Cutter;
-use super::words::{Words, counted};
+use super::words::{self, Words, counted};
 use crate::model::Vec3;
 
 /// Reads an OFF file; `name` is shown in messages.
@@ -31,7 +31,7 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Mesh, Report> {
     }
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     if binary::is_likely(bytes) {
-        let source = Source::new(name, String::from_utf8_lossy(&bytes[..bytes.len().min(binary::HEAD)]));
+        let source = words::source(name, &bytes[..bytes.len().min(binary::HEAD)]);
         let mut words = Words::new(&source, start);
         if let Some(header) = header::read(&mut words)
             && let Some(binary) = header.binary
@@ -40,7 +40,7 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Mesh, Report> {
             return finish(mesh, words);
         }
     }
-    let source = Source::new(name, String::from_utf8_lossy(bytes));
+    let source = words::source(name, bytes);
     let mut words = Words::new(&source, start);
     let mesh = header::read(&mut words).and_then(|header| text::read(&mut words, &header));
     finish(mesh, words)

@@ -181,6 +181,9 @@ fn faces<'a>(
             }
         }
         let colour = colours.read(words, n)?;
+        if words.is_lost() {
+            return None;
+        }
         if is_good {
             faces.push(vertices, &corners, colour);
         }

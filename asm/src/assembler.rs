@@ -15,7 +15,7 @@ use crate::cursor::Cursor;
 use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
 use crate::explain;
-use crate::expression::Expression;
+use crate::expression::{Expression, Step};
 use crate::frame::{Frame, Origin, file_lines};
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, SOURCES, TEXT_OCTETS, WORDS};
@@ -65,6 +65,8 @@ pub(crate) struct Assembler<'a> {
     pub fixups: Vec<Fixup>,
     pub asserts: Vec<(Expression, String, At)>,
     pub entry: Option<Expression>,
+    /// Names that decide the layout and were not known yet.
+    pub early: Vec<(Step, At)>,
     included: HashMap<(String, u16), u16>,
     pub expansions: usize,
     pub lines_read: usize,
@@ -97,6 +99,7 @@ pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> (P
         fixups: Vec::new(),
         asserts: Vec::new(),
         entry: None,
+        early: Vec::new(),
         included: HashMap::new(),
         expansions: 0,
         lines_read: 0,
@@ -249,8 +252,7 @@ impl Assembler<'_> {
             return Problem::new(explain::SECTION, message, at, "the section is the buffer here")
                 .hint("write `.text` before code");
         }
-        let message = format!("`{text}` is not an instruction");
-        Problem::new(explain::INSTRUCTION, message, at, "unknown mnemonic").suggest(text, Among::Instructions)
+        self.unknown_instruction(text, at, false)
     }
 
     /// The current place: in words in the code, in octets in the buffer.
@@ -316,6 +318,7 @@ impl Assembler<'_> {
 
     fn second_pass(&mut self) {
         self.is_last_pass = true;
+        self.report_early();
         self.resolve_pending();
         for fixup in std::mem::take(&mut self.fixups) {
             match fixup {
@@ -337,7 +340,13 @@ impl Assembler<'_> {
         }
         for (expression, text, _) in std::mem::take(&mut self.asserts) {
             match self.evaluate(&expression) {
-                Ok(0) => self.messages.add(Problem::new(explain::ASSERTED, text, expression.at, "this is 0")),
+                Ok(0) => {
+                    let label = match self.sides(&expression) {
+                        Some((mark, a, b)) => format!("{a} {mark} {b} does not hold"),
+                        None => "this is 0".into(),
+                    };
+                    self.messages.add(Problem::new(explain::ASSERTED, text, expression.at, label));
+                }
                 Ok(_) => {}
                 Err(failure) => self.report_failure(failure),
             }

@@ -269,8 +269,11 @@ impl Assembler<'_> {
             Ok(address) if !is_data && (0..words).contains(&address) => self.program.entry = address as u32,
             Ok(_) => {
                 let message = "the entry is not an instruction of the program";
-                let label =
-                    if is_data { "an address in the buffer".into() } else { format!("the program has {words} words") };
+                let label = if is_data {
+                    "an address in the buffer".into()
+                } else {
+                    format!("the program has {words} word{}", if words == 1 { "" } else { "s" })
+                };
                 self.messages.add(Problem::new(explain::ENTRY, message, expression.at, label));
             }
             Err(failure) => self.report_failure(failure),

@@ -64,7 +64,7 @@ pub(crate) fn function(function: Function, a: i64, b: i64) -> Checked {
         Function::Min => Ok(a.min(b)),
         Function::Max => Ok(a.max(b)),
         Function::Abs => a.checked_abs().ok_or(OVERFLOW),
-        Function::Bits if a < 0 => Err((explain::OVERFLOW, "`bits` takes a number that is not negative")),
+        Function::Bits if a < 0 => Err((explain::RANGE, "`bits` takes a number that is not negative")),
         Function::Bits => Ok(i64::from(64 - a.leading_zeros())),
         Function::Low => word(i64::from(a as i16)),
         Function::High => word(a >> 16 & 0xffff),
@@ -77,12 +77,28 @@ impl Assembler<'_> {
         if let [(Step::Number(value), _)] = expression.steps[..] {
             return Ok(value);
         }
+        let stack = self.run(&expression.steps)?;
+        Ok(*stack.last().expect("an expression has a value"))
+    }
+
+    /// The numbers on both sides of the comparison that is the whole expression, for messages.
+    pub(crate) fn sides(&self, expression: &Expression) -> Option<(&'static str, i64, i64)> {
+        let (last, before) = expression.steps.split_last()?;
+        let Step::Binary(operator) = last.0 else { return None };
+        match self.run(before).ok()?[..] {
+            [a, b] => Some((operator.mark(), a, b)),
+            _ => None,
+        }
+    }
+
+    /// The stack after these steps.
+    fn run(&self, steps: &[(Step, At)]) -> Result<Vec<i64>, Failure> {
         let mut stack: Vec<i64> = Vec::with_capacity(8);
         let mut next = 0;
-        while let Some((step, at)) = expression.steps.get(next) {
+        while let Some((step, at)) = steps.get(next) {
             next += 1;
-            let checked = |result: Checked| {
-                result.map_err(|(code, message)| Failure::Wrong(Problem::new(code, message, *at, "here")))
+            let checked = |result: Checked, what: &dyn Fn() -> String| {
+                result.map_err(|(code, message)| Failure::Wrong(Problem::new(code, message, *at, what())))
             };
             let mut pop = || stack.pop().expect("the parser pushes operands before operators");
             let value = match step {
@@ -91,9 +107,12 @@ impl Assembler<'_> {
                 Step::Size(name) => self.names.size(*name).ok_or_else(|| Failure::Later(step.clone(), *at))?,
                 Step::Fixed(decimal, format) => {
                     let bits = self.names.format(*format).ok_or_else(|| Failure::Later(step.clone(), *at))?;
-                    checked(decimal.to_fixed(bits).ok_or(OVERFLOW))?
+                    checked(decimal.to_fixed(bits).ok_or(OVERFLOW), &|| format!("with {bits} fraction bits"))?
                 }
-                Step::Negate => checked(pop().checked_neg().ok_or(OVERFLOW))?,
+                Step::Negate => {
+                    let a = pop();
+                    checked(a.checked_neg().ok_or(OVERFLOW), &|| format!("-({a})"))?
+                }
                 Step::Complement => !pop(),
                 Step::Not => i64::from(pop() == 0),
                 Step::Truth => i64::from(pop() != 0),
@@ -112,17 +131,18 @@ impl Assembler<'_> {
                     1
                 }
                 Step::Binary(operator) => {
-                    let b = pop();
-                    checked(binary(*operator, pop(), b))?
+                    let (b, a) = (pop(), pop());
+                    checked(binary(*operator, a, b), &|| format!("{a} {} {b}", operator.mark()))?
                 }
                 Step::Function(name) => {
                     let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
-                    checked(function(*name, pop(), b))?
+                    let a = pop();
+                    checked(function(*name, a, b), &|| format!("of {a}"))?
                 }
             };
             stack.push(value);
         }
-        Ok(stack.pop().expect("an expression has a value"))
+        Ok(stack)
     }
 
     fn symbol_value(&self, name: Name, step: &Step, at: At) -> Result<i64, Failure> {
@@ -156,39 +176,41 @@ impl Assembler<'_> {
         }
     }
 
-    /// The value of an expression that decides the layout; `None` when that was reported.
+    /// The value of an expression that decides the layout; `None` when that is or will be reported.
     ///
     /// # Errors
-    /// What is wrong with it, or the name that is not known at this line.
-    pub(crate) fn value_now(&self, expression: &Expression) -> Parsed<Option<i64>> {
+    /// What is wrong with it.
+    pub(crate) fn value_now(&mut self, expression: &Expression) -> Parsed<Option<i64>> {
         match self.evaluate(expression) {
             Ok(value) => Ok(Some(value)),
             Err(Failure::Reported) => Ok(None),
             Err(Failure::Wrong(problem)) => Err(problem),
-            Err(Failure::Later(step, at)) => match self.later_place(&step) {
-                Some(place) => Err(Problem::new(
-                    explain::LAYOUT,
-                    "the value must be known at this line",
-                    at,
-                    "depends on what is defined further on",
-                )
-                .also(place, "defined here")
-                .hint("the layout of the program depends on it: define the names that it uses before this line")),
-                None if self.is_incomplete => Ok(None),
-                None => {
-                    let mut problem = self.undefined(&step, at);
-                    problem.hint =
-                        Some("the layout of the program depends on it: it must be defined before this line".into());
-                    Err(problem)
-                }
-            },
+            Err(Failure::Later(step, at)) => {
+                self.early.push((step, at));
+                Ok(None)
+            }
         }
     }
 
-    fn later_place(&self, step: &Step) -> Option<Option<At>> {
-        match step {
-            Step::Symbol(name) => self.names.get(*name).map(|symbol| symbol.at),
-            _ => None,
+    /// Reports the names that were needed before they were known, now that it is clear which exist at all.
+    pub(crate) fn report_early(&mut self) {
+        for (step, at) in std::mem::take(&mut self.early) {
+            let known = match &step {
+                Step::Symbol(name) => self.names.get(*name).map(|symbol| symbol.at),
+                Step::Size(name) => self.names.size(*name).map(|_| None),
+                Step::Fixed(_, name) => self.names.format(*name).map(|_| None),
+                _ => None,
+            };
+            let Some(place) = known else {
+                self.report_failure(Failure::Later(step, at));
+                continue;
+            };
+            let problem = Problem::new(explain::LAYOUT, "the value must be known at this line", at, "known only later");
+            self.messages.add(
+                problem
+                    .also(place, "defined here")
+                    .hint("the layout of the program depends on it: define the names that it uses before this line"),
+            );
         }
     }
 

@@ -32,6 +32,38 @@ pub(crate) enum Binary {
     Remainder,
 }
 
+impl Binary {
+    /// All operators.
+    pub const ALL: [Binary; 16] = {
+        use Binary::*;
+        [
+            Or,
+            ExclusiveOr,
+            And,
+            Equal,
+            Different,
+            Less,
+            LessOrEqual,
+            Greater,
+            GreaterOrEqual,
+            Left,
+            Right,
+            Add,
+            Subtract,
+            Multiply,
+            Divide,
+            Remainder,
+        ]
+    };
+
+    /// How it is written.
+    pub fn mark(self) -> &'static str {
+        const MARKS: [&str; 16] =
+            ["|", "^", "&", "==", "!=", "<", "<=", ">", ">=", "<<", ">>", "+", "-", "*", "/", "%"];
+        MARKS[self as usize]
+    }
+}
+
 /// A function of one or two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Function {
@@ -112,28 +144,20 @@ enum Infix {
 }
 
 fn infix(mark: &str) -> Option<(Infix, u8)> {
-    use Binary::*;
-    let (operator, level) = match mark {
+    let level = match mark {
         "||" => return Some((Infix::OneTrue, 1)),
         "&&" => return Some((Infix::BothTrue, 2)),
-        "|" => (Or, 3),
-        "^" => (ExclusiveOr, 4),
-        "&" => (And, 5),
-        "==" => (Equal, 6),
-        "!=" => (Different, 6),
-        "<" => (Less, 7),
-        "<=" => (LessOrEqual, 7),
-        ">" => (Greater, 7),
-        ">=" => (GreaterOrEqual, 7),
-        "<<" => (Left, 8),
-        ">>" => (Right, 8),
-        "+" => (Add, 9),
-        "-" => (Subtract, 9),
-        "*" => (Multiply, 10),
-        "/" => (Divide, 10),
-        "%" => (Remainder, 10),
+        "|" => 3,
+        "^" => 4,
+        "&" => 5,
+        "==" | "!=" => 6,
+        "<" | "<=" | ">" | ">=" => 7,
+        "<<" | ">>" => 8,
+        "+" | "-" => 9,
+        "*" | "/" | "%" => 10,
         _ => return None,
     };
+    let operator = Binary::ALL.into_iter().find(|operator| operator.mark() == mark)?;
     Some((Infix::Binary(operator), level))
 }
 

@@ -87,11 +87,8 @@ impl Assembler<'_> {
         let pseudo = crate::pseudo::find(name);
         if op.is_none() && pseudo.is_none() {
             if !self.is_incomplete {
-                let message = format!("`{name}` is not an instruction");
-                self.messages.add(
-                    Problem::new(explain::INSTRUCTION, message, at, "unknown mnemonic")
-                        .suggest(name, Among::Instructions),
-                );
+                let problem = self.unknown_instruction(name, at, cursor.is_at_end());
+                self.messages.add(problem);
             }
             self.emit(0, cursor.line);
             return;
@@ -109,6 +106,14 @@ impl Assembler<'_> {
             (None, Some(pseudo)) => self.pseudo_instruction(pseudo, &operands, at, cursor),
             (None, None) => unreachable!("refused above"),
         }
+    }
+
+    /// The first word of a statement means nothing.
+    pub(crate) fn unknown_instruction(&self, name: &str, at: At, is_alone: bool) -> Box<Problem> {
+        let message = format!("`{name}` is not an instruction");
+        let problem =
+            Problem::new(explain::INSTRUCTION, message, at, "unknown mnemonic").suggest(name, Among::Instructions);
+        if is_alone { problem.hint(format!("a label needs a colon: `{name}:`")) } else { problem }
     }
 
     /// Assembles one instruction of a row.
@@ -160,8 +165,9 @@ impl Assembler<'_> {
                         found.push(Argument { value: Value::Known((*number).into()), at: *register_at });
                         found.push(Argument { value: Value::Expression(offset.clone()), at: offset.at });
                     } else {
-                        let message = "an address is in a scalar register".to_string();
-                        self.messages.add(Problem::new(explain::OPERAND_KIND, message, *register_at, "not scalar"));
+                        let register = Operand::made(Written::Register((*file, *number)), *register_at);
+                        let problem = self.wrong_kind(row, place, &register);
+                        self.messages.add(problem);
                         is_right = false;
                     }
                     place += 2;
@@ -210,10 +216,14 @@ impl Assembler<'_> {
             Written::Number(expression) if wanted.kind.register_file().is_some() => match expression.symbol() {
                 Some(name) => problem.suggest(&self.names.text(name).clone(), Among::Registers),
                 None if takes_offset(row, place) => problem.hint(format!("it is written `{}`", usage(row))),
-                None => problem,
+                None => match self.operations.get_key_value(&*format!("{}i", row.name)) {
+                    Some((with_number, _)) => problem.hint(format!("`{with_number}` takes a number")),
+                    None => problem,
+                },
             },
+            Written::Number(_) => problem,
             Written::Memory(..) => problem.hint(format!("it is written `{}`", usage(row))),
-            _ => problem,
+            Written::Register(_) => problem,
         }
     }
 
@@ -267,15 +277,20 @@ impl Assembler<'_> {
 }
 
 fn wrong_count(row: &Row, operands: &[Operand], at: At) -> Box<Problem> {
-    let wanted = match row.operands.len() {
+    let place = operands.last().map_or(at, |last| at.to(last.at));
+    let count = |number: usize| match number {
         0 => "no operands".to_string(),
         1 => "1 operand".to_string(),
-        count => format!("{count} operands"),
+        more => format!("{more} operands"),
     };
-    let written = operands.iter().map(|o| if matches!(o.written, Written::Memory(..)) { 2 } else { 1 }).sum::<usize>();
-    let place = operands.last().map_or(at, |last| at.to(last.at));
-    let message = format!("`{}` takes {wanted}, not {written}", row.name);
-    Problem::new(explain::OPERAND_COUNT, message, place, format!("it is written `{}`", usage(row))).hint(legend(row))
+    let usage = usage(row);
+    let (message, label) = if usage.contains('(') {
+        (format!("`{}` is written `{usage}`", row.name), format!("{} here", count(operands.len())))
+    } else {
+        let message = format!("`{}` takes {}, not {}", row.name, count(row.operands.len()), operands.len());
+        (message, format!("it is written `{usage}`"))
+    };
+    Problem::new(explain::OPERAND_COUNT, message, place, label).hint(legend(row))
 }
 
 fn out_of_range(row: &Row, operand: isa::row::Operand, at: At, number: i64, (least, most): (i64, i64)) -> Box<Problem> {

@@ -9,7 +9,7 @@ pub const LINES: usize = 1_000_000;
 /// Octets of one line, after substitution.
 pub const LINE_OCTETS: usize = 1 << 20;
 /// Octets of all lines together.
-pub const TEXT_OCTETS: usize = 64 << 20;
+pub const TEXT_OCTETS: usize = 32 << 20;
 /// Macro calls and repetitions inside each other.
 pub const EXPANSION_DEPTH: usize = 64;
 /// Files that include each other.

@@ -79,8 +79,13 @@ impl Line {
         let mut copied = 0;
         let mut at = 0;
         let mut is_quoted = false;
-        while let Some(c) = text[at..].chars().next() {
-            let rest = &text[at..];
+        while let Some(&octet) = text.as_bytes().get(at) {
+            // Octets of longer characters are passed by one at a time: only ASCII matters here.
+            if !octet.is_ascii() {
+                at += 1;
+                continue;
+            }
+            let (c, rest) = (char::from(octet), &text[at..]);
             let (replacement, length) = if c == '\\' {
                 match substitution.backslash(&rest[1..]) {
                     Some((replacement, length)) => (Some(replacement), length + 1),
@@ -90,16 +95,17 @@ impl Line {
                 is_quoted = !is_quoted;
                 (None, 1)
             } else if is_quoted {
-                (None, c.len_utf8())
+                (None, 1)
             } else if starts_comment(rest) {
                 break;
             } else if c == '\'' {
                 (None, if rest[1..].starts_with("\"'") { 3 } else { 1 })
             } else if starts_name(c) || c.is_ascii_digit() {
-                let length = rest.find(|c: char| !continues_name(c)).unwrap_or(rest.len());
-                (substitution.locals.get(&rest[..length]).cloned(), length)
+                let length = name_length(rest);
+                let has_locals = !substitution.locals.is_empty();
+                (if has_locals { substitution.locals.get(&rest[..length]).cloned() } else { None }, length)
             } else {
-                (None, c.len_utf8())
+                (None, 1)
             };
             if let Some(replacement) = replacement {
                 self.copy(copied..at, &mut new, &mut segments);
@@ -148,6 +154,10 @@ impl Line {
     }
 }
 
+fn name_length(text: &str) -> usize {
+    text.bytes().position(|octet| !continues_name(octet.into())).unwrap_or(text.len())
+}
+
 /// What replaces what in the lines of one expansion.
 #[derive(Debug, Default)]
 pub(crate) struct Substitution {
@@ -168,7 +178,7 @@ impl Substitution {
         if rest.starts_with("()") {
             return Some(("".into(), 2));
         }
-        let length = rest.find(|c: char| !continues_name(c)).unwrap_or(rest.len());
+        let length = name_length(rest);
         self.arguments.get(&rest[..length]).map(|argument| (argument.clone(), length))
     }
 }

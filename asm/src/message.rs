@@ -145,8 +145,24 @@ impl Messages {
     }
 }
 
-/// Most calls of a chain that a message shows.
-const SHOWN_CALLS: usize = 4;
+/// Most calls of a chain that a message shows, besides the outermost one.
+const SHOWN_CALLS: usize = 3;
+
+/// The calls through which a place was reached, innermost first, each line of text once, long chains cut.
+fn shown_calls(context: u32, calls: &[Call]) -> Vec<&Call> {
+    let mut chain: Vec<&Call> = Vec::new();
+    let mut next = context;
+    while let Some(call) = (next as usize).checked_sub(1).and_then(|at| calls.get(at)) {
+        if chain.iter().all(|other| (other.at.source, other.at.start) != (call.at.source, call.at.start)) {
+            chain.push(call);
+        }
+        next = call.at.context;
+    }
+    if chain.len() > SHOWN_CALLS + 1 {
+        chain.drain(SHOWN_CALLS..chain.len() - 1);
+    }
+    chain
+}
 
 fn diagnostic<'a>(
     problem: Problem,
@@ -166,14 +182,15 @@ fn diagnostic<'a>(
     for (at, label) in problem.others {
         message = message.also(place(at), label);
     }
-    let mut context = problem.at.map_or(0, |at| at.context);
-    for _ in 0..SHOWN_CALLS {
-        let Some(call) = (context as usize).checked_sub(1).and_then(|at| calls.get(at)) else { break };
+    for call in shown_calls(problem.at.map_or(0, |at| at.context), calls) {
         message = message.also(place(call.at), format!("in this call of `{}`", call.name));
-        context = call.at.context;
     }
     let suggestion = problem.suggest.as_ref().and_then(|(name, among)| did_you_mean(name, known(*among)));
+    let is_same = problem.suggest.as_ref().is_some_and(|(name, _)| suggestion == Some(name.as_str()));
     match (suggestion, problem.hint) {
+        (Some(word), _) if is_same => {
+            message.hint(format!("`{word}` is defined further on; it must stand above its use"))
+        }
         (Some(word), _) => message.hint(format!("did you mean `{word}`?")),
         (None, Some(hint)) => message.hint(hint),
         (None, None) => message,

@@ -164,8 +164,9 @@ impl Assembler<'_> {
             let place = operands.last().map_or(at, |last| at.to(last.at));
             let count = pseudo.operands.len();
             let message = format!(
-                "`{}` takes {count} operand{}, not {}",
+                "`{}` takes {} operand{}, not {}",
                 pseudo.name,
+                if count == 0 { "no".into() } else { count.to_string() },
                 if count == 1 { "" } else { "s" },
                 operands.len()
             );

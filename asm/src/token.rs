@@ -134,7 +134,15 @@ pub(crate) fn tokens(line: &str) -> (Vec<Token>, Option<Unreadable>) {
             return (found, None);
         }
         let start = line.len() - rest.len();
-        match alt((name, number, directive, text, character, mark)).parse(rest) {
+        let parsed = match rest.as_bytes()[0] {
+            b'0'..=b'9' => number(rest),
+            b'.' => alt((directive, mark)).parse(rest),
+            b'"' => text(rest),
+            b'\'' => character(rest),
+            c if starts_name(c.into()) => name(rest),
+            _ => mark(rest),
+        };
+        match parsed {
             Ok((after, kind)) => {
                 found.push(Token { kind, start: start as u32, end: (line.len() - after.len()) as u32 });
                 rest = after;
@@ -163,8 +171,15 @@ fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
         },
         _ => Unreadable {
             code: explain::CHARACTER,
-            message: format!("the character `{}` means nothing here", first.escape_debug()),
-            label: "unexpected character",
+            message: match first {
+                '\\' => "a backslash means nothing here".into(),
+                _ => format!("the character `{}` means nothing here", first.escape_debug()),
+            },
+            label: match first {
+                '\\' => "only before a parameter of a macro",
+                _ if first.is_alphanumeric() => "names have the letters a to z",
+                _ => "unexpected character",
+            },
             start,
             end: start + first.len_utf8(),
         },

@@ -1,0 +1,3 @@
+        nop
+        .entry 7
+        .entry nop_here

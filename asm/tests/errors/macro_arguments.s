@@ -1,0 +1,12 @@
+        .macro copy to, from
+        mov \to, \from
+        .endm
+        copy s1
+        copy s1, s2, s3
+        copy s1, to=s2
+        .macro add a
+        .endm
+        .macro twice a, a
+        .endm
+        .macro copy a
+        .endm

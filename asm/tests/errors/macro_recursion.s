@@ -1,0 +1,4 @@
+        .macro again n
+        again \n + 1
+        .endm
+        again 1

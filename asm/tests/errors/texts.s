@@ -1,0 +1,7 @@
+        .buffer
+        .ascii "open
+        .ascii "bad \q escape"
+        .byte 'ab'
+        .byte '\q'
+        .ascii 5
+        .byte ''

@@ -1,0 +1,2 @@
+        .macro never a
+        nop

@@ -1,0 +1,5 @@
+        .equ distance, 4
+        movi s1, distanse
+        j nowhere
+        .buffer
+        .word distance * tabel

@@ -68,8 +68,7 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
     let name = path.file_stem().map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
     match Format::of(path, &bytes)? {
         Format::Dsc => {
-            let source = words::source(&path.display().to_string(), &bytes);
-            drop(bytes);
+            let source = words::source(&path.display().to_string(), bytes.into());
             let description = dsc::parse(&source);
             let mesh = match mesh {
                 Some(mesh) => load_mesh(mesh),
@@ -89,7 +88,7 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
                 let message = format!("{} and {} are both meshes", path.display(), mesh.display());
                 Err(Diagnostic::error(message).hint("a mesh belongs to a .dsc, or stands alone").into())
             }
-            None => Ok(join::alone(name, off::parse(&bytes, &path.display().to_string())?)),
+            None => Ok(join::alone(name, off::parse(bytes, &path.display().to_string())?)),
         },
     }
 }
@@ -97,7 +96,7 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
 fn load_mesh(path: &Path) -> Result<Mesh, Report> {
     let bytes = file::read(path)?;
     match Format::of(path, &bytes)? {
-        Format::Off => off::parse(&bytes, &path.display().to_string()),
+        Format::Off => off::parse(bytes, &path.display().to_string()),
         Format::Dsc => {
             let error = Diagnostic::error(format!("{} is a scene description, not a mesh", path.display()));
             Err(error.hint("the mesh of a .dsc is a file such as an .off").into())

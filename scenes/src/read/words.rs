@@ -1,6 +1,7 @@
 //! A text as words, the layer under the .dsc and .off readers: blanks, line ends and `#` comments between, numbers with
 //! their complaints. What the words mean is not known here.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -287,12 +288,13 @@ fn digits(text: &str) -> Option<u32> {
 }
 
 /// A file's octets as a source; what is not UTF-8 is replaced, and refused where it is more than a comment.
-pub(super) fn source(name: &str, bytes: &[u8]) -> Arc<Source> {
+pub(super) fn source(name: &str, bytes: Cow<'_, [u8]>) -> Arc<Source> {
     // The check is many times faster than the replacement, which is hardly ever needed.
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Source::new(name, text),
-        Err(_) => Source::new(name, String::from_utf8_lossy(bytes)),
-    }
+    let text = match bytes {
+        Cow::Borrowed(bytes) => std::str::from_utf8(bytes).map(str::to_string).map_err(|_| Cow::Borrowed(bytes)),
+        Cow::Owned(bytes) => String::from_utf8(bytes).map_err(|error| Cow::Owned(error.into_bytes())),
+    };
+    Source::new(name, text.unwrap_or_else(|bytes| String::from_utf8_lossy(&bytes).into_owned()))
 }
 
 /// "1 triangle has" or "5 triangles have".

@@ -147,7 +147,9 @@ fn refuse<T>(words: &mut Words<'_>, word: Word<'_>) -> Option<T> {
         let part = |bit: u32, text: &'static str| if bits >> bit & 1 == 1 { text } else { "" };
         known.push(format!("{}{}{}{}{}OFF", part(4, "ST"), part(3, "C"), part(2, "N"), part(1, "4"), part(0, "n")));
     }
-    let hint = match did_you_mean(word.text, known.iter().map(String::as_str)) {
+    // The comparison takes time and memory in proportion to the word, which may be a whole file.
+    let near = (word.text.len() <= 16).then(|| did_you_mean(word.text, known.iter().map(String::as_str))).flatten();
+    let hint = match near {
         Some(near) => format!("did you mean `{near}`?"),
         None if word.text == "DSC" => "this looks like a scene description: its name should end in .dsc".to_string(),
         None => "an OFF file starts with `OFF`, after letters of ST, C, N, 4, n for what its vertices have".to_string(),

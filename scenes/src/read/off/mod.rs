@@ -6,6 +6,8 @@ mod colour;
 mod header;
 mod text;
 
+use std::borrow::Cow;
+
 use isa::diagnostic::{Diagnostic, Report};
 
 use self::colour::FaceColours;
@@ -15,7 +17,7 @@ use super::polygon::Cutter;
 use super::words::{self, Words, counted};
 use crate::model::Vec3;
 
-/// Reads an OFF file; `name` is shown in messages.
+/// Reads an OFF file (octets that are handed over are not copied); `name` is shown in messages.
 ///
 /// - Vertex numbers count from 0. Polygons are cut into triangles; those with fewer than three corners are left out
 ///   with a warning, triangles without area and repeated ones stay, with a warning.
@@ -24,19 +26,20 @@ use crate::model::Vec3;
 /// - Octets that are not UTF-8 are accepted in comments.
 ///
 /// Errors: several at once where it stays clear what follows.
-pub fn parse(bytes: &[u8], name: &str) -> Result<Mesh, Report> {
+pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Report> {
+    let bytes = bytes.into();
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         let error = Diagnostic::error(format!("{name} is UTF-16 text, which is not read"));
         return Err(error.hint("save it as UTF-8 or ASCII").into());
     }
     let start = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-    if binary::is_likely(bytes) {
-        let source = words::source(name, &bytes[..bytes.len().min(binary::HEAD)]);
+    if binary::is_likely(&bytes) {
+        let source = words::source(name, Cow::Borrowed(&bytes[..bytes.len().min(binary::HEAD)]));
         let mut words = Words::new(&source, start);
         if let Some(header) = header::read(&mut words)
             && let Some(binary) = header.binary
         {
-            let mesh = binary::read(bytes, &header, binary, &mut words);
+            let mesh = binary::read(&bytes, &header, binary, &mut words);
             return finish(mesh, words);
         }
     }

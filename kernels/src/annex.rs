@@ -74,7 +74,7 @@ impl Row {
     /// What the assembler finds; our own kernels have no errors.
     pub fn program(&self, isa: &Isa) -> Result<Program, Report> {
         let mut files = vec![Source::new("<assumptions>", assumptions())];
-        files.extend(prelude::INCLUDED.map(|(name, text)| Source::new(name, text)));
+        files.extend(prelude::included(Layout::Wide));
         files.extend(std::iter::once(&self.driver).chain(self.files).map(|(name, text)| Source::new(*name, *text)));
         Ok(prelude::assemble("<annex>", &files, isa)?.program)
     }
@@ -87,7 +87,7 @@ pub const MEMORY: usize = 128 << 10;
 fn assumptions() -> String {
     let mut text = String::from(
         ".format pos, 26\n.format dir, 30\n.format bary, 30\n.format t, 26\n.format weight, 30\n.format colour, 28\n.format index, 28\n\
-         .equ WORD, 32\n.equ NEVER, 0x7ffffffe\n.equ MISSED, 0x7fffffff\n.equ MATERIALS_LOCAL, 0\n",
+         .equ WORD, 32\n.equ NEVER, 0x7ffffffe\n.equ MISSED, 0x7fffffff\n.equ MATERIALS_LOCAL, 0\n.equ LAYOUT_REPORT, 0\n",
     );
     for part in Layout::Wide.structures() {
         prelude::structure(&mut text, part);

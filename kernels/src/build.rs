@@ -26,7 +26,8 @@ pub struct Features {
 impl Features {
     /// The features of a scene.
     pub fn new(scene: &Scene, view: &View, cutoff: i32) -> Features {
-        let any = |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
+        let any =
+            |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
         Features {
             has_mirror: any(&|m| scene.materials[m].reflection > 0.0),
             is_transparent: any(&|m| scene.materials[m].transmission() > 0.0),
@@ -118,7 +119,7 @@ fn assemble(
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
     let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, is_main))];
-    files.extend(prelude::INCLUDED.map(|(name, text)| Source::new(name, text)));
+    files.extend(prelude::included(image.layout));
     for function in Function::of_program(is_main, features.has_tree(), features.has_glass()) {
         let replaced = options.replaced.iter().rev().find(|(other, _)| *other == function);
         files.push(match replaced {

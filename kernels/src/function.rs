@@ -35,7 +35,10 @@ impl FromStr for Profile {
     type Err = Box<Diagnostic>;
 
     fn from_str(name: &str) -> Result<Profile, Box<Diagnostic>> {
-        Profile::ALL.into_iter().find(|profile| profile.name() == name).ok_or_else(|| unknown("profile", name, Profile::ALL.map(Profile::name)))
+        Profile::ALL
+            .into_iter()
+            .find(|profile| profile.name() == name)
+            .ok_or_else(|| unknown("profile", name, Profile::ALL.map(Profile::name)))
     }
 }
 

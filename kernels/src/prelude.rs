@@ -9,7 +9,7 @@ use isa::diagnostic::{Report, Source};
 use scenes::camera::RawCamera;
 use scenes::image::{Image, Kind};
 use scenes::kdtree::Content;
-use scenes::layout::Structure;
+use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
 
@@ -57,7 +57,11 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, is_main: bool) -> S
     text.push_str(TRAVERSAL);
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
-    if is_main { camera(&mut text, &image.camera) } else { core(&mut text, image, features) }
+    if is_main {
+        camera(&mut text, &image.camera)
+    } else {
+        core(&mut text, image, features)
+    }
     text.push_str(".text\n");
     text
 }
@@ -76,6 +80,8 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
     let largest = (1 << (formats.word - 1)) - 1;
     vec![
         ("WORD", formats.word.into()),
+        ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
+        ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
         ("EDGE_SHIFT", spare(edge)),
         ("T_SHIFT", spare(reach)),
         ("OFFSET", if formats.t == formats.position { 2 } else { 3 }),
@@ -107,7 +113,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
 
 /// What descend needs in any buffer.
 const TRAVERSAL: &str = "\
-NODE: .space sizeof(node)
+NODE: .space 2 * sizeof(node)
 RUNS: .space 24                 ; run x direction, a wide number an axis
 ";
 
@@ -185,15 +191,30 @@ fn camera(text: &mut String, camera: &RawCamera) {
     };
 }
 
-/// Names of registers and macros that every program includes.
-pub(crate) const INCLUDED: [(&str, &str); 2] =
-    [("kernels/asm/registers.inc", include_str!("../asm/registers.inc")), ("kernels/asm/vector/wide.inc", include_str!("../asm/vector/wide.inc"))];
+/// Names of registers and macros that every program in a layout includes.
+pub(crate) fn included(layout: Layout) -> [Arc<Source>; 3] {
+    macro_rules! file {
+        ($path:literal) => {
+            Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
+        };
+    }
+    let structures = match layout {
+        Layout::Report => file!("report.inc"),
+        Layout::Wide => file!("wide.inc"),
+    };
+    [file!("registers.inc"), file!("materials.inc"), structures]
+}
 
 /// Assembles files one after the other as one program.
 pub(crate) fn assemble(name: &str, files: &[Arc<Source>], isa: &Isa) -> Result<asm::Assembled, Report> {
     let root: String = (0..files.len()).map(|n| format!(".include \"{n}\"\n")).collect();
     let include = |wanted: &str, _from: &str| -> Result<Arc<Source>, String> {
-        wanted.parse().ok().and_then(|n: usize| files.get(n)).cloned().ok_or_else(|| format!("there is no file `{wanted}`"))
+        wanted
+            .parse()
+            .ok()
+            .and_then(|n: usize| files.get(n))
+            .cloned()
+            .ok_or_else(|| format!("there is no file `{wanted}`"))
     };
     let options = asm::Options { include: &include, ..asm::Options::default() };
     asm::assemble(&Source::new(name, root), isa, &options)

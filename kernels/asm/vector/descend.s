@@ -14,20 +14,9 @@
     vget  s12, direction, z
     wmul  w0, exit_run, s12
     swide w0, RUNS + 16(s0)
-    lv    box_low, ROOT_LOW(s0)
-    lv    box_high, ROOT_HIGH(s0)
-    li    s13, ROOT
+    first_node
 descend_node:
-    movi  s12, NODE
-    movi  s14, sizeof(node)
-    load  s12, s13, s14
-    lw    s15, NODE + node.plane(s0)
-    lw    s13, NODE + node.link(s0)
-    andi  s12, s13, 3
-    srli  s14, s12, 1
-    and   s14, s14, s12
-    xor   s13, s13, s12
-    bnez  s14, descend_leaf
+    next_node descend_leaf
     vgetr s14, origin, s12
     sub   s14, s15, s14
     wmul  w0, s14, exit_slope
@@ -36,11 +25,10 @@ descend_node:
     bwlt  w0, w1, descend_right
     bweq  w0, w1, descend_tie
 descend_left:
-    vputr box_high, s15, s12
+    go_left
     jump  descend_node
 descend_right:
-    vputr box_low, s15, s12
-    lea   s13, sizeof(node)(s13)
+    go_right
     jump  descend_node
 descend_tie:
     ; A plane through the origin and the exit plane itself are crossed. Of the split and the exit plane, met at the same t, the split
@@ -64,7 +52,6 @@ descend_crossed:
     beqz  s14, descend_right
     jump  descend_left
 descend_leaf:
-    mov   packet_count, s15
-    mov   packet_refs, s13
+    leaf_packet
     ret   link_step
 .endfunc

@@ -1,9 +1,13 @@
 ; Tests every triangle of the packet. The nearest hit has the smallest t, then the lowest index.
 ; In: packet_count, packet_refs, near, near_t, any_hit. Out: near, near_t, near_slot. Returns by link_packet.
-; References come in blocks of REFERENCES_AT_ONCE, a triangle at a time beside the nearest one: any packet fits the buffer.
+; A triangle at a time is loaded beside the nearest one, so any packet fits the buffer; references that are an array come in blocks.
 ; Scratch: s12 to s15 and what triangle needs; packet_count and packet_refs are used up.
 .func packet
     blez  packet_count, 4f
+.if LAYOUT_REPORT
+    mov   s14, packet_count
+2:  next_reference
+.else
 1:  movi  s12, REFERENCES_AT_ONCE
     min   s12, s12, packet_count
     isub  packet_count, packet_count, s12
@@ -13,14 +17,20 @@
     addr  s14, s13, s12
     addr  packet_refs, packet_refs, s12
 2:  lwp   s15, 4(s13)
+.endif
     movi  s12, sizeof(triangle)
     load  slot, s15, s12
     call  link_step, triangle
     blt   near_t, s12, 3f
     bne   near_t, s12, packet_nearer
     bltu  s15, near, packet_nearer
+.if LAYOUT_REPORT
+3:  isubi s14, s14, 1
+    bnez  s14, 2b
+.else
 3:  bltu  s13, s14, 2b
     bgtz  packet_count, 1b
+.endif
 4:  ret   link_packet
 packet_nearer:
     mov   near_t, s12

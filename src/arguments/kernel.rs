@@ -1,0 +1,39 @@
+//! Which kernels run.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use isa::diagnostic::Diagnostic;
+use kernels::{Function, Profile};
+
+/// Options of the kernels.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Kernels")]
+pub struct KernelArguments {
+    /// Set of kernels.
+    #[arg(long, value_name = "NAME", value_parser = profile(), default_value = Profile::default().name())]
+    pub profile: Profile,
+    /// Assembly file that serves one function instead of the profile's own; may be repeated.
+    #[arg(long = "kernel", value_name = "FUNCTION=FILE", value_parser = replacement)]
+    pub replaced: Vec<(Function, PathBuf)>,
+}
+
+fn profile() -> impl TypedValueParser<Value = Profile> {
+    let names = PossibleValuesParser::new(Profile::ALL.iter().map(|profile| profile.name()));
+    names.map(|name| name.parse().expect("the parser lets only names pass"))
+}
+
+fn replacement(text: &str) -> Result<(Function, PathBuf), String> {
+    let (function, path) = text.split_once('=').ok_or("a function, `=` and a file are expected")?;
+    let function = function.trim().parse().map_err(|message: Box<Diagnostic>| plain(&message))?;
+    if path.is_empty() { Err("there is no file after `=`".into()) } else { Ok((function, path.into())) }
+}
+
+/// A message in one line, for errors of usage.
+pub(super) fn plain(message: &Diagnostic) -> String {
+    match &message.hint {
+        Some(hint) => format!("{}; {hint}", message.message),
+        None => message.message.clone(),
+    }
+}

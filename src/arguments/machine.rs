@@ -1,0 +1,25 @@
+//! Which machine runs.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use scenes::layout::Layout;
+
+/// Options of the machine.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Machine")]
+pub struct MachineArguments {
+    /// Machine: a preset's name or a TOML file; `lancer machine` shows them.
+    #[arg(long, value_name = "NAME|FILE", default_value = "report")]
+    pub machine: String,
+    /// Number of cores, 1 to 256 [default: the machine's, 4].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub cores: Option<u32>,
+    /// Structures of global memory [default: wide].
+    #[arg(long, value_name = "NAME", value_parser = layout())]
+    pub layout: Option<Layout>,
+}
+
+fn layout() -> impl TypedValueParser<Value = Layout> {
+    let names = PossibleValuesParser::new(Layout::ALL.iter().map(|layout| layout.name()));
+    names.map(|name| name.parse().expect("the parser lets only names pass"))
+}

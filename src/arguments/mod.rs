@@ -1,0 +1,16 @@
+//! Groups of options that several commands share, and how values such as `x,y,z` are read. What the values do is said in
+//! [`crate::job`].
+
+mod effort;
+mod kernel;
+mod machine;
+mod numbers;
+mod value;
+mod view;
+
+pub use effort::EffortArguments;
+pub use kernel::KernelArguments;
+pub use machine::MachineArguments;
+pub use numbers::NumberArguments;
+pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};
+pub use view::{CameraKind, ViewArguments};

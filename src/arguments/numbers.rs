@@ -1,0 +1,50 @@
+//! The arithmetic: word, modes and formats.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use isa::number::{Overflow, Quantization};
+use scenes::cadrage::Overrides;
+
+/// Options of the arithmetic.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Numbers")]
+pub struct NumberArguments {
+    /// Bits of a word, 8 to 32 [default: the machine's, 32].
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
+    pub word: Option<u32>,
+    /// Rounding mode, by its IEEE 1666 name [default: the machine's, RND].
+    #[arg(long, value_name = "MODE", ignore_case = true, value_parser = rounding())]
+    pub rounding: Option<Quantization>,
+    /// Overflow mode, by its IEEE 1666 name [default: the machine's, SAT].
+    #[arg(long, value_name = "MODE", ignore_case = true, value_parser = overflow())]
+    pub overflow: Option<Overflow>,
+    /// Fraction bits of a quantity: pos, dir, bary, t, weight or colour; may be repeated [default: chosen for the scene].
+    #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = format)]
+    pub formats: Vec<String>,
+}
+
+fn rounding() -> impl TypedValueParser<Value = Quantization> {
+    let names = PossibleValuesParser::new(Quantization::ALL.iter().map(|mode| mode.name()));
+    names.map(|name| Quantization::from_name(&name).expect("the parser lets only names pass"))
+}
+
+fn overflow() -> impl TypedValueParser<Value = Overflow> {
+    let names = PossibleValuesParser::new(Overflow::ALL.iter().map(|mode| mode.name()));
+    names.map(|name| Overflow::from_name(&name).expect("the parser lets only names pass"))
+}
+
+/// Lets a setting pass that [`Overrides::set`] takes.
+fn format(text: &str) -> Result<String, String> {
+    Overrides::default().set(text).map(|()| text.to_owned()).map_err(|report| super::kernel::plain(&report.0[0]))
+}
+
+impl NumberArguments {
+    /// The fraction bits that the user sets.
+    pub fn overrides(&self) -> Overrides {
+        let mut overrides = Overrides::default();
+        for setting in &self.formats {
+            overrides.set(setting).expect("the parser has tried it");
+        }
+        overrides
+    }
+}

@@ -1,0 +1,29 @@
+//! `lancer machine`: a machine as a file with every key.
+
+use clap::Args;
+
+use crate::failure::{Exit, Failure};
+use crate::machine;
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer machine
+  lancer machine report > mine.toml    # then change a key, and: lancer render cornell --machine mine.toml
+  lancer machine mine.toml             # keys that the file leaves out have the report's values";
+
+/// Prints a machine as a TOML file with every key, its unit and what it means.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct MachineArguments {
+    /// Preset (report) or TOML file.
+    #[arg(value_name = "NAME|FILE", default_value = machine::DEFAULT)]
+    machine: String,
+}
+
+/// Prints the machine.
+pub(super) fn execute(arguments: &MachineArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let (name, config) = machine::find(&arguments.machine)?;
+    terminal.print(&machine::commented(&name, &config))?;
+    Ok(Exit::Done)
+}

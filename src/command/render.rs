@@ -1,0 +1,155 @@
+//! `lancer render`: a scene to a picture, with what it took.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+
+use crate::drawing::{self, Comparison, Drawing};
+use crate::failure::{Exit, Failure};
+use crate::files::picture::Format;
+use crate::files::{self, map};
+use crate::job::{Job, JobArguments, result_name};
+use crate::result::{Host, Render};
+use crate::summary;
+use crate::table::grouped;
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer render cornell --shift 0.137,0.071
+  lancer render house.dsc -o house.png --heat heat.png --error error.png
+  lancer render bunny.off --size 640x480 --camera perspective --eye 0,-1,3 -o bunny.pfm
+  lancer render sphereflake --json --cores 8 --word 24 > counts.json
+  lancer render cornell --kernel triangle=my.s --pixel 160,120
+
+Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 5 step limit.";
+
+/// Draws a scene on the emulated coprocessor and says what it took.
+///
+/// Files are written when the whole picture is done. Without -o and --json, the picture goes to NAME.png in the current
+/// folder and a summary to standard output. PNG and PPM have the sRGB transfer curve, PFM is linear.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct RenderArguments {
+    #[command(flatten)]
+    job: JobArguments,
+    /// Picture file: .png, .ppm or .pfm [default: NAME.png in the current folder, unless --json].
+    #[arg(short, long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
+    output: Option<PathBuf>,
+    /// Prints the results as JSON instead of tables.
+    #[arg(long, help_heading = "Results")]
+    json: bool,
+    /// Adds the host's times, in seconds.
+    #[arg(long, help_heading = "Results")]
+    timing: bool,
+    /// Map of the elementary operations of each pixel: .png, .ppm or .pfm.
+    #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
+    heat: Option<PathBuf>,
+    /// Map of each pixel's difference from double precision, logarithmic: .png, .ppm or .pfm.
+    #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
+    error: Option<PathBuf>,
+    /// Leaves out the comparison with double precision, which saves its time.
+    #[arg(long, conflicts_with = "error", help_heading = "Results")]
+    no_error: bool,
+}
+
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    Format::of(&path).map(|_| path)
+}
+
+/// Draws, writes and prints.
+pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let start = Instant::now();
+    let job = Job::from_arguments(&arguments.job)?;
+    let load = start.elapsed();
+    terminal.show(&job.warnings);
+    let is_default = arguments.output.is_none() && !arguments.json;
+    let output = match is_default {
+        true => Some(PathBuf::from(format!("{}.png", result_name(&job.scene)))),
+        false => arguments.output.clone(),
+    };
+    let targets = [&output, &arguments.heat, &arguments.error].map(|path| path.as_deref());
+    files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
+    for target in targets.into_iter().flatten() {
+        files::check_target(target)?;
+    }
+    let comparison = if arguments.no_error { Comparison::None } else { Comparison::Reference };
+    let drawing = draw(&job, comparison, terminal)?;
+    terminal.show(&drawing.warnings);
+    let mut result = Render::new(&job, &drawing);
+    result.host = arguments.timing.then(|| Host::new(load, &drawing));
+    let [output, heat, error] = targets;
+    write_maps(&drawing, heat, error)?;
+    if let Some(output) = output {
+        files::write(output, &format(output).encode(&drawing.picture))?;
+    }
+    match arguments.json {
+        true => terminal.print(&result.json())?,
+        false => terminal.print(&text(&result, &job, &drawing))?,
+    }
+    if is_default && let Some(output) = output {
+        terminal.say(&format!("picture: {}", output.display()));
+    }
+    Ok(Exit::Done)
+}
+
+/// Draws with a bar that shows how far it is.
+pub(super) fn draw(job: &Job, comparison: Comparison, terminal: &Terminal) -> Result<Drawing, Failure> {
+    let crop = job.crop();
+    let bar = terminal.progress("pixels", u64::from(crop.width) * u64::from(crop.height));
+    let drawing = drawing::draw(job, comparison, &mut |done| bar.set_position(done));
+    bar.finish_and_clear();
+    drawing
+}
+
+/// Writes the maps that are asked for.
+pub(super) fn write_maps(drawing: &Drawing, heat: Option<&Path>, error: Option<&Path>) -> Result<(), Failure> {
+    let size = drawing.picture.size;
+    if let Some(path) = heat {
+        files::write(path, &format(path).encode_pixels(&map::heat(size, &drawing.operations())))?;
+    }
+    if let Some((path, differences)) = error.zip(drawing.differences()) {
+        files::write(path, &format(path).encode_pixels(&map::error(size, &differences)))?;
+    }
+    Ok(())
+}
+
+fn format(path: &Path) -> Format {
+    Format::of(path).expect("the parser lets only such names pass")
+}
+
+fn text(result: &Render, job: &Job, drawing: &Drawing) -> String {
+    let mut parts = vec![
+        summary::title(result) + &summary::rays(result),
+        summary::functions(result),
+        summary::classes(result),
+        summary::processors(result, job.machine.clock_hz),
+    ];
+    parts.extend(result.error.as_ref().map(summary::error));
+    if drawing.words.len() == 1 {
+        parts.push(summary::pixel(drawing));
+    }
+    parts.push(heat(&drawing.operations()) + &summary::hashes(result));
+    if let Some(host) = &result.host {
+        parts.push(format!(
+            "host: load {:.2} s, build {:.2} s, run {:.2} s, reference {:.2} s (beside the run)\n",
+            host.load_seconds, host.build_seconds, host.run_seconds, host.reference_seconds
+        ));
+    }
+    parts.join("\n")
+}
+
+/// One line on how the operations spread over the pixels: the scale of the heat map.
+pub(super) fn heat(operations: &[u64]) -> String {
+    let mut sorted = operations.to_vec();
+    sorted.sort_unstable();
+    let at = |share: f64| sorted.get(((sorted.len().max(1) - 1) as f64 * share) as usize).copied().unwrap_or(0);
+    format!(
+        "elementary operations a pixel: least {}, median {}, largest {}\n",
+        grouped(at(0.0)),
+        grouped(at(0.5)),
+        grouped(at(1.0))
+    )
+}

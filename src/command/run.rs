@@ -1,0 +1,114 @@
+//! `lancer run`: a program on one core, with registers and memory that the user sets.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use emu::machine::single::{self, Single};
+use emu::octets::Memory;
+use isa::Isa;
+use isa::diagnostic::{Diagnostic, Report};
+
+use super::assemble::{self, SourceArguments};
+use super::run_arguments::{Dump, RegisterValue, memory_file};
+use super::run_result::RunResult;
+use crate::failure::{Exit, Failure};
+use crate::terminal::Terminal;
+use crate::{files, machine, result};
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer run first.s
+  lancer run first.s --reg s1=5,v2=1:2:3 --max-steps 1000
+  lancer run copy.s --mem 0x100=data.bin --dump 0x100:64 --dump regs
+  lancer run sqrt.s --reg s3=0x10000 --json
+
+Registers hold raw integers: s0 to s31 one word, v0 to v31 three lanes, w0 to w7 64 bits.
+Exit codes: 0 the program halted, 1 errors in the source, 2 usage, 3 it trapped, 5 step limit.";
+
+/// Assembles a program and runs it on one core of the machine.
+///
+/// Prints the registers that are not zero at the end, and what the program took, by class and by function.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct RunArguments {
+    #[command(flatten)]
+    source: SourceArguments,
+    /// Registers at the start, such as s1=5,v2=1:2:3,w0=-7; may be repeated [default: 0].
+    #[arg(long = "reg", value_name = "REGISTER=VALUE,..", value_delimiter = ',', allow_hyphen_values = true)]
+    registers: Vec<RegisterValue>,
+    /// File whose octets lie in global memory from an address on; may be repeated.
+    #[arg(long = "mem", value_name = "ADDRESS=FILE", value_parser = memory_file)]
+    files: Vec<(u32, PathBuf)>,
+    /// Octets of global memory; files that reach beyond make it longer.
+    #[arg(long, value_name = "OCTETS", value_parser = clap::value_parser!(u32).range(0..=1 << 30), default_value = "65536")]
+    memory_size: u32,
+    /// Shows all registers (regs), octets of global memory (ADDRESS:OCTETS) or of the local buffer
+    /// (buffer:ADDRESS:OCTETS) at the end; may be repeated.
+    #[arg(long = "dump", value_name = "regs|ADDRESS:OCTETS")]
+    dumps: Vec<Dump>,
+    /// Instructions that the program may take [default: the machine's, 100,000,000].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    max_steps: Option<u64>,
+    /// Machine: a preset's name or a TOML file.
+    #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
+    machine: String,
+    /// Prints the results as JSON instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Assembles, runs and prints.
+pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let (machine_name, config) = machine::find(&arguments.machine)?;
+    let isa = Isa::base();
+    let memory = memory(arguments)?;
+    let program = assemble::assembled(&arguments.source, &isa, terminal)?;
+    let mut registers = emu::registers::Registers::default();
+    for value in &arguments.registers {
+        value.set(&mut registers);
+    }
+    let single = Single {
+        config: &config,
+        isa: &isa,
+        program: &program,
+        registers,
+        step_limit: arguments.max_steps.unwrap_or(config.step_limit),
+        has_profile: true,
+    };
+    let run = single::run(&single, Memory::new(memory))?;
+    let file = arguments.source.file.display().to_string();
+    let shown = RunResult::new(file, machine_name, &run, &arguments.dumps)?;
+    match arguments.json {
+        true => terminal.print(&result::json(&shown))?,
+        false => terminal.print(&shown.text())?,
+    }
+    match &run.trap {
+        None => Ok(Exit::Done),
+        Some(trap) => {
+            let mut report = Report::from(trap.diagnostic());
+            let exit = if trap.exit_code() == 5 { Exit::StepLimit } else { Exit::Trap };
+            if exit == Exit::StepLimit {
+                let hint = "a loop that does not end? --max-steps allows more";
+                report.0 = report.0.into_iter().map(|message| message.hint(hint)).collect();
+            }
+            Err(Failure::Message { report, exit })
+        }
+    }
+}
+
+/// Global memory at the start.
+fn memory(arguments: &RunArguments) -> Result<Vec<u8>, Failure> {
+    let mut memory = vec![0; arguments.memory_size as usize];
+    for (address, path) in &arguments.files {
+        let octets = files::read(path)?;
+        let start = *address as usize;
+        let end = start + octets.len();
+        if end > 1 << 30 {
+            let message = format!("{} at {address:#x} reaches beyond a memory of 1 GiB", path.display());
+            return Err(Diagnostic::error(message).into());
+        }
+        memory.resize(memory.len().max(end), 0);
+        memory[start..end].copy_from_slice(&octets);
+    }
+    Ok(memory)
+}

@@ -1,0 +1,196 @@
+//! What `lancer run` found: as JSON and as tables.
+
+use emu::machine::single::SingleRun;
+use emu::profile::Profile;
+use emu::registers::Registers;
+use isa::Class;
+use isa::diagnostic::Diagnostic;
+use serde::{Serialize, Serializer};
+
+use super::run_arguments::Dump;
+use crate::failure::Failure;
+use crate::listing;
+use crate::result::{ByClass, Region, hexadecimal, regions};
+use crate::summary;
+use crate::table::{count, grouped, row, table};
+
+/// Version of [`RunResult`].
+pub const SCHEMA: &str = "lancer-run-1";
+
+/// The results of a program.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunResult {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// The assembly file.
+    pub program: String,
+    /// Name of the machine.
+    pub machine: String,
+    /// Instructions executed.
+    pub instructions: u64,
+    /// Operations by class.
+    pub counts: ByClass,
+    /// Clocks, transfers included.
+    pub clocks: u64,
+    /// Clocks of transfers.
+    pub waiting: u64,
+    /// Registers at the end: those that are not zero, or all when they were asked for.
+    pub registers: RegisterValues,
+    /// Functions.
+    pub functions: Vec<Region>,
+    /// Regions inside functions.
+    pub regions: Vec<Region>,
+    /// Octets that were asked for.
+    pub dumps: Vec<DumpedOctets>,
+    /// Why it stopped before its `halt`.
+    pub trap: Option<TrapResult>,
+}
+
+/// Registers by name.
+#[derive(Clone, Debug)]
+pub struct RegisterValues(pub Vec<(String, RegisterContents)>);
+
+impl Serialize for RegisterValues {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, contents)| (name, contents)))
+    }
+}
+
+/// What a register holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(untagged)]
+pub enum RegisterContents {
+    /// A scalar or a wide accumulator.
+    One(i64),
+    /// A vector.
+    Three([i32; 3]),
+}
+
+/// Octets of a memory.
+#[derive(Clone, Debug, Serialize)]
+pub struct DumpedOctets {
+    /// `memory` or `buffer`.
+    pub space: &'static str,
+    /// Address of the first one.
+    pub address: u32,
+    /// In hexadecimal.
+    pub octets: String,
+    #[serde(skip)]
+    raw: Vec<u8>,
+}
+
+/// Why a program stopped.
+#[derive(Clone, Debug, Serialize)]
+pub struct TrapResult {
+    /// What went wrong, without where.
+    pub fault: String,
+    /// Word of the instruction.
+    pub pc: u32,
+    /// The function around it.
+    pub function: Option<String>,
+    /// `file:line`.
+    pub place: Option<String>,
+}
+
+impl RunResult {
+    /// The results of a run.
+    ///
+    /// # Errors
+    /// A dump beyond the end of a memory.
+    pub fn new(program: String, machine: String, run: &SingleRun, dumps: &[Dump]) -> Result<RunResult, Failure> {
+        let has_all = dumps.contains(&Dump::Registers);
+        let registers =
+            registers(&run.state.registers).into_iter().filter(|(_, contents)| has_all || !is_zero(contents));
+        let trap = run.trap.as_ref().map(|trap| TrapResult {
+            fault: trap.kind.to_string(),
+            pc: trap.pc,
+            function: trap.function.clone(),
+            place: trap.place.clone(),
+        });
+        Ok(RunResult {
+            schema: SCHEMA,
+            program,
+            machine,
+            instructions: run.state.steps,
+            counts: ByClass(run.profile.as_ref().map(Profile::total).unwrap_or_default()),
+            clocks: run.clocks.0,
+            waiting: run.waiting.0,
+            registers: RegisterValues(registers.collect()),
+            functions: regions(run.profile.as_ref(), true),
+            regions: regions(run.profile.as_ref(), false),
+            dumps: dumps.iter().filter_map(|&dump| dumped(run, dump)).collect::<Result<_, _>>()?,
+            trap,
+        })
+    }
+
+    /// Registers, counts, functions and dumps for people.
+    pub fn text(&self) -> String {
+        let mut parts = vec![self.register_text()];
+        let mut rows = vec![row(["class", "count"])];
+        rows.extend(
+            self.counts
+                .0
+                .iter()
+                .filter(|(_, count)| *count != 0)
+                .map(|(class, count)| vec![class.name().into(), grouped(count)]),
+        );
+        if rows.len() > 1 {
+            parts.push(table(rows));
+        }
+        if !self.functions.is_empty() {
+            parts.push(summary::function_table(&[(&self.functions, ""), (&self.regions, "  ")]));
+        }
+        for dump in &self.dumps {
+            parts.push(format!("{}\n{}", dump.space, listing::octets(&dump.raw, dump.address)));
+        }
+        let ended = if self.trap.is_some() { "stopped" } else { "halted" };
+        parts.push(format!(
+            "{ended} after {}, {} ({} of them on the bus, {} octets)\n",
+            count(self.instructions, "instruction", "instructions"),
+            count(self.clocks, "clock", "clocks"),
+            grouped(self.waiting),
+            grouped(self.counts.0[Class::Octet]),
+        ));
+        parts.join("\n")
+    }
+
+    fn register_text(&self) -> String {
+        if self.registers.0.is_empty() {
+            return "all registers are zero\n".into();
+        }
+        let mut rows = vec![row(["register", "value", "hexadecimal"])];
+        rows.extend(self.registers.0.iter().map(|(name, contents)| {
+            let (value, digits) = match contents {
+                RegisterContents::One(value) if name.starts_with('w') => (value.to_string(), format!("{value:016x}")),
+                RegisterContents::One(value) => (value.to_string(), format!("{:08x}", *value as i32)),
+                RegisterContents::Three(lanes) => {
+                    (lanes.map(|lane| lane.to_string()).join(" : "), lanes.map(|lane| format!("{lane:08x}")).join(" "))
+                }
+            };
+            vec![name.clone(), value, digits]
+        }));
+        table(rows)
+    }
+}
+
+/// All registers by name.
+fn registers(registers: &Registers) -> Vec<(String, RegisterContents)> {
+    let scalars = (0..32).map(|n| (format!("s{n}"), RegisterContents::One(registers.scalar(n).into())));
+    let vectors = (0..32).map(|n| (format!("v{n}"), RegisterContents::Three(registers.vector(n))));
+    let wides = (0..8).map(|n| (format!("w{n}"), RegisterContents::One(registers.wide(n))));
+    scalars.chain(vectors).chain(wides).collect()
+}
+
+fn is_zero(contents: &RegisterContents) -> bool {
+    matches!(contents, RegisterContents::One(0) | RegisterContents::Three([0, 0, 0]))
+}
+
+fn dumped(run: &SingleRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> {
+    let (space, address, octets) = match dump {
+        Dump::Registers => return None,
+        Dump::Memory(address, octets) => ("memory", address, run.memory.slice(address, octets)),
+        Dump::Buffer(address, octets) => ("buffer", address, run.state.buffer.slice(address, octets)),
+    };
+    let dumped = |octets: &[u8]| DumpedOctets { space, address, octets: hexadecimal(octets), raw: octets.to_vec() };
+    Some(octets.map(dumped).map_err(|fault| Diagnostic::error(format!("there is nothing to dump: {fault}")).into()))
+}

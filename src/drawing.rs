@@ -1,0 +1,151 @@
+//! From a job to a picture: memory image, programs, the run of the machine, the picture in its frame, and the reference
+//! that it is measured against.
+
+use std::time::{Duration, Instant};
+
+use emu::machine::{self, Frame, Setup};
+use emu::octets::Memory;
+use isa::Isa;
+use isa::diagnostic::Report;
+use kernels::build::{Build, Crop};
+use rayon::prelude::*;
+use scenes::image::{self, Image, Kind};
+use scenes::layout::PIXEL;
+use scenes::metrics::{self, PictureError};
+use scenes::model::Picture;
+use scenes::reference::{Method, Reference};
+
+use crate::failure::Failure;
+use crate::job::Job;
+
+/// Whether a picture is measured against double precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// It is.
+    Reference,
+    /// It is not, which saves the time of the reference.
+    None,
+}
+
+/// How long the host took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// For tree, memory image and programs.
+    pub build: Duration,
+    /// For the machine.
+    pub run: Duration,
+    /// For the reference, beside the machine.
+    pub reference: Duration,
+}
+
+/// A picture that was drawn, and all that is known about how.
+#[derive(Clone, Debug)]
+pub struct Drawing {
+    /// The scene in memory; its octets have moved into the frame's memory.
+    pub image: Image,
+    /// The programs.
+    pub build: Build,
+    /// What the machine did.
+    pub frame: Frame,
+    /// The part that was drawn; pictures have its size.
+    pub crop: Crop,
+    /// The colours, raw.
+    pub words: Vec<[i32; 3]>,
+    /// The colours, linear.
+    pub picture: Picture,
+    /// The same part in double precision.
+    pub reference: Option<Picture>,
+    /// How far they are apart.
+    pub error: Option<PictureError>,
+    /// What is likely a mistake in the user's kernels.
+    pub warnings: Report,
+    /// Host times.
+    pub times: Times,
+}
+
+/// Draws a picture. `progress` is told the number of pixels that are done.
+///
+/// # Errors
+/// A scene that does not fit its formats, errors in the user's kernels, a machine out of its ranges, a trap.
+pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) -> Result<Drawing, Failure> {
+    let start = Instant::now();
+    let isa = Isa::base();
+    let mut image = image::build(&job.scene, &job.view, &job.memory)?;
+    let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
+    let reference = match comparison {
+        Comparison::Reference => Some(Reference::new(&job.scene, &job.view, Method::Hierarchy)?),
+        Comparison::None => None,
+    };
+    let crop = build.crop;
+    let built = Instant::now();
+    let setup = Setup {
+        config: &job.machine,
+        isa: &isa,
+        core: &build.cores,
+        main: &build.main,
+        kinds: image.regions.iter().map(|(kind, range)| (range.clone(), kind.name().to_owned())).collect(),
+        options: machine::Options { has_profile: true, has_items: true },
+    };
+    let memory = Memory::new(std::mem::take(&mut image.bytes));
+    let (frame, reference) = std::thread::scope(|scope| {
+        let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
+        let frame = timed(|| machine::run(&setup, memory, progress));
+        (frame, beside.join().expect("the reference does not panic"))
+    });
+    let (frame, run) = frame;
+    let frame = frame?;
+    let (reference, reference_time) = reference.map_or((None, Duration::ZERO), |(picture, time)| (Some(picture), time));
+    let words = colour_words(&image, &frame, &crop);
+    let picture = picture(&image, &words, (crop.width, crop.height));
+    let error = reference.as_ref().and_then(|reference| metrics::compare(&picture, reference));
+    let warnings = build.warnings.clone();
+    let times = Times { build: built - start, run, reference: reference_time };
+    Ok(Drawing { image, build, frame, crop, words, picture, reference, error, warnings, times })
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
+    let start = Instant::now();
+    let result = work();
+    (result, start.elapsed())
+}
+
+/// The part of the reference picture that is drawn.
+fn part(reference: &Reference, crop: &Crop) -> Picture {
+    let row = |row: u32| -> Vec<_> {
+        (0..crop.width).map(|column| reference.pixel(crop.column + column, crop.row + row).0).collect()
+    };
+    let rows: Vec<Vec<_>> = (0..crop.height).into_par_iter().map(row).collect();
+    Picture { size: (crop.width, crop.height), pixels: rows.into_iter().flatten().collect() }
+}
+
+/// The colours in the frame, where the drawn part lies row by row from its start.
+fn colour_words(image: &Image, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
+    let start = image.region(Kind::Frame).start;
+    let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
+    let octets = octets.expect("the image has a frame for the whole picture");
+    let word = |octets: &[u8], at: usize| i32::from_le_bytes(std::array::from_fn(|k| octets[4 * at + k]));
+    octets.chunks_exact(PIXEL.octets() as usize).map(|pixel| std::array::from_fn(|k| word(pixel, k))).collect()
+}
+
+fn picture(image: &Image, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
+    let scale = (-f64::from(image.formats.colour)).exp2();
+    Picture { size, pixels: words.iter().map(|colour| colour.map(|raw| f64::from(raw) * scale)).collect() }
+}
+
+impl Drawing {
+    /// Elementary operations of each pixel, row 0 first.
+    pub fn operations(&self) -> Vec<u64> {
+        let mut operations = vec![0; self.words.len()];
+        for item in &self.frame.items {
+            if let Some(pixel) = usize::try_from(item.subject[0]).ok().and_then(|at| operations.get_mut(at)) {
+                *pixel += item.elementary;
+            }
+        }
+        operations
+    }
+
+    /// The difference of each pixel from the reference, where there is one.
+    pub fn differences(&self) -> Option<Vec<f64>> {
+        metrics::error_map(&self.picture, self.reference.as_ref()?)
+    }
+}

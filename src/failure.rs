@@ -1,0 +1,65 @@
+//! How a command ends: its exit code, and what it says when it could not do its work.
+
+use isa::diagnostic::{Diagnostic, Report};
+
+/// Exit codes of all commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// The command did what it was asked for.
+    Done = 0,
+    /// The input has errors, or cannot be read, or a result cannot be written.
+    Input = 1,
+    /// The command line is wrong.
+    Usage = 2,
+    /// A program on the emulated machine trapped.
+    Trap = 3,
+    /// A comparison is out of its tolerance.
+    Tolerance = 4,
+    /// A program took more instructions than it may.
+    StepLimit = 5,
+}
+
+/// Why a command did not do its work.
+#[derive(Debug)]
+pub enum Failure {
+    /// It has something to say.
+    Message {
+        /// What.
+        report: Report,
+        /// How the command ends.
+        exit: Exit,
+    },
+    /// Whoever read the results does not want more of them.
+    ClosedPipe,
+}
+
+impl Failure {
+    /// A wrong command line that the parser could not see.
+    pub fn usage(message: Diagnostic) -> Failure {
+        Failure::Message { report: message.into(), exit: Exit::Usage }
+    }
+}
+
+impl From<Report> for Failure {
+    fn from(report: Report) -> Failure {
+        Failure::Message { report, exit: Exit::Input }
+    }
+}
+
+impl From<Diagnostic> for Failure {
+    fn from(message: Diagnostic) -> Failure {
+        Report::from(message).into()
+    }
+}
+
+impl From<emu::machine::Failure> for Failure {
+    fn from(failure: emu::machine::Failure) -> Failure {
+        let exit = match failure.exit_code() {
+            3 => Exit::Trap,
+            5 => Exit::StepLimit,
+            _ => Exit::Input,
+        };
+        Failure::Message { report: failure.report(), exit }
+    }
+}

@@ -1,0 +1,174 @@
+//! Files that commands read and write. A result is written beside its place and then renamed, so that no file is ever
+//! half-written.
+
+pub mod map;
+pub mod picture;
+pub mod words;
+
+use std::fs::{self, Permissions};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Report, Source};
+use tempfile::Builder;
+
+/// Octets of the largest text that is read.
+const LARGEST: u64 = 64 << 20;
+
+/// All octets of a file.
+///
+/// # Errors
+/// A file that is missing, too large or cannot be read.
+pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
+    let shown = path.display();
+    let refuse = |error: io::Error| match error.kind() {
+        ErrorKind::NotFound => Diagnostic::error(format!("there is no file {shown}")),
+        ErrorKind::PermissionDenied => Diagnostic::error(format!("{shown} must not be read by this user")),
+        _ => Diagnostic::error(format!("{shown} cannot be read: {error}")),
+    };
+    if path.is_dir() {
+        return Err(Diagnostic::error(format!("{shown} is a folder, not a file")).into());
+    }
+    let file = fs::File::open(path).map_err(refuse)?;
+    let mut octets = Vec::new();
+    file.take(LARGEST + 1).read_to_end(&mut octets).map_err(refuse)?;
+    if octets.len() as u64 > LARGEST {
+        return Err(Diagnostic::error(format!("{shown} is larger than {} MiB", LARGEST >> 20)).into());
+    }
+    Ok(octets)
+}
+
+/// The text of a file; octets that are not UTF-8 are replaced.
+///
+/// # Errors
+/// See [`read`].
+pub fn source(path: &Path) -> Result<Arc<Source>, Report> {
+    Ok(Source::new(path.display().to_string(), String::from_utf8_lossy(&read(path)?)))
+}
+
+/// Whether a result could be written there, so that a command fails before its work and not after it.
+///
+/// # Errors
+/// A folder that does not exist, or a folder in the place of the file.
+pub fn check_target(path: &Path) -> Result<(), Report> {
+    let shown = path.display();
+    if path.is_dir() {
+        return Err(Diagnostic::error(format!("{shown} is a folder, not a place for a file")).into());
+    }
+    let folder = folder_of(path);
+    if !folder.is_dir() {
+        let message = Diagnostic::error(format!("there is no folder {} for {shown}", folder.display()));
+        return Err(message.hint(format!("make it first: mkdir -p {}", folder.display())).into());
+    }
+    Ok(())
+}
+
+/// Writes a file as a whole: beside its place first, then renamed. What is no regular file, such as a pipe, is written
+/// in place.
+///
+/// # Errors
+/// What [`check_target`] refuses, and a disk or folder that cannot be written.
+pub fn write(path: &Path, octets: &[u8]) -> Result<(), Report> {
+    check_target(path)?;
+    // A link keeps leading to the file.
+    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let is_special = fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file());
+    let written = if is_special { fs::write(&path, octets) } else { replace(&path, octets) };
+    written.map_err(|error| {
+        let reason = match error.kind() {
+            ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
+            _ => error.to_string(),
+        };
+        Diagnostic::error(format!("{} cannot be written: {reason}", path.display())).into()
+    })
+}
+
+fn replace(path: &Path, octets: &[u8]) -> io::Result<()> {
+    let mut builder = Builder::new();
+    builder.prefix(".lancer-");
+    let permissions = fresh_permissions();
+    if let Some(permissions) = &permissions {
+        builder.permissions(permissions.clone());
+    }
+    let mut file = builder.tempfile_in(folder_of(path))?;
+    file.write_all(octets)?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// What a new file would have, before the user's mask; temporary files are private otherwise.
+#[cfg(unix)]
+fn fresh_permissions() -> Option<Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn fresh_permissions() -> Option<Permissions> {
+    None
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// Refuses two results for the same file.
+///
+/// # Errors
+/// The path that is named twice.
+pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Diagnostic> {
+    let mut seen: Vec<&Path> = Vec::new();
+    for path in paths {
+        if seen.contains(&path) {
+            return Err(Diagnostic::error(format!("{} would be written twice", path.display())));
+        }
+        seen.push(path);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_as_a_whole_and_nothing_stays_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write(&path, b"first").unwrap();
+        write(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named_with_what_to_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("no/such/a.txt");
+        let message = write(&path, b"").unwrap_err().render(false);
+        assert!(message.contains("there is no folder") && message.contains("mkdir -p"), "{message}");
+        assert!(write(folder.path(), b"").unwrap_err().render(false).contains("is a folder"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_keeps_leading_to_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+    }
+
+    #[test]
+    fn two_results_do_not_share_a_file() {
+        assert!(check_distinct([Path::new("a"), Path::new("b")]).is_ok());
+        assert!(check_distinct([Path::new("a"), Path::new("b"), Path::new("a")]).is_err());
+    }
+}

@@ -1,0 +1,152 @@
+//! Picture files. PNG and PPM hold 8 bits a component under the sRGB transfer curve, so that screens show the light as
+//! it was computed; PFM holds the linear components as they are, not clamped.
+
+use std::path::Path;
+
+use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+use scenes::model::{Picture, Vec3};
+
+/// A picture of 8 bits a component, row 0 on top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Width and height.
+    pub size: (u32, u32),
+    /// Red, green and blue of each pixel.
+    pub colours: Vec<[u8; 3]>,
+}
+
+/// A picture file format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Portable network graphics.
+    Png,
+    /// Binary portable pixel map, `P6`.
+    Ppm,
+    /// Portable float map, `PF`, little-endian.
+    Pfm,
+}
+
+impl Format {
+    /// The format that a file's name asks for.
+    ///
+    /// # Errors
+    /// Another extension, or none.
+    pub fn of(path: &Path) -> Result<Format, String> {
+        let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("png") => Ok(Format::Png),
+            Some("ppm") => Ok(Format::Ppm),
+            Some("pfm") => Ok(Format::Pfm),
+            _ => Err(format!("`{}` ends in none of .png, .ppm, .pfm", path.display())),
+        }
+    }
+
+    /// The octets of a file in this format.
+    pub fn encode(self, picture: &Picture) -> Vec<u8> {
+        match self {
+            Format::Png => png(&displayed(picture)),
+            Format::Ppm => ppm(&displayed(picture)),
+            Format::Pfm => pfm(picture),
+        }
+    }
+
+    /// The octets of a file that holds these pixels as they are, and in PFM as fractions of 255.
+    pub fn encode_pixels(self, pixels: &Pixels) -> Vec<u8> {
+        match self {
+            Format::Png => png(pixels),
+            Format::Ppm => ppm(pixels),
+            Format::Pfm => pfm(&Picture {
+                size: pixels.size,
+                pixels: pixels.colours.iter().map(|colour| colour.map(|x| f64::from(x) / 255.0)).collect(),
+            }),
+        }
+    }
+}
+
+/// A picture as screens expect it: clamped to [0, 1], sRGB transfer curve, 8 bits.
+pub fn displayed(picture: &Picture) -> Pixels {
+    let colours = picture.pixels.iter().map(|colour: &Vec3| colour.map(transferred)).collect();
+    Pixels { size: picture.size, colours }
+}
+
+/// A linear component under the sRGB curve of IEC 61966-2-1, to nearest.
+fn transferred(linear: f64) -> u8 {
+    let x = linear.clamp(0.0, 1.0);
+    let curved = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+    (curved * 255.0).round() as u8
+}
+
+fn png(pixels: &Pixels) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut encoder = Encoder::new(&mut out, pixels.size.0, pixels.size.1);
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(pixels.colours.as_flattened())?;
+        writer.finish()
+    });
+    written.expect("a picture with as many pixels as its size says fits a PNG in memory");
+    out
+}
+
+fn ppm(pixels: &Pixels) -> Vec<u8> {
+    let mut out = format!("P6\n{} {}\n255\n", pixels.size.0, pixels.size.1).into_bytes();
+    out.extend_from_slice(pixels.colours.as_flattened());
+    out
+}
+
+fn pfm(picture: &Picture) -> Vec<u8> {
+    let (width, height) = picture.size;
+    // The sign of the scale says little-endian; rows go upwards.
+    let mut out = format!("PF\n{width} {height}\n-1.0\n").into_bytes();
+    for row in picture.pixels.chunks_exact(width.max(1) as usize).rev() {
+        out.extend(row.as_flattened().iter().flat_map(|&component| (component as f32).to_le_bytes()));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn picture() -> Picture {
+        Picture { size: (1, 2), pixels: vec![[0.0, 0.5, 1.5], [-1.0, 0.25, 1.0]] }
+    }
+
+    #[test]
+    fn names_choose_the_format() {
+        assert_eq!(Format::of(Path::new("a/b.PNG")), Ok(Format::Png));
+        assert_eq!(
+            (Format::of(Path::new("b.ppm")), Format::of(Path::new("b.pfm"))),
+            (Ok(Format::Ppm), Ok(Format::Pfm))
+        );
+        for name in ["b", "b.jpg", "png", ".png"] {
+            assert!(Format::of(Path::new(name)).is_err(), "{name}");
+        }
+    }
+
+    #[test]
+    fn half_of_the_light_is_188_on_a_screen() {
+        assert_eq!(displayed(&picture()).colours, [[0, 188, 255], [0, 137, 255]]);
+        let steps: Vec<u8> = (0..=1000).map(|k| transferred(f64::from(k) / 1000.0)).collect();
+        assert!(steps.is_sorted() && steps[0] == 0 && steps[1000] == 255);
+    }
+
+    #[test]
+    fn every_format_has_its_header_and_its_rows() {
+        let png = Format::Png.encode(&picture());
+        let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
+        let mut octets = vec![0; 6];
+        let frame = reader.next_frame(&mut octets).unwrap();
+        assert_eq!((frame.width, frame.height, octets), (1, 2, vec![0, 188, 255, 0, 137, 255]));
+        assert_eq!(Format::Ppm.encode(&picture()), b"P6\n1 2\n255\n\x00\xbc\xff\x00\x89\xff");
+        let pfm = Format::Pfm.encode(&picture());
+        let rows: Vec<f32> =
+            pfm[pfm.len() - 24..].chunks_exact(4).map(|x| f32::from_le_bytes(x.try_into().unwrap())).collect();
+        assert!(pfm.starts_with(b"PF\n1 2\n-1.0\n"));
+        assert_eq!(rows, [-1.0, 0.25, 1.0, 0.0, 0.5, 1.5], "the lowest row comes first");
+    }
+}

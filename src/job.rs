@@ -1,0 +1,167 @@
+//! A picture to be drawn: everything that decides its bits, its counts and its clocks, put together from what the user
+//! says. Nothing here runs anything.
+
+use std::path::Path;
+
+use emu::machine::Config;
+use isa::diagnostic::{Diagnostic, Report};
+use kernels::build::{Crop, Options as KernelOptions};
+use scenes::image::Options as MemoryOptions;
+use scenes::layout::Layout;
+use scenes::model::{Camera, Scene, View};
+
+use crate::arguments::{
+    CameraKind, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments,
+};
+use crate::failure::Failure;
+use crate::{files, input, machine};
+
+/// Everything that decides a picture and what it costs.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What is drawn.
+    pub scene: Scene,
+    /// How it is looked at.
+    pub view: View,
+    /// How it lies in memory.
+    pub memory: MemoryOptions,
+    /// Which kernels draw it.
+    pub kernels: KernelOptions,
+    /// Name of the machine.
+    pub machine_name: String,
+    /// The machine.
+    pub machine: Config,
+    /// What is likely a mistake in the scene's files.
+    pub warnings: Report,
+}
+
+/// The options that decide a picture.
+#[derive(clap::Args, Clone, Debug)]
+pub struct JobArguments {
+    /// Scene: a .dsc with its mesh beside it, a mesh, or the name of a generated scene such as cornell.
+    pub scene: String,
+    /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<std::path::PathBuf>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub view: ViewArguments,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub kernels: KernelArguments,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub machine: MachineArguments,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub numbers: NumberArguments,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub effort: EffortArguments,
+}
+
+impl Job {
+    /// A scene with the defaults of everything else.
+    pub fn new(scene: Scene) -> Job {
+        let view = View::new(scene.size);
+        Job {
+            scene,
+            view,
+            memory: MemoryOptions::default(),
+            kernels: KernelOptions::default(),
+            machine_name: machine::DEFAULT.to_owned(),
+            machine: Config::default(),
+            warnings: Report::default(),
+        }
+    }
+
+    /// What a command line asks for; reads the scene, the machine and the user's kernels.
+    ///
+    /// # Errors
+    /// What is wrong in those files, and options that do not go together.
+    pub fn from_arguments(arguments: &JobArguments) -> Result<Job, Failure> {
+        let camera = camera(&arguments.view)?;
+        let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), arguments.view.size)?;
+        let mut job = Job::new(loaded.scene);
+        job.warnings = loaded.warnings;
+        job.view = View {
+            size: arguments.view.size.unwrap_or(job.scene.size),
+            camera,
+            shift: arguments.view.shift,
+            ambient: arguments.view.ambient,
+            background: arguments.view.background,
+            bounces: arguments.effort.bounces,
+        };
+        (job.machine_name, job.machine) = machine::find(&arguments.machine.machine)?;
+        job.adjust_machine(&arguments.machine, &arguments.numbers);
+        job.memory = MemoryOptions {
+            word: job.machine.arithmetic.word,
+            layout: arguments.machine.layout.unwrap_or(Layout::Wide),
+            kd_depth: arguments.effort.kd_depth,
+            formats: arguments.numbers.overrides(),
+        };
+        job.kernels.profile = arguments.kernels.profile;
+        job.kernels.weight_cutoff = arguments.effort.weight_cutoff;
+        for (function, path) in &arguments.kernels.replaced {
+            job.kernels.replaced.push((*function, files::source(path)?));
+        }
+        job.kernels.crop = crop(&arguments.view, job.view.size)?;
+        Ok(job)
+    }
+
+    fn adjust_machine(&mut self, machine: &MachineArguments, numbers: &NumberArguments) {
+        let config = &mut self.machine;
+        config.cores = machine.cores.unwrap_or(config.cores);
+        let arithmetic = &mut config.arithmetic;
+        arithmetic.word = numbers.word.unwrap_or(arithmetic.word);
+        arithmetic.quantization = numbers.rounding.unwrap_or(arithmetic.quantization);
+        arithmetic.overflow = numbers.overflow.unwrap_or(arithmetic.overflow);
+    }
+
+    /// The part of the picture that is drawn: all of it unless the user chose one.
+    pub fn crop(&self) -> Crop {
+        let (width, height) = self.view.size;
+        self.kernels.crop.unwrap_or(Crop { column: 0, row: 0, width, height })
+    }
+}
+
+/// The camera; options that only a perspective one has imply it.
+fn camera(view: &ViewArguments) -> Result<Camera, Failure> {
+    let given = [("--eye", view.eye.is_some()), ("--look", view.look.is_some()), ("--fov", view.fov.is_some())];
+    let first = given.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
+    match (view.camera, first) {
+        (Some(CameraKind::Orthographic), Some(option)) => {
+            let message = Diagnostic::error(format!("`{option}` has no meaning for an orthographic camera"));
+            Err(Failure::usage(message.hint("choose `--camera perspective`")))
+        }
+        (Some(CameraKind::Orthographic), None) | (None, None) => Ok(Camera::Orthographic),
+        (Some(CameraKind::Perspective), _) | (None, Some(_)) => {
+            Ok(Camera::Perspective { eye: view.eye, look: view.look, field: view.fov.unwrap_or(45.0) })
+        }
+    }
+}
+
+/// The part that is drawn, which must lie inside the picture.
+fn crop(view: &ViewArguments, (width, height): (u32, u32)) -> Result<Option<Crop>, Failure> {
+    let pixel = view.pixel.map(|[column, row]| Crop { column, row, width: 1, height: 1 });
+    let Some(crop) = view.crop.or(pixel) else { return Ok(None) };
+    let is_inside = |first: u32, length: u32, whole: u32| u64::from(first) + u64::from(length) <= u64::from(whole);
+    match is_inside(crop.column, crop.width, width) && is_inside(crop.row, crop.height, height) {
+        true => Ok(Some(crop)),
+        false => {
+            let Crop { column, row, width: w, height: h } = crop;
+            let asked = match view.pixel {
+                Some(_) => format!("pixel {column},{row} lies"),
+                None => format!("{w} x {h} pixels from {column},{row} on lie"),
+            };
+            let message = format!("{asked} outside a picture of {width} x {height} pixels");
+            Err(Failure::usage(Diagnostic::error(message).hint("columns and rows count from 0, at the top left")))
+        }
+    }
+}
+
+/// A short name for results: the file's stem, or the generated scene's name.
+pub fn result_name(scene: &Scene) -> String {
+    let name = Path::new(&scene.name).file_name().map(|name| name.to_string_lossy().into_owned());
+    name.filter(|name| !name.is_empty()).unwrap_or_else(|| "scene".to_owned())
+}

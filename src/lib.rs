@@ -1,0 +1,16 @@
+//! lancer's command line as a library: from scene files through the emulated coprocessor to pictures, counts and
+//! tables. What a command prints is decided here; what it computes, in the crates below.
+
+pub mod arguments;
+pub mod command;
+pub mod drawing;
+pub mod failure;
+pub mod files;
+pub mod input;
+pub mod job;
+pub mod listing;
+pub mod machine;
+pub mod result;
+pub mod summary;
+pub mod table;
+pub mod terminal;

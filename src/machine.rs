@@ -1,0 +1,144 @@
+//! Machines by name: presets and files.
+
+use std::path::Path;
+
+use emu::machine::Config;
+use isa::diagnostic::{Diagnostic, Report, did_you_mean};
+
+use crate::files;
+
+/// A machine that is known by name.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// What the user types.
+    pub name: &'static str,
+    /// One line on what it is.
+    pub description: &'static str,
+    make: fn() -> Config,
+}
+
+/// All presets, the default first.
+pub const PRESETS: &[Preset] = &[Preset {
+    name: DEFAULT,
+    description: "the report's: four cores at 100 MHz, one clock an elementary operation, a bus of an octet in two clocks",
+    make: Config::default,
+}];
+
+/// Name of the machine that runs when the user names none.
+pub const DEFAULT: &str = "report";
+
+/// A machine by the name of a preset, or from a TOML file, with the name that results show.
+///
+/// # Errors
+/// A name that is neither, and what is wrong in the file.
+pub fn find(name: &str) -> Result<(String, Config), Report> {
+    if let Some(preset) = PRESETS.iter().find(|preset| preset.name == name) {
+        return Ok((preset.name.to_owned(), (preset.make)()));
+    }
+    let path = Path::new(name);
+    let is_file = path.exists() || path.extension().is_some() || name.contains(std::path::is_separator);
+    if !is_file {
+        let names = || PRESETS.iter().map(|preset| preset.name);
+        let hint = match did_you_mean(name, names()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => {
+                format!("presets: {}; a machine of your own is a .toml file", names().collect::<Vec<_>>().join(", "))
+            }
+        };
+        return Err(Diagnostic::error(format!("there is no machine `{name}`")).hint(hint).into());
+    }
+    let config = Config::parse(&files::source(path)?)?;
+    let stem = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    Ok((stem, config))
+}
+
+/// What each key means, with its unit, range and source; `[section]` describes what follows.
+const COMMENTS: &[(&str, &str)] = &[
+    ("cores", "cores, 1 to 256, the main processor not counted (report 6.1: 4)"),
+    ("clock_hz", "clock rate in hertz; it turns clocks into seconds and changes nothing else (report 6.1: 100 MHz)"),
+    ("buffer_octets", "octets of each core's local buffer (report 6.2: the sum of the list is 18,525)"),
+    ("step_limit", "instructions that a pixel may take"),
+    ("[arithmetic]", "how results are rounded and what happens when they do not fit"),
+    ("arithmetic.word", "bits of a word, 8 to 32"),
+    ("arithmetic.quantization", "rounding by its IEEE 1666 name; RND is to nearest, ties up"),
+    ("arithmetic.overflow", "overflow by its IEEE 1666 name; SAT gives the nearest number that fits"),
+    ("arithmetic.trap_division_by_zero", "whether a division by zero stops the machine instead of saturating"),
+    ("[clocks]", "clocks of an operation, by class (report 6.1: one for an elementary operation)"),
+    ("[units]", "operations of a class that run at once"),
+    ("[bus]", "the shared bus; a transfer takes setup_clocks + ceil(octets / octets_per_beat) * clocks_per_beat"),
+    ("bus.octets_per_beat", "octets that go over it at once (report 6.1: 1)"),
+    ("bus.clocks_per_beat", "clocks for that (report 6.1: 2)"),
+    ("bus.setup_clocks", "clocks before the first beat of a transfer"),
+    ("bus.arbiter", "who gets the bus next: round-robin"),
+    ("[main]", "the main processor, which makes the camera rays and feeds the cores"),
+    ("main.traffic", "whether its transfers and messages use the bus; otherwise they take no time"),
+    ("main.buffer_octets", "octets of its local buffer"),
+    ("main.step_limit", "instructions that its whole program may take"),
+];
+
+/// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
+pub fn commented(name: &str, config: &Config) -> String {
+    let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| *text);
+    let mut text = format!("# Machine `{name}`. Keys that a file leaves out have the values of `{DEFAULT}`.\n\n");
+    let mut section = String::new();
+    for line in config.text().lines() {
+        let key = match line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {
+            Some(name) => {
+                section = format!("{name}.");
+                line.to_owned()
+            }
+            None => format!("{section}{}", line.split('=').next().unwrap_or_default().trim()),
+        };
+        if let Some(comment) = comment(&key) {
+            text += &format!("# {comment}\n");
+        }
+        text += &format!("{line}\n");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use isa::diagnostic::Source;
+
+    use super::*;
+
+    #[test]
+    fn a_printed_machine_reads_back_as_itself() {
+        for preset in PRESETS {
+            let (name, config) = find(preset.name).unwrap();
+            let text = commented(&name, &config);
+            assert_eq!(Config::parse(&Source::new("m.toml", text)).unwrap(), config);
+        }
+    }
+
+    #[test]
+    fn every_key_has_a_comment_and_every_comment_a_key() {
+        let text = commented(DEFAULT, &Config::default());
+        let mut section = "";
+        let lines: Vec<&str> = text.lines().skip(2).collect();
+        for pair in lines.windows(2).filter(|pair| !pair[1].starts_with('#') && !pair[1].is_empty()) {
+            if pair[1].starts_with('[') {
+                section = pair[1];
+            }
+            // What a class means does not depend on the section.
+            let is_class = ["[clocks]", "[units]"].contains(&section) && !pair[1].starts_with('[');
+            assert!(pair[0].starts_with('#') || is_class, "{} has no comment", pair[1]);
+        }
+        for (key, comment) in COMMENTS {
+            assert!(text.contains(&format!("# {comment}\n")), "{key} is no key");
+        }
+    }
+
+    #[test]
+    fn names_that_are_no_machine_are_refused_with_what_is() {
+        for (name, message) in [
+            ("raport", "did you mean `report`?"),
+            ("xyzzy", "presets: report"),
+            ("no/machine.toml", "there is no file no/machine.toml"),
+        ] {
+            let error = find(name).unwrap_err().render(false);
+            assert!(error.contains(message), "{error}");
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! The results of a picture as data: what `--json` prints. Keys and their meaning are a contract with a version; equal
+//! runs give equal octets.
+
+mod hash;
+mod hexadecimal;
+
+use std::time::Duration;
+
+use emu::machine::ProcessorUse;
+use emu::profile::{Profile, RegionProfile};
+use isa::Counts;
+use kernels::Function;
+use scenes::metrics::PictureError;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::drawing::Drawing;
+use crate::job::{Job, result_name};
+pub use hash::{image_hash, run_hash};
+pub use hexadecimal::hexadecimal;
+
+/// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
+pub const SCHEMA: &str = "lancer-render-1";
+
+/// One number a class of operations, by the class's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ByClass(pub Counts);
+
+impl Serialize for ByClass {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (class, count) in self.0.iter() {
+            map.serialize_entry(class.name(), &count)?;
+        }
+        map.end()
+    }
+}
+
+/// A picture and what it took. Counts are those of all cores together; the main processor's stand apart.
+#[derive(Clone, Debug, Serialize)]
+pub struct Render {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the kernels' profile.
+    pub profile: &'static str,
+    /// Name of the machine.
+    pub machine: String,
+    /// Width of the drawn part in pixels.
+    pub width: u32,
+    /// Height of the drawn part in pixels.
+    pub height: u32,
+    /// First column, first row, width and height of the drawn part; null when all was drawn.
+    pub crop: Option<[u32; 4]>,
+    /// Triangles of the scene.
+    pub triangles: usize,
+    /// Rays by kind.
+    pub rays: Rays,
+    /// Instructions of all cores.
+    pub instructions: u64,
+    /// Operations of all cores, by class.
+    pub counts: ByClass,
+    /// Octets that the cores moved over the bus.
+    pub octets: u64,
+    /// Length of the frame in clocks.
+    pub clocks: u64,
+    /// Where the clocks of each core went.
+    pub cores: Vec<Processor>,
+    /// Functions of the cores' program.
+    pub functions: Vec<Region>,
+    /// Regions inside functions of the cores' program; their exclusive counts are not in the function's.
+    pub regions: Vec<Region>,
+    /// The main processor.
+    pub main: Main,
+    /// The bus.
+    pub bus: Bus,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: Formats,
+    /// Difference from double precision; null when it was not measured.
+    pub error: Option<PictureError>,
+    /// SHA-256 of the picture; see [`image_hash`].
+    pub image_hash: String,
+    /// SHA-256 of the picture and all counts; see [`run_hash`].
+    pub run_hash: String,
+    /// Seconds of the host; only when asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub host: Option<Host>,
+}
+
+/// Rays by kind, counted from calls of the kernels' functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Rays {
+    /// One a pixel.
+    pub camera: u64,
+    /// Reflected ones, total reflection included.
+    pub reflected: u64,
+    /// Refracted ones.
+    pub refracted: u64,
+    /// Rays towards lights.
+    pub shadow: u64,
+}
+
+/// Where the clocks of a processor went; `busy + waiting + idle` are the clocks of the frame.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Processor {
+    /// Clocks of instructions.
+    pub busy: u64,
+    /// Clocks from a bus request to the end of its transfer.
+    pub waiting: u64,
+    /// Clocks without work.
+    pub idle: u64,
+    /// Octets that it moved.
+    pub octets: u64,
+    /// Pixels that it drew.
+    pub items: u64,
+}
+
+/// A function or region.
+#[derive(Clone, Debug, Serialize)]
+pub struct Region {
+    /// Its name.
+    pub name: String,
+    /// How often it was entered.
+    pub calls: u64,
+    /// Operations from entering to leaving it, with all that it calls.
+    pub inclusive: ByClass,
+    /// Operations of its own instructions.
+    pub exclusive: ByClass,
+}
+
+/// The main processor, which makes the camera rays and feeds the cores.
+#[derive(Clone, Debug, Serialize)]
+pub struct Main {
+    /// Instructions.
+    pub instructions: u64,
+    /// Operations by class.
+    pub counts: ByClass,
+    /// Where its clocks went.
+    #[serde(flatten)]
+    pub clocks: Processor,
+    /// Functions of its program.
+    pub functions: Vec<Region>,
+}
+
+/// The bus.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bus {
+    /// Clocks in which a transfer held it.
+    pub busy: u64,
+    /// Octets that went over it.
+    pub moved: u64,
+    /// Octets that all processors' instructions asked to move.
+    pub asked: u64,
+    /// Octets that were moved beside it.
+    pub aside: u64,
+    /// Transfers and messages.
+    pub transfers: u64,
+    /// Longest wait from a request to its grant, in clocks.
+    pub longest_wait: u64,
+    /// Octets by kind of data.
+    pub kinds: Kinds,
+}
+
+/// Octets by kind of data, in the order of the addresses.
+#[derive(Clone, Debug)]
+pub struct Kinds(pub Vec<(String, u64)>);
+
+impl Serialize for Kinds {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, octets)| (name, octets)))
+    }
+}
+
+/// Bits of a word and fraction bits of the quantities.
+#[derive(Clone, Debug)]
+pub struct Formats(pub Vec<(&'static str, i32)>);
+
+impl Serialize for Formats {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().copied())
+    }
+}
+
+/// Seconds that the host took.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Host {
+    /// Reading the scene.
+    pub load_seconds: f64,
+    /// Tree, memory image and programs.
+    pub build_seconds: f64,
+    /// The machine.
+    pub run_seconds: f64,
+    /// The reference, beside the machine.
+    pub reference_seconds: f64,
+}
+
+impl Host {
+    /// The times of a drawing, and that of reading its scene.
+    pub fn new(load: Duration, drawing: &Drawing) -> Host {
+        Host {
+            load_seconds: load.as_secs_f64(),
+            build_seconds: drawing.times.build.as_secs_f64(),
+            run_seconds: drawing.times.run.as_secs_f64(),
+            reference_seconds: drawing.times.reference.as_secs_f64(),
+        }
+    }
+}
+
+impl Render {
+    /// The results of a drawing, without host times.
+    pub fn new(job: &Job, drawing: &Drawing) -> Render {
+        let frame = &drawing.frame;
+        let (cores, main) = frame.processors.split_at(job.machine.cores as usize);
+        let whole = (drawing.crop.width, drawing.crop.height) == job.view.size;
+        let counts = frame.profile.as_ref().map(Profile::total).unwrap_or_default();
+        let main_counts = frame.main_profile.as_ref().map(Profile::total).unwrap_or_default();
+        let crop = [drawing.crop.column, drawing.crop.row, drawing.crop.width, drawing.crop.height];
+        let formats = &drawing.image.formats;
+        let mut result = Render {
+            schema: SCHEMA,
+            scene: result_name(&job.scene),
+            profile: job.kernels.profile.name(),
+            machine: job.machine_name.clone(),
+            width: drawing.crop.width,
+            height: drawing.crop.height,
+            crop: (!whole).then_some(crop),
+            triangles: job.scene.triangles.len(),
+            rays: Rays::new(drawing.words.len() as u64, frame.profile.as_ref()),
+            instructions: cores.iter().map(|core| core.instructions).sum(),
+            counts: ByClass(counts),
+            octets: cores.iter().map(|core| core.octets.0).sum(),
+            clocks: frame.clocks.0,
+            cores: cores.iter().map(Processor::new).collect(),
+            functions: regions(frame.profile.as_ref(), true),
+            regions: regions(frame.profile.as_ref(), false),
+            main: Main {
+                instructions: main.iter().map(|main| main.instructions).sum(),
+                counts: ByClass(main_counts),
+                clocks: Processor::new(main.first().unwrap_or(&ProcessorUse::default())),
+                functions: regions(frame.main_profile.as_ref(), true),
+            },
+            bus: Bus {
+                busy: frame.bus.busy.0,
+                moved: frame.bus.moved.0,
+                asked: frame.asked.0,
+                aside: frame.aside.0,
+                transfers: frame.bus.transfers,
+                longest_wait: frame.bus.longest_wait.0,
+                kinds: Kinds(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
+            },
+            formats: Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect()),
+            error: drawing.error,
+            image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),
+            run_hash: String::new(),
+            host: None,
+        };
+        result.run_hash = run_hash(&result);
+        result
+    }
+
+    /// The text that `--json` prints: one object, a line feed at its end.
+    pub fn json(&self) -> String {
+        json(self)
+    }
+}
+
+/// A result as JSON with two blanks of indentation and a line feed at its end.
+pub fn json(result: &impl Serialize) -> String {
+    let mut text = serde_json::to_string_pretty(result).expect("results have string keys and finite numbers");
+    text.push('\n');
+    text
+}
+
+impl Rays {
+    /// The rays of a picture of `pixels` pixels. Each secondary and each shadow ray calls `own_packet` once.
+    fn new(pixels: u64, profile: Option<&Profile>) -> Rays {
+        let calls = |function: Function| {
+            let regions = profile.map_or(&[][..], |profile| &profile.regions);
+            let named = |region: &&RegionProfile| region.is_function && region.name == function.name();
+            regions.iter().find(named).map_or(0, |region| region.calls)
+        };
+        let (reflected, refracted) = (calls(Function::Reflect), calls(Function::Refract));
+        let shadow = calls(Function::OwnPacket).saturating_sub(reflected + refracted);
+        Rays { camera: pixels, reflected, refracted, shadow }
+    }
+}
+
+impl Processor {
+    fn new(used: &ProcessorUse) -> Processor {
+        let ProcessorUse { busy, waiting, idle, octets, items, .. } = *used;
+        Processor { busy: busy.0, waiting: waiting.0, idle: idle.0, octets: octets.0, items }
+    }
+}
+
+/// The functions of a profile, or the regions that are none, in the order of the program.
+pub fn regions(profile: Option<&Profile>, is_function: bool) -> Vec<Region> {
+    let regions = profile.map_or(&[][..], |profile| &profile.regions);
+    let chosen = regions.iter().filter(|region| region.is_function == is_function);
+    chosen
+        .map(|region| Region {
+            name: region.name.clone(),
+            calls: region.calls,
+            inclusive: ByClass(region.inclusive),
+            exclusive: ByClass(region.exclusive),
+        })
+        .collect()
+}

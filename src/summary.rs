@@ -1,0 +1,178 @@
+//! The results of a picture as tables for people. Exact numbers of everything are in the JSON.
+
+use isa::Class;
+use scenes::metrics::PictureError;
+
+use crate::drawing::Drawing;
+use crate::result::{Processor, Region, Render};
+use crate::table::{count, grouped, percent, row, short, table};
+
+/// Classes with a column of their own in tables of functions.
+const COLUMNS: [Class; 7] = [Class::Add, Class::Sub, Class::Mul, Class::Div, Class::Cmp, Class::Mem, Class::Octet];
+
+/// One line on what was drawn.
+pub fn title(result: &Render) -> String {
+    let part = match result.crop {
+        Some([column, row, ..]) => format!(" from {column},{row} on"),
+        None => String::new(),
+    };
+    format!(
+        "{}: {}, {} x {} pixels{part}, kernels `{}` on machine `{}`\n",
+        result.scene,
+        count(result.triangles as u64, "triangle", "triangles"),
+        result.width,
+        result.height,
+        result.profile,
+        result.machine,
+    )
+}
+
+/// One line on the rays.
+pub fn rays(result: &Render) -> String {
+    let rays = &result.rays;
+    format!(
+        "rays: {} camera, {} reflected, {} refracted, {} shadow\n",
+        grouped(rays.camera),
+        grouped(rays.reflected),
+        grouped(rays.refracted),
+        grouped(rays.shadow)
+    )
+}
+
+/// Calls, inclusive operations and the classes of exclusive ones, function by function: first those of the cores, then
+/// those of the main processor.
+pub fn functions(result: &Render) -> String {
+    let lists = [(&result.functions[..], ""), (&result.regions, "  "), (&result.main.functions, "main: ")];
+    function_table(&lists)
+}
+
+/// Lists of functions, each under a prefix, those with the most inclusive operations first.
+pub fn function_table(lists: &[(&[Region], &str)]) -> String {
+    let head = ["function", "calls", "inclusive", "exclusive"].into_iter().map(str::to_owned);
+    let mut rows: Vec<Vec<String>> = vec![head.chain(COLUMNS.iter().map(|class| class.name().to_owned())).collect()];
+    for (regions, prefix) in lists {
+        let mut regions: Vec<&Region> = regions.iter().filter(|region| region.calls != 0).collect();
+        regions.sort_by_key(|region| std::cmp::Reverse(region.inclusive.0.elementary()));
+        rows.extend(regions.into_iter().map(|region| function(region, prefix)));
+    }
+    format!(
+        "Operations by function (inclusive, exclusive: add to cmp together; right of them exclusive)\n{}",
+        table(rows)
+    )
+}
+
+fn function(region: &Region, prefix: &str) -> Vec<String> {
+    let own = &region.exclusive.0;
+    let totals = [region.calls, region.inclusive.0.elementary(), own.elementary()];
+    let classes = COLUMNS.iter().map(|&class| own[class]);
+    std::iter::once(format!("{prefix}{}", region.name)).chain(totals.into_iter().chain(classes).map(short)).collect()
+}
+
+/// All operations by class.
+pub fn classes(result: &Render) -> String {
+    let (counts, main) = (&result.counts.0, &result.main.counts.0);
+    let pixels = u64::from(result.width) * u64::from(result.height);
+    let mut rows = vec![row(["class", "cores", "a pixel", "main", "what"])];
+    let a_pixel = |count: u64| format!("{:.1}", count as f64 / pixels.max(1) as f64);
+    for (class, count) in counts.iter() {
+        let first = class.doc().trim().split(['.', ';']).next().unwrap_or_default().to_lowercase();
+        rows.push(vec![class.name().into(), grouped(count), a_pixel(count), grouped(main[class]), first]);
+    }
+    let (all, all_main) = (counts.elementary(), main.elementary());
+    let what = "add, sub, mul, div and cmp together".to_owned();
+    rows.push(vec!["elementary".into(), grouped(all), a_pixel(all), grouped(all_main), what]);
+    format!("Operations by class\n{}", left_last(rows))
+}
+
+/// A table whose last column is prose.
+fn left_last(rows: Vec<Vec<String>>) -> String {
+    let width = rows.iter().filter_map(|row| row.last()).map(String::len).max().unwrap_or(0);
+    let pad = |mut row: Vec<String>| {
+        if let Some(last) = row.last_mut() {
+            *last = format!("{last:<width$}");
+        }
+        row
+    };
+    let text = table(rows.into_iter().map(pad));
+    text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// Where the clocks of all processors went, and the bus.
+pub fn processors(result: &Render, clock_hz: u64) -> String {
+    let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "octets", "pixels"])];
+    let processor = |name: String, of: &Processor| {
+        let share = |part: u64| percent(part, result.clocks);
+        vec![name, share(of.busy), share(of.waiting), share(of.idle), grouped(of.octets), grouped(of.items)]
+    };
+    rows.extend(result.cores.iter().enumerate().map(|(number, core)| processor(format!("core {number}"), core)));
+    let mut main = processor("main".into(), &result.main.clocks);
+    main[5] = String::new();
+    rows.push(main);
+    let bus = &result.bus;
+    let mut text = format!(
+        "Machine: {} clocks, {} at {} MHz\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
+        grouped(result.clocks),
+        seconds(result.clocks as f64 / clock_hz as f64),
+        clock_hz as f64 / 1e6,
+        table(rows),
+        percent(bus.busy, result.clocks),
+        grouped(bus.moved),
+        grouped(bus.transfers),
+        grouped(bus.longest_wait),
+    );
+    let kinds = bus.kinds.0.iter().filter(|(_, octets)| *octets != 0);
+    let kinds: Vec<String> =
+        kinds.map(|(kind, octets)| format!("{kind} {}", percent(*octets, bus.moved + bus.aside))).collect();
+    if !kinds.is_empty() {
+        text += &format!("octets: {}\n", kinds.join(", "));
+    }
+    text
+}
+
+/// A time with a fitting unit.
+pub fn seconds(time: f64) -> String {
+    match time {
+        time if time >= 1.0 => format!("{time:.2} s"),
+        time if time >= 1e-3 => format!("{:.2} ms", time * 1e3),
+        time => format!("{:.2} us", time * 1e6),
+    }
+}
+
+/// The figures of the difference from double precision.
+pub fn error(error: &PictureError) -> String {
+    let decibels = |value: Option<f64>| value.map_or("none: equal".to_owned(), |value| format!("{value:.2} dB"));
+    format!(
+        "Difference from double precision\n\
+         rmse {:.3e}, PSNR {}, largest {:.3e}\n\
+         {} off by 1/255 or more ({:.1} per million); PSNR of the others {}\n",
+        error.rmse,
+        decibels(error.psnr_db),
+        error.max,
+        count(error.off_pixels, "pixel", "pixels"),
+        error.off_per_million,
+        decibels(error.psnr_others_db),
+    )
+}
+
+/// The hashes by which runs are compared.
+pub fn hashes(result: &Render) -> String {
+    format!("image hash {}\nrun hash   {}\n", result.image_hash, result.run_hash)
+}
+
+/// The colour of a single pixel, raw and as numbers, beside the reference's.
+pub fn pixel(drawing: &Drawing) -> String {
+    let shown = |colour: [f64; 3]| colour.map(|component| format!("{component:.9}")).join(" ");
+    let (words, picture) = (&drawing.words[0], &drawing.picture.pixels[0]);
+    let mut text = format!(
+        "pixel {},{}: {} (raw {} with {} fraction bits)\n",
+        drawing.crop.column,
+        drawing.crop.row,
+        shown(*picture),
+        words.map(|word| word.to_string()).join(" "),
+        drawing.image.formats.colour
+    );
+    if let Some(reference) = drawing.reference.as_ref().and_then(|picture| picture.pixels.first()) {
+        text += &format!("double precision: {}\n", shown(*reference));
+    }
+    text
+}

@@ -1,0 +1,96 @@
+//! Tables and numbers as people read them, within 100 columns.
+
+use tabled::builder::Builder;
+use tabled::settings::object::Columns;
+use tabled::settings::{Alignment, Style};
+
+/// A table: the first row is its head, the first column its names; all other columns stand to the right.
+pub fn table<R: IntoIterator<Item = String>>(rows: impl IntoIterator<Item = R>) -> String {
+    let mut builder = Builder::default();
+    for row in rows {
+        builder.push_record(row);
+    }
+    let mut table = builder.build();
+    table.with(Style::psql()).modify(Columns::new(1..), Alignment::right());
+    let text = table.to_string();
+    text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+/// The words of a table's row.
+pub fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).to_vec()
+}
+
+/// A number with commas between its thousands.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (at, digit) in digits.chars().enumerate() {
+        if at != 0 && (digits.len() - at) % 3 == 0 {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number with at most four digits and a unit of thousands where it has more: 1,234 and 12.35M.
+pub fn short(number: u64) -> String {
+    if number < 10_000 {
+        return number.to_string();
+    }
+    let mut scaled = number as f64 / 1000.0;
+    for unit in ["k", "M", "G", "T", "P"] {
+        // 999.95 would be shown with four digits before the point.
+        if scaled < 999.95 {
+            let decimals = if scaled < 9.9995 {
+                3
+            } else if scaled < 99.995 {
+                2
+            } else {
+                1
+            };
+            return format!("{scaled:.decimals$}{unit}");
+        }
+        scaled /= 1000.0;
+    }
+    format!("{:.1}E", scaled)
+}
+
+/// A part of a whole in per cent with one decimal; of nothing it is 0.
+pub fn percent(part: u64, whole: u64) -> String {
+    format!("{:.1} %", if whole == 0 { 0.0 } else { 100.0 * part as f64 / whole as f64 })
+}
+
+/// How many of something: `1 light`, `2 lights`, `1,000 lights`.
+pub fn count(number: u64, singular: &str, plural: &str) -> String {
+    format!("{} {}", grouped(number), if number == 1 { singular } else { plural })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_or_exact() {
+        let exact: Vec<String> = [0, 12, 999, 1000, 1_234_567].map(grouped).to_vec();
+        assert_eq!(exact, ["0", "12", "999", "1,000", "1,234,567"]);
+        let numbers = [0, 9_999, 10_000, 99_994, 99_996, 999_949, 999_951, 12_345_678, u64::MAX];
+        let shorter: Vec<String> = numbers.map(short).to_vec();
+        assert_eq!(shorter, ["0", "9999", "10.00k", "99.99k", "100.0k", "999.9k", "1.000M", "12.35M", "18.4E"]);
+        assert_eq!((percent(1, 8), percent(0, 0)), ("12.5 %".into(), "0.0 %".into()));
+        assert_eq!((count(1, "light", "lights"), count(0, "light", "lights")), ("1 light".into(), "0 lights".into()));
+    }
+
+    #[test]
+    fn tables_stand_in_columns() {
+        let text = table([row(["name", "calls"]), row(["sqrt", "7"]), row(["triangle", "1,024"])]);
+        let expected = "\
+ name     | calls
+----------+-------
+ sqrt     |     7
+ triangle | 1,024
+";
+        assert_eq!(text, expected);
+    }
+}

@@ -59,7 +59,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
     let colour = || prop::array::uniform3(share());
     let material = (colour(), share(), share(), prop_oneof![Just(0.0), 0.0..5.0])
         .prop_map(|(colour, reflection, intensity, index)| Material { colour, reflection, intensity, index });
-    let light = (place.clone(), colour()).prop_map(|(position, colour)| Light { position, colour });
+    let light = (place, colour()).prop_map(|(position, colour)| Light { position, colour });
     let parts = (
         prop::collection::vec(material, 1..6),
         prop::collection::vec(light, 0..4),

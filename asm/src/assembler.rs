@@ -5,12 +5,11 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use isa::diagnostic::{Report, Source};
+use isa::diagnostic::Source;
 use isa::program::Line as ProgramLine;
 use isa::table::Op;
 use isa::{Isa, Program};
 
-use crate::Options;
 use crate::cursor::Cursor;
 use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
@@ -20,13 +19,16 @@ use crate::frame::{Frame, Origin, file_lines};
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, SOURCES, TEXT_OCTETS, WORDS};
 use crate::line::Line;
+use crate::listing::Record;
 use crate::macros::Macro;
+use crate::map::{MapEntry, NameKind};
 use crate::message::{Among, At, Messages, Parsed, Problem};
 use crate::pseudo::PSEUDOS;
 use crate::region::OpenRegion;
 use crate::structure::Structure;
-use crate::symbol::{Meaning, Names};
+use crate::symbol::{Meaning, Name, Names};
 use crate::token::{Kind, tokens};
+use crate::{Attempt, Options};
 
 /// Where statements go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +70,10 @@ pub(crate) struct Assembler<'a> {
     /// Names that decide the layout and were not known yet.
     pub early: Vec<(Step, At)>,
     included: HashMap<(String, u16), u16>,
+    pub records: Vec<Record>,
+    /// The name that the statement gave a number to.
+    pub named: Option<Name>,
+    pending_records: Vec<(usize, Name)>,
     pub expansions: usize,
     pub lines_read: usize,
     pub octets_read: usize,
@@ -77,7 +83,7 @@ pub(crate) struct Assembler<'a> {
 }
 
 /// Assembles a source as far as possible; the program is whole when the report has no errors.
-pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> (Program, Report) {
+pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> Attempt {
     let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.row(op).name, op)).collect();
     let nop = operations.get("mov").and_then(|&op| isa.encode(op, &[0, 0]).ok()).unwrap_or(0);
     let mut assembler = Assembler {
@@ -101,6 +107,9 @@ pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> (P
         entry: None,
         early: Vec::new(),
         included: HashMap::new(),
+        records: Vec::new(),
+        named: None,
+        pending_records: Vec::new(),
         expansions: 0,
         lines_read: 0,
         octets_read: 0,
@@ -156,6 +165,40 @@ impl Assembler<'_> {
     }
 
     fn line(&mut self, line: &Line) {
+        let place = self.records.len();
+        self.record(line);
+        self.named = None;
+        self.read_line(line);
+        // The record has the section behind the line, so that a line which changes it shows no address.
+        let (section, end) = (self.section, self.location() as u32);
+        let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.meaning.clone()));
+        let record = &mut self.records[place];
+        if record.section == section {
+            record.made.end = end;
+        }
+        match (value, self.named) {
+            (Some(Some(Meaning::Constant(value) | Meaning::Variable(value, _))), _) => record.value = Some(value),
+            (Some(Some(Meaning::Pending(_))), Some(name)) => self.pending_records.push((place, name)),
+            _ => {}
+        }
+    }
+
+    /// Notes a line for the listing, without anything made.
+    pub(crate) fn record(&mut self, line: &Line) {
+        let here = self.location() as u32;
+        let depth = self.frames.iter().filter(|frame| !matches!(frame.origin, Origin::File(_))).count();
+        self.records.push(Record {
+            source: line.source,
+            line: line.number,
+            depth: depth.min(255) as u8,
+            section: self.section,
+            made: here..here,
+            value: None,
+            text: line.is_substituted().then(|| Arc::from(&*line.text)),
+        });
+    }
+
+    fn read_line(&mut self, line: &Line) {
         if self.is_skipping() {
             let word = crate::frame::leading_directive(&line.text);
             let matters = word.is_some_and(|word| word.starts_with(".if") || word.starts_with(".e"));
@@ -354,15 +397,37 @@ impl Assembler<'_> {
         self.resolve_entry();
     }
 
-    fn finish(mut self) -> (Program, Report) {
+    /// The names of the program, for people: those that belong to one expansion or are numbers are left out.
+    fn map(&self) -> Vec<MapEntry> {
+        let starts = |source: &Arc<Source>| -> Vec<usize> {
+            [0].into_iter().chain(source.text.match_indices('\n').map(|(at, _)| at + 1)).collect()
+        };
+        let starts: Vec<Vec<usize>> = self.program.sources.iter().map(starts).collect();
+        let mut entries = Vec::new();
         for (_, text, symbol) in self.names.symbols() {
-            let value = match symbol.meaning {
-                Meaning::Code(value) | Meaning::Buffer(value) | Meaning::Constant(value) => value,
-                Meaning::Variable(value, _) => value,
+            let (kind, value) = match symbol.meaning {
+                Meaning::Code(value) => (NameKind::Code, value),
+                Meaning::Buffer(value) => (NameKind::Buffer, value),
+                Meaning::Constant(value) | Meaning::Variable(value, _) => (NameKind::Constant, value),
                 Meaning::Pending(_) | Meaning::Broken => continue,
             };
             if !text.contains(['$', '#']) {
-                self.program.symbols.insert(text.to_string(), value);
+                let place = symbol.at.map(|at| {
+                    let line = starts[at.source as usize].partition_point(|&start| start <= at.start as usize);
+                    ProgramLine { source: at.source, line: line as u32 }
+                });
+                entries.push(MapEntry { name: text.to_string(), kind, value, place });
+            }
+        }
+        entries
+    }
+
+    fn finish(mut self) -> Attempt {
+        let symbols = self.map();
+        self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
+        for (place, name) in std::mem::take(&mut self.pending_records) {
+            if let Some(Meaning::Constant(value)) = self.names.get(name).map(|symbol| &symbol.meaning) {
+                self.records[place].value = Some(*value);
             }
         }
         let registers: Vec<String> = [('s', 32), ('v', 32), ('w', 8)]
@@ -390,6 +455,6 @@ impl Assembler<'_> {
         };
         let messages = std::mem::take(&mut self.messages);
         let report = messages.report(&self.program.sources, known);
-        (self.program, report)
+        Attempt { program: self.program, report, symbols, records: self.records }
     }
 }

@@ -97,7 +97,7 @@ impl Assembler<'_> {
             Err(_) => Meaning::Broken,
             Ok(expression) => self.constant(expression),
         };
-        self.define(text, at, meaning)?;
+        self.named = Some(self.define(text, at, meaning)?);
         value.map(|_| ())
     }
 
@@ -128,12 +128,17 @@ impl Assembler<'_> {
             if is_first && matches!(self.evaluate(&expression), Err(Failure::Later(..))) {
                 // Set from what is defined further on: a constant, and a second `.set` is refused.
                 let meaning = self.constant(&expression);
-                return self.define(text, at, meaning).map(|_| None);
+                self.named = Some(self.define(text, at, meaning)?);
+                return Ok(None);
             }
             self.value_now(&expression)
         });
         match value {
-            Ok(Some(value)) => self.set_variable(text, at, value),
+            Ok(Some(value)) => {
+                self.set_variable(text, at, value)?;
+                self.named = Some(self.names.intern(text));
+                Ok(())
+            }
             Ok(None) => self.define_broken(text, at),
             Err(problem) => {
                 self.define_broken(text, at)?;

@@ -174,11 +174,15 @@ impl Assembler<'_> {
         let mut lines = Vec::new();
         while let Some(line) = self.fetch_in_frame() {
             match leading_directive(&line.text) {
-                Some(word) if word == closing && depth == 0 => return Some(lines.into()),
+                Some(word) if word == closing && depth == 0 => {
+                    self.record(&line);
+                    return Some(lines.into());
+                }
                 Some(word) if word == closing => depth -= 1,
                 Some(word) if openings.contains(&word) => depth += 1,
                 _ => {}
             }
+            self.record(&line);
             lines.push(line);
         }
         let message = format!("`{closing}` is missing");

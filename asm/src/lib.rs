@@ -13,11 +13,15 @@ mod evaluation;
 pub mod explain;
 mod expression;
 mod frame;
+pub mod hex;
 mod instruction;
 pub mod limits;
 mod line;
+mod listing;
 mod macros;
+mod map;
 mod message;
+pub mod object;
 mod operand;
 pub mod pseudo;
 mod region;
@@ -31,6 +35,8 @@ use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
 
 pub use disassembly::disassemble;
+pub use listing::listing;
+pub use map::{MapEntry, NameKind, symbol_map};
 
 /// Reads what `.include "name"` asks for; the second argument is the name of the including source.
 pub type Loader<'a> = &'a dyn Fn(&str, &str) -> Result<Arc<Source>, String>;
@@ -59,6 +65,34 @@ pub struct Assembled {
     pub program: Program,
     /// What is likely a mistake although the program is complete.
     pub warnings: Report,
+    /// All names, in the order in which they were first seen.
+    pub symbols: Vec<MapEntry>,
+}
+
+/// How far a source went, for listings; the program is whole when the report has no errors.
+#[derive(Clone, Debug)]
+pub struct Attempt {
+    /// What was assembled; a statement that is wrong counts as words of zeros.
+    pub program: Program,
+    /// All errors and warnings.
+    pub report: Report,
+    /// All names that have a value.
+    pub symbols: Vec<MapEntry>,
+    pub(crate) records: Vec<listing::Record>,
+}
+
+impl Attempt {
+    /// The program, when it is whole.
+    ///
+    /// # Errors
+    /// The report, when it has errors.
+    pub fn finish(self) -> Result<Assembled, Report> {
+        if self.report.has_errors() {
+            Err(self.report)
+        } else {
+            Ok(Assembled { program: self.program, warnings: self.report, symbols: self.symbols })
+        }
+    }
 }
 
 /// Assembles `source`.
@@ -67,6 +101,10 @@ pub struct Assembled {
 /// All errors of the source, its macros and the files that it includes, in the order of the text, at most
 /// [`limits::MESSAGES`] of them; warnings stand among them.
 pub fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> Result<Assembled, Report> {
-    let (program, report) = assembler::assemble(source, isa, options);
-    if report.has_errors() { Err(report) } else { Ok(Assembled { program, warnings: report }) }
+    attempt(source, isa, options).finish()
+}
+
+/// Assembles `source` as far as possible, so that [`listing`] can show it whatever its errors.
+pub fn attempt(source: &Arc<Source>, isa: &Isa, options: &Options) -> Attempt {
+    assembler::assemble(source, isa, options)
 }

@@ -60,6 +60,7 @@ impl Assembler<'_> {
         open.size = (offset + octets).min(STRUCTURE);
         if !open.name.is_empty() {
             let name = self.define(&name, name_at, Meaning::Constant(offset))?;
+            self.named = Some(name);
             self.names.set_size(name, octets);
         }
         size.map(|_| ())

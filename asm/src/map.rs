@@ -1,0 +1,87 @@
+//! The symbol map: every name with its value and place, every function and region with its words.
+
+use std::fmt::Write;
+
+use isa::program::Line;
+
+use crate::Assembled;
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum NameKind {
+    /// A word address in the code.
+    Code,
+    /// An octet address in the buffer.
+    Buffer,
+    /// A number.
+    Constant,
+}
+
+/// A name of a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MapEntry {
+    /// The name.
+    pub name: String,
+    /// What it stands for.
+    pub kind: NameKind,
+    /// Its value.
+    pub value: i64,
+    /// Where it is defined; `None` for names from outside.
+    pub place: Option<Line>,
+}
+
+/// The map as text: code by address, buffer by address, constants by name, then functions and regions.
+pub fn symbol_map(assembled: &Assembled) -> String {
+    let program = &assembled.program;
+    let mut entries: Vec<&MapEntry> = assembled.symbols.iter().collect();
+    entries.sort_by_key(|entry| {
+        let address = if entry.kind == NameKind::Constant { 0 } else { entry.value };
+        (entry.kind, address, &entry.name)
+    });
+    let width = entries.iter().map(|entry| entry.name.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    let titles = [
+        (NameKind::Code, "Code, in words"),
+        (NameKind::Buffer, "Buffer, in octets"),
+        (NameKind::Constant, "Constants"),
+    ];
+    for (kind, title) in titles {
+        let mut chosen = entries.iter().filter(|entry| entry.kind == kind).peekable();
+        if chosen.peek().is_none() {
+            continue;
+        }
+        let _ = writeln!(text, "{title}");
+        for entry in chosen {
+            let value = match kind {
+                NameKind::Constant => format!("{:>20}", entry.value),
+                _ => format!("{:>20}", format!("{:06x}", entry.value)),
+            };
+            let place = entry.place.and_then(|line| Some((program.sources.get(line.source as usize)?, line.line)));
+            let place = place.map_or("given from outside".into(), |(source, line)| format!("{}:{line}", source.name));
+            let _ = writeln!(text, "{value}  {:<width$}  {place}", entry.name);
+        }
+        text.push('\n');
+    }
+    if !program.regions.is_empty() {
+        let _ = writeln!(text, "Functions and regions, in words");
+    }
+    for (index, region) in program.regions.iter().enumerate() {
+        let mut depth = 0;
+        let mut parent = region.parent;
+        while let Some(outer) = parent {
+            depth += 1;
+            parent = program.regions.get(outer as usize).and_then(|region| region.parent);
+        }
+        let own = program.region_of.iter().filter(|&&of| of == Some(index as u16)).count();
+        let first = program.region_of.iter().position(|&of| of == Some(index as u16)).unwrap_or(0);
+        let what = if region.is_function { "function" } else { "region" };
+        let _ = writeln!(
+            text,
+            "{:>20}  {}{} ({what}, {own} words of its own)",
+            format!("{first:06x}"),
+            "  ".repeat(depth),
+            region.name
+        );
+    }
+    text.trim_end().to_string() + "\n"
+}

@@ -1,0 +1,243 @@
+//! The object file: a program with its line table, regions and sources in one file, versioned and checksummed.
+//!
+//! All numbers are little-endian. A *text* is its length in octets (u32) and UTF-8.
+//!
+//! | part | contents |
+//! |---|---|
+//! | head | magic `lancer\x1a\n`, version (u16), two octets of 0 |
+//! | code | entry (u32), number of words (u32), words |
+//! | buffer | octets (u32), contents |
+//! | symbols | number (u32), each a text and a value (i64), in the order of the texts |
+//! | sources | number (u32), each a name and its contents, both texts |
+//! | lines | for each word a source (u16) and a line from 1 (u32) |
+//! | regions | number (u32), each a text, 1 for a function or 0 (u8), and the region around it (u16) |
+//! | places | for each word its innermost region (u16) |
+//! | check | CRC-32 (IEEE) of all octets before |
+//!
+//! No region is 65535.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+use isa::Program;
+use isa::diagnostic::Source;
+use isa::program::{Line, Region};
+use nom::bytes::complete::take;
+use nom::multi::length_data;
+use nom::number::complete::{le_i64, le_u8, le_u16, le_u32};
+use nom::{IResult, Parser};
+
+use crate::limits::{BUFFER, REGIONS, SOURCES, WORDS};
+
+/// The first octets of every object file.
+pub const MAGIC: &[u8; 8] = b"lancer\x1a\n";
+
+/// The version that is written, and the only one that is read.
+pub const VERSION: u16 = 1;
+
+const NONE: u16 = u16::MAX;
+
+/// Why octets are no object file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ObjectError {
+    /// The first octets are others.
+    Magic,
+    /// Written in another version of the format.
+    Version(u16),
+    /// The file ends in the middle.
+    Truncated,
+    /// The checksum is another: the file was damaged.
+    Checksum,
+    /// The parts contradict each other.
+    Contents(&'static str),
+}
+
+impl fmt::Display for ObjectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ObjectError::Magic => write!(f, "this is not an object file of lancer"),
+            ObjectError::Version(version) => {
+                write!(f, "the object file has version {version} of the format, but only {VERSION} is known here")
+            }
+            ObjectError::Truncated => write!(f, "the object file ends in the middle"),
+            ObjectError::Checksum => write!(f, "the object file is damaged: its checksum does not hold"),
+            ObjectError::Contents(what) => write!(f, "the object file contradicts itself: {what}"),
+        }
+    }
+}
+
+impl std::error::Error for ObjectError {}
+
+/// The object file of a program.
+///
+/// # Panics
+/// When a table of the program does not go with its words, which no assembled program does.
+pub fn write(program: &Program) -> Vec<u8> {
+    assert_eq!(program.lines.len(), program.words.len(), "a line for each word");
+    assert_eq!(program.region_of.len(), program.words.len(), "a region for each word");
+    let mut file = Vec::with_capacity(program.words.len() * 12 + program.buffer.len() + 256);
+    let count = |file: &mut Vec<u8>, length: usize| {
+        let length = u32::try_from(length).expect("the limits of the assembler are far below");
+        file.extend(length.to_le_bytes());
+    };
+    let text = |file: &mut Vec<u8>, text: &str| {
+        count(file, text.len());
+        file.extend(text.as_bytes());
+    };
+    file.extend(MAGIC);
+    file.extend(VERSION.to_le_bytes());
+    file.extend([0, 0]);
+    file.extend(program.entry.to_le_bytes());
+    count(&mut file, program.words.len());
+    program.words.iter().for_each(|word| file.extend(word.to_le_bytes()));
+    count(&mut file, program.buffer.len());
+    file.extend(&program.buffer);
+    count(&mut file, program.symbols.len());
+    for (name, value) in &program.symbols {
+        text(&mut file, name);
+        file.extend(value.to_le_bytes());
+    }
+    count(&mut file, program.sources.len());
+    for source in &program.sources {
+        text(&mut file, &source.name);
+        text(&mut file, &source.text);
+    }
+    for line in &program.lines {
+        file.extend(line.source.to_le_bytes());
+        file.extend(line.line.to_le_bytes());
+    }
+    count(&mut file, program.regions.len());
+    for region in &program.regions {
+        text(&mut file, &region.name);
+        file.push(region.is_function.into());
+        file.extend(region.parent.unwrap_or(NONE).to_le_bytes());
+    }
+    program.region_of.iter().for_each(|region| file.extend(region.unwrap_or(NONE).to_le_bytes()));
+    file.extend(crc32fast::hash(&file).to_le_bytes());
+    file
+}
+
+/// Reads an object file.
+///
+/// # Errors
+/// Any octets that [`write`] does not make; nothing large is allocated for them.
+pub fn read(file: &[u8]) -> Result<Program, ObjectError> {
+    let Some((magic, rest)) = file.split_at_checked(MAGIC.len()) else { return Err(ObjectError::Magic) };
+    if magic != MAGIC {
+        return Err(ObjectError::Magic);
+    }
+    let (_, version) = le_u16::<_, nom::error::Error<&[u8]>>(rest).map_err(|_| ObjectError::Truncated)?;
+    if version != VERSION {
+        return Err(ObjectError::Version(version));
+    }
+    let body_end = file.len().checked_sub(4).filter(|&end| end >= MAGIC.len() + 4).ok_or(ObjectError::Truncated)?;
+    let (body, check) = file.split_at(body_end);
+    let (rest, program) =
+        parts(&body[MAGIC.len() + 2..]).map_err(|_| damaged_or(body, check, ObjectError::Truncated))?;
+    if crc32fast::hash(body).to_le_bytes() != check {
+        return Err(ObjectError::Checksum);
+    }
+    if !rest.is_empty() {
+        return Err(ObjectError::Contents("there is more behind its end"));
+    }
+    let program = program.map_err(ObjectError::Contents)?;
+    consistent(&program).map_err(ObjectError::Contents)?;
+    Ok(program)
+}
+
+/// A file that cannot be read through: cut off, unless its checksum holds.
+fn damaged_or(body: &[u8], check: &[u8], error: ObjectError) -> ObjectError {
+    if crc32fast::hash(body).to_le_bytes() == check {
+        ObjectError::Contents("a length goes beyond the end")
+    } else {
+        error
+    }
+}
+
+type Read<'a, T> = IResult<&'a [u8], T>;
+
+fn text(input: &[u8]) -> Read<'_, Result<String, &'static str>> {
+    let (rest, octets) = length_data(le_u32).parse(input)?;
+    Ok((rest, String::from_utf8(octets.to_vec()).map_err(|_| "a text is not UTF-8")))
+}
+
+/// A list of `count` items; memory grows with the file, not with the count.
+fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Read<'a, T>) -> Read<'a, Vec<T>> {
+    let mut items = Vec::with_capacity(count.min(input.len()));
+    for _ in 0..count {
+        let (rest, found) = item(input)?;
+        items.push(found);
+        input = rest;
+    }
+    Ok((input, items))
+}
+
+fn parts(input: &[u8]) -> Read<'_, Result<Program, &'static str>> {
+    let (input, (reserved, entry, word_count)) = (le_u16, le_u32, le_u32).parse(input)?;
+    let count = word_count as usize;
+    let (input, octets) = take(4 * u64::from(word_count) as usize)(input)?;
+    let words = octets.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
+    let (input, buffer) = length_data(le_u32).parse(input)?;
+    let (input, symbol_count) = le_u32(input)?;
+    let (input, symbols) = list(input, symbol_count as usize, |input| (text, le_i64).parse(input))?;
+    let (input, source_count) = le_u32(input)?;
+    let (input, sources) = list(input, source_count as usize, |input| (text, text).parse(input))?;
+    let (input, lines) = list(input, count, |input| (le_u16, le_u32).parse(input))?;
+    let (input, region_count) = le_u32(input)?;
+    let (input, regions) = list(input, region_count as usize, |input| (text, le_u8, le_u16).parse(input))?;
+    let (input, places) = list(input, count, |input| le_u16(input))?;
+    let region = |number: u16| (number != NONE).then_some(number);
+    let build = || {
+        if reserved != 0 {
+            return Err("reserved octets are not 0");
+        }
+        let mut names = BTreeMap::new();
+        for (name, value) in symbols {
+            let name = name?;
+            if names.last_key_value().is_some_and(|(last, _)| *last >= name) {
+                return Err("symbols are out of order");
+            }
+            names.insert(name, value);
+        }
+        let sources = sources.into_iter().map(|(name, text)| Ok(Arc::new(Source { name: name?, text: text? })));
+        let regions = regions.into_iter().map(|(name, kind, parent)| match kind {
+            0 | 1 => Ok(Region { name: name?, is_function: kind == 1, parent: region(parent) }),
+            _ => Err("a region is of no known kind"),
+        });
+        Ok(Program {
+            words,
+            buffer: buffer.to_vec(),
+            entry,
+            symbols: names,
+            sources: sources.collect::<Result<_, _>>()?,
+            lines: lines.into_iter().map(|(source, line)| Line { source, line }).collect(),
+            regions: regions.collect::<Result<_, _>>()?,
+            region_of: places.into_iter().map(region).collect(),
+        })
+    };
+    Ok((input, build()))
+}
+
+fn consistent(program: &Program) -> Result<(), &'static str> {
+    let words = program.words.len();
+    let holds = [
+        (words <= WORDS && program.buffer.len() <= BUFFER, "it is larger than any program"),
+        (program.sources.len() <= SOURCES && program.regions.len() <= REGIONS, "it has too many files or regions"),
+        ((program.entry as usize) < words.max(1), "the entry is outside of the code"),
+        (
+            program.lines.iter().all(|line| usize::from(line.source) < program.sources.len() && line.line > 0),
+            "a line is of no source",
+        ),
+        (
+            program.region_of.iter().flatten().all(|&region| usize::from(region) < program.regions.len()),
+            "a word is of no region",
+        ),
+        (
+            (program.regions.iter().enumerate())
+                .all(|(index, region)| region.parent.is_none_or(|parent| usize::from(parent) < index)),
+            "a region is around itself",
+        ),
+    ];
+    holds.into_iter().try_for_each(|(holds, what)| if holds { Ok(()) } else { Err(what) })
+}

@@ -1,0 +1,142 @@
+//! What an assembled program is written as: listing, map, object file.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use asm::object::{ObjectError, read, write};
+use asm::{Attempt, Options, attempt, listing, symbol_map};
+use isa::diagnostic::Source;
+use isa::{Isa, Program};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRng, TestRunner};
+
+const PROGRAM: &str = "; adds up the octets of a table
+        .include \"layout.s\"
+        .equ    last, end - table
+        .macro  step by, to=s1
+        .local  skip
+        beqz    \\to, skip
+        iaddi   \\to, \\to, \\by     ; \\by on
+skip:
+        .endm
+
+        .func   total
+        .reg    sum, s4
+        li      s1, 0x12345678
+loop:   lbu     s2, table(s1)
+        iadd    sum, sum, s2
+        .region check
+        step    -1
+        .endregion
+        .rept   2, i
+        step    i + 1, s3
+        .endr
+        bnez    s1, loop
+        ret     s31
+        .endfunc
+
+        .if     0
+        this is not read
+        .endif
+
+        .buffer
+table:  .byte   1, 2, 3
+        .asciz  \"a longer text than eight\"
+        .space  100, 7
+end:
+";
+
+const LAYOUT: &str = "        .struct node\n        .field  left, 4\n        .field  flags, 1\n        .endstruct\n";
+
+fn tried(text: &str) -> Attempt {
+    let files: HashMap<&str, &str> = [("layout.s", LAYOUT)].into();
+    let include = |name: &str, _: &str| -> Result<Arc<Source>, String> {
+        files.get(name).map(|text| Source::new(name, *text)).ok_or("there is no such file".into())
+    };
+    let options = Options { include: &include, defines: vec![("bounces".into(), 5)], ..Options::default() };
+    attempt(&Source::new("total.s", text), &Isa::base(), &options)
+}
+
+#[test]
+fn the_listing_shows_lines_words_and_expansions() {
+    insta::assert_snapshot!(listing(&tried(PROGRAM)));
+}
+
+#[test]
+fn the_listing_shows_errors_where_they_are() {
+    let wrong = PROGRAM.replace("iadd    sum", "iad     sum").replace("bnez    s1, loop", "bnez    s1, lop");
+    insta::assert_snapshot!(listing(&tried(&wrong)));
+}
+
+#[test]
+fn the_map_shows_names_by_address() {
+    insta::assert_snapshot!(symbol_map(&tried(PROGRAM).finish().unwrap()));
+}
+
+#[test]
+fn hex_has_a_word_a_line() {
+    insta::assert_snapshot!(asm::hex::words(&tried("li s1, 0x12345678\nhalt").program.words));
+}
+
+fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
+    let config = Config { cases, failure_persistence: None, ..Config::default() };
+    let random = TestRng::deterministic_rng(config.rng_algorithm);
+    if let Err(error) = TestRunner::new_with_rng(config, random).run(strategy, test) {
+        panic!("{error}");
+    }
+}
+
+#[test]
+fn object_files_hold_the_whole_program() {
+    for program in [tried(PROGRAM).program, Program::default(), tried("halt").program] {
+        assert_eq!(read(&write(&program)), Ok(program));
+    }
+}
+
+#[test]
+fn damaged_object_files_are_refused() {
+    let file = write(&tried(PROGRAM).program);
+    for end in 0..file.len() {
+        assert!(read(&file[..end]).is_err(), "cut off at {end}");
+    }
+    for at in 0..file.len() {
+        for bit in 0..8 {
+            let mut damaged = file.clone();
+            damaged[at] ^= 1 << bit;
+            assert!(read(&damaged).is_err(), "octet {at}, bit {bit}");
+        }
+    }
+    assert_eq!(read(b"no"), Err(ObjectError::Magic));
+    assert_eq!(read(b"lancer\x1a\n"), Err(ObjectError::Truncated));
+    assert_eq!(read(b"lancer\x1a\n\x02\x00"), Err(ObjectError::Version(2)));
+    let mut longer = file.clone();
+    longer.push(0);
+    assert_eq!(read(&longer), Err(ObjectError::Checksum));
+}
+
+#[test]
+fn octets_with_a_right_checksum_are_read_or_refused() {
+    let file = write(&tried(PROGRAM).program);
+    let length = file.len();
+    let changes = proptest::collection::vec((12..length - 4, prop_oneof![any::<u8>(), Just(0), Just(255)]), 1..4);
+    check(5_000, &(changes, any::<bool>()), |(changes, is_cut)| {
+        let mut file = file.clone();
+        for &(at, octet) in &changes {
+            file[at] = octet;
+        }
+        let end = if is_cut { changes[0].0.max(12) } else { file.len() - 4 };
+        file.truncate(end);
+        file.extend(crc32fast::hash(&file).to_le_bytes());
+        if let Ok(program) = read(&file) {
+            prop_assert_eq!(write(&program), file);
+        }
+        Ok(())
+    });
+    check(2_000, &proptest::collection::vec(any::<u8>(), 0..80), |octets| {
+        let mut file = b"lancer\x1a\n\x01\x00".to_vec();
+        file.extend(octets);
+        file.extend(crc32fast::hash(&file).to_le_bytes());
+        let _ = read(&file);
+        Ok(())
+    });
+}

@@ -109,7 +109,12 @@ impl Quantization {
     /// The exact quotient, quantized; the divisor is not 0 and below 2^126.
     pub fn divide(self, dividend: i128, divisor: i128) -> i128 {
         let (dividend, divisor) = if divisor < 0 { (-dividend, -divisor) } else { (dividend, divisor) };
-        let (floor, rest) = (dividend.div_euclid(divisor), dividend.rem_euclid(divisor));
+        // One division: a second one for the rest would take as long again.
+        let mut floor = dividend / divisor;
+        let mut rest = dividend - floor * divisor;
+        if rest < 0 {
+            (floor, rest) = (floor - 1, rest + divisor);
+        }
         floor + self.increment(rest, (2 * rest).cmp(&divisor), dividend < 0, floor & 1 == 1)
     }
 }

@@ -27,8 +27,24 @@ impl Arithmetic for Nearest32 {
 
     #[inline]
     fn quotient(&self, dividend: i128, divisor: i128) -> i32 {
-        Modes::default().quotient(dividend, divisor)
+        match (i64::try_from(dividend), i64::try_from(divisor)) {
+            (Ok(dividend), Ok(divisor)) if divisor != 0 && dividend != i64::MIN && divisor != i64::MIN => {
+                nearest_quotient(dividend, divisor)
+            }
+            _ => Modes::default().quotient(dividend, divisor),
+        }
     }
+}
+
+/// The quotient to nearest, ties up, saturated; neither number is the least one, whose negation does not fit.
+fn nearest_quotient(dividend: i64, divisor: i64) -> i32 {
+    let (dividend, divisor) = if divisor < 0 { (-dividend, -divisor) } else { (dividend, divisor) };
+    let (mut floor, mut rest) = (dividend / divisor, dividend % divisor);
+    if rest < 0 {
+        (floor, rest) = (floor - 1, rest + divisor);
+    }
+    let rounded = if rest >= divisor - rest { floor.saturating_add(1) } else { floor };
+    rounded.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 #[cfg(test)]
@@ -36,6 +52,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn quotients_at_the_ends_equal_those_of_the_modes() {
+        let ends = [i64::MIN, i64::MIN + 1, -3, -2, -1, 0, 1, 2, 3, i64::MAX - 1, i64::MAX];
+        for (a, b) in ends.into_iter().flat_map(|a| ends.map(|b| (i128::from(a), i128::from(b)))) {
+            assert_eq!(Nearest32.quotient(a, b), Modes::default().quotient(a, b), "{a} / {b}");
+        }
+    }
 
     proptest! {
         #[test]
@@ -45,6 +69,15 @@ mod tests {
             prop_assert_eq!(fast.narrow(value128, shift), slow.narrow(value128, shift));
             prop_assert_eq!(fast.widen(value128, shift), slow.widen(value128, shift));
             prop_assert_eq!(fast.narrow64(value, shift), slow.narrow64(value, shift));
+        }
+
+        #[test]
+        fn quotients_equal_those_of_the_modes(dividend: i64, divisor: i64, left in 0u32..64, right in 0u32..64) {
+            for (a, b) in [(dividend, divisor), (dividend >> right, divisor >> left), (dividend, divisor >> right)] {
+                for (a, b) in [(a.into(), b.into()), (i128::from(a) << left, b.into()), (2 * i128::from(b) + 1, 2)] {
+                    prop_assert_eq!(Nearest32.quotient(a, b), Modes::default().quotient(a, b), "{} / {}", a, b);
+                }
+            }
         }
     }
 }

@@ -24,13 +24,13 @@ macro_rules! memory_rows {
             lv (d: V, a: A, i: Off)           "011111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(local 3)];
             /// Stores three words of 32 bits to the buffer at `a + i`.
             sv (b: V, a: A, i: Off)           "100000 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(local 3)];
-            /// Loads three signed numbers of 16 bits from the buffer at `a + i`, each shifted left by `j`.
+            /// Loads three signed numbers of 16 bits from the buffer at `a + i`, each shifted left by `j`; the low 32 bits stay.
             lvh (d: V, a: A, i: Off, j: Sh)   "100001 ddddd aaaaa iiiiiiiiii jjjjjj"   [Done(local 3)];
             /// Loads a wide number of 64 bits from the buffer at `a + i`.
             lwide (d: W, a: A, i: Off)        "100010 ddd00 aaaaa iiiiiiiiiiiiiiii"    [Done(local 2)];
             /// Stores a wide number of 64 bits to the buffer at `a + i`.
             swide (b: W, a: A, i: Off)        "100010 bbb01 aaaaa iiiiiiiiiiiiiiii"    [Done(local 2)];
-            /// Loads 32 bits from the buffer at `x`, then adds `i` octets to `x`.
+            /// Loads 32 bits from the buffer at `x`, then adds `i` octets to `x`; where both are one register, the sum stays.
             lwp (d: S, x: S, i: Off)          "100011 ddddd xxxxx iiiiiiiiiiiiiiii"    [Done(local 1, address 1)];
             /// Loads three words from the buffer at `x`, then adds `i` octets to `x`.
             lvp (d: V, x: S, i: Off)          "100100 ddddd xxxxx iiiiiiiiiiiiiiii"    [Done(local 3, address 1)];
@@ -38,9 +38,9 @@ macro_rules! memory_rows {
             swp (b: S, x: S, i: Off)          "100101 bbbbb xxxxx iiiiiiiiiiiiiiii"    [Done(local 1, address 1)];
         }
         bus bus BusRoom "Global memory, over the shared bus: the core waits for the arbiter, then for the transfer." {
-            /// Copies `c` octets from global memory at `b` to the buffer at `a`.
+            /// Copies `c` octets, an unsigned number, from global memory at `b` to the buffer at `a`.
             load (a: A, b: A, c: S)           "100110 aaaaa bbbbb ccccc ----- 000000"  [Done(mem 1; each octet 1)];
-            /// Copies `c` octets from the buffer at `b` to global memory at `a`.
+            /// Copies `c` octets, an unsigned number, from the buffer at `b` to global memory at `a`.
             store (a: A, b: A, c: S)          "100110 aaaaa bbbbb ccccc ----- 000001"  [Done(mem 1; each octet 1)];
             /// Loads 32 bits from global memory at `a + i`.
             ldw (d: S, a: A, i: Off)          "100111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
@@ -50,15 +50,15 @@ macro_rules! memory_rows {
             stv (b: V, a: A, i: Off)          "101001 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 12)];
             /// Atomic counter: `d` = the 32 bits of global memory at `a`, which become their sum with `b` modulo 2^32.
             fetchadd (d: S, a: A, b: S)       "100110 ddddd aaaaa bbbbb ----- 000010"  [Done(add 1, mem 1, octet 8)];
-            /// Sends two vectors to the core of number `a`; blocks until its mailbox for this core is free.
+            /// Sends two vectors to the core of number `a`; blocks until its mailbox for this core is free. A number that no core has is a trap.
             send2 (a: S, b: V2)               "100110 aaaaa bbbbb ----- ----- 000011"  [Done(mem 1, octet 24)];
-            /// Sends five vectors to the core of number `a`; blocks until its mailbox for this core is free.
+            /// Sends five vectors to the core of number `a`. Blocks and traps as `send2`.
             send5 (a: S, b: V5)               "100110 aaaaa bbbbb ----- ----- 000100"  [Done(mem 1, octet 60)];
-            /// Receives two vectors; `e` = the sender's number. Blocks until a message is there; of several the earliest, then that of the lowest sender.
+            /// Receives two vectors; `e` = the sender's number. Blocks until a message is there; of several the earliest, then that of the lowest sender. A message of another length is a trap.
             recv2 (d: V2, e: S)               "100110 ddddd eeeee ----- ----- 000101"  [Done(move 6)];
-            /// Receives five vectors; `e` = the sender's number. Blocks as `recv2`.
+            /// Receives five vectors; `e` = the sender's number. Blocks and traps as `recv2`.
             recv5 (d: V5, e: S)               "100110 ddddd eeeee ----- ----- 000110"  [Done(move 15)];
-            /// Waits until every core that has not halted waits here.
+            /// Waits until every core and the main processor wait here, those left out that have halted and have nothing to start over for.
             barrier ()                        "100110 ----- ----- ----- ----- 000111"  [Done(move 0)];
         }
     ] $($rest)* } };

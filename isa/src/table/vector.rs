@@ -5,7 +5,7 @@
 #[macro_export]
 macro_rules! vector_rows {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
-        pure vector VectorRoom "Three fixed-point lanes at once: positions, directions, colours. Each lane is quantized once." {
+        pure vector VectorRoom "Three fixed-point lanes at once: positions, directions, colours. Each lane is quantized once; copies, single lanes and selections move raw bits." {
             /// Sum of two vectors, lane by lane.
             vadd (d: V, a: V, b: V)           "010000 ddddd aaaaa bbbbb ------ 00000"  [Done(add 3)];
             /// Difference of two vectors, lane by lane.

@@ -143,14 +143,16 @@ pub fn run<T: Watch, O: Observer>(
     tally: &mut Tally,
     observer: &mut O,
 ) -> Pause {
-    let (slots, costs, passes) = (code.slots(), code.costs(), tally.passes_mut());
+    let (slots, passes) = (code.slots(), tally.passes_mut());
     let State { registers, buffer, .. } = state;
-    let mut pc = state.pc;
+    let mut next = state.pc;
+    let mut pc;
     let mut steps = state.steps;
     let mut clocks = state.clocks;
     let mut elementary = state.elementary;
 
     let pause = loop {
+        pc = next;
         let Some(slot) = slots.get(pc as usize) else {
             break Pause::Fault(Fault::OutsideProgram { words: slots.len() as u32 });
         };
@@ -158,7 +160,7 @@ pub fn run<T: Watch, O: Observer>(
             break Pause::Fault(Fault::StepLimit(seat.step_limit));
         }
         let fields = &slot.fields;
-        let mut next = pc.wrapping_add(1);
+        next = pc.wrapping_add(1);
         let mut motion = Motion::Jump;
         let mut end = None;
 
@@ -223,20 +225,20 @@ pub fn run<T: Watch, O: Observer>(
         let pass = &mut passes[number];
         pass.count += 1;
         steps += 1;
-        let cost = costs[number];
-        clocks += u64::from(cost.clocks);
-        elementary += u64::from(cost.elementary);
-        if units != 0 {
-            pass.units += u64::from(units);
+        clocks += u64::from(pass.cost.clocks);
+        elementary += u64::from(pass.cost.elementary);
+        pass.units += u64::from(units);
+        if pass.cost.has_busy_units {
             let (more_clocks, more_elementary) = code.unit_cost(pc, exit, units);
             clocks += more_clocks.0;
             elementary += more_elementary;
         }
         if O::IS_ACTIVE {
-            observer.step(pc, number, units, next, motion);
+            // What ends here goes nowhere: the word after a `halt` may belong to another function.
+            observer.step(pc, number, units, if end.is_none() { next } else { pc }, motion);
         }
         match end {
-            None => pc = next,
+            None => {}
             Some(End::Halt) => break Pause::Halt,
             Some(End::Trap(number)) => break Pause::Fault(Fault::User(number)),
         }

@@ -17,12 +17,14 @@ pub struct Slot {
 }
 
 /// What one exit of one word adds to a run, apart from its units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExitCost {
     /// Time.
     pub clocks: u32,
     /// Elementary operations: add, sub, mul, div and cmp.
     pub elementary: u32,
+    /// Whether its units take clocks or elementary operations; octets do not, as long as the bus accounts for them.
+    pub has_busy_units: bool,
 }
 
 /// A decoded program.
@@ -50,9 +52,11 @@ impl<'a> Code<'a> {
                 None => Slot { op: None, fields: Fields::default(), first_exit },
             };
             if let Some(op) = slot.op {
+                let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
                 code.costs.extend(isa.row(op).exits.iter().map(|exit| ExitCost {
-                    clocks: timing.clocks(&exit.cost).0 as u32,
-                    elementary: exit.cost.elementary() as u32,
+                    clocks: fit(timing.clocks(&exit.cost).0),
+                    elementary: fit(exit.cost.elementary()),
+                    has_busy_units: timing.clocks(&exit.each).0 != 0 || exit.each.elementary() != 0,
                 }));
             }
             code.slots.push(slot);
@@ -71,19 +75,12 @@ impl<'a> Code<'a> {
         Some(self.isa.row(self.slots.get(pc as usize)?.op?))
     }
 
-    /// How many exits all words have together.
-    pub fn exit_count(&self) -> usize {
-        self.costs.len()
-    }
-
     /// What the exits cost, in the order of [`Slot::first_exit`].
-    #[inline]
     pub fn costs(&self) -> &[ExitCost] {
         &self.costs
     }
 
     /// Clocks and elementary operations that `units` units add to an exit of a word.
-    #[cold]
     pub fn unit_cost(&self, pc: u32, exit: usize, units: u32) -> (Clocks, u64) {
         let Some(exit) = self.row(pc).and_then(|row| row.exits.get(exit)) else { return (Clocks(0), 0) };
         let each = exit.each.times(units.into());

@@ -5,15 +5,17 @@ use std::collections::BTreeMap;
 use isa::Counts;
 use isa::program::Line;
 
-use crate::code::Code;
+use crate::code::{Code, ExitCost};
 
-/// Passes through one exit of one word.
+/// Passes through one exit of one word, beside what one pass takes: an engine looks at both for each instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passes {
     /// How often.
     pub count: u64,
     /// Units of the per-unit cost, summed.
     pub units: u64,
+    /// What one pass takes, its units left out.
+    pub cost: ExitCost,
 }
 
 /// Passes by exit, in the order of the program's exits.
@@ -34,7 +36,8 @@ pub struct LineCount {
 impl Tally {
     /// Nothing yet, for a program.
     pub fn new(code: &Code) -> Tally {
-        Tally { passes: vec![Passes::default(); code.exit_count()] }
+        let none_yet = |&cost: &ExitCost| Passes { count: 0, units: 0, cost };
+        Tally { passes: code.costs().iter().map(none_yet).collect() }
     }
 
     /// All passes, in the order of [`crate::code::Slot::first_exit`].

@@ -28,8 +28,9 @@ impl Default for Timing {
 impl Timing {
     /// Clocks of operations that one instruction costs.
     pub fn clocks(&self, cost: &Counts) -> Clocks {
-        let class_clocks = |(class, count): (Class, u64)| count.div_ceil(self.units[class]) * self.clocks[class];
-        Clocks(cost.iter().map(class_clocks).sum())
+        let class_clocks =
+            |(class, count): (Class, u64)| count.div_ceil(self.units[class]).saturating_mul(self.clocks[class]);
+        Clocks(cost.iter().map(class_clocks).fold(0, u64::saturating_add))
     }
 }
 

@@ -7,6 +7,8 @@ mod integer;
 mod local;
 mod scalar;
 mod split;
+#[cfg(test)]
+mod tests;
 mod vector;
 mod watch;
 mod wide;

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use isa::number::{Arithmetic, Vector, normalizing_shift, split_shift};
+use isa::number::{Arithmetic, Vector, normalizing_shift};
 use isa::table::Done;
 
 use super::VectorRoom;
@@ -15,10 +15,12 @@ fn cross_lane(a: Vector, b: Vector, k: usize) -> i64 {
 
 /// The lanes shifted right by what brings the largest to the top of the word, and that shift.
 fn normalize(arithmetic: &impl Arithmetic, lanes: [i64; 3]) -> (Vector, i32) {
-    let shift = normalizing_shift(lanes.map(i128::from), arithmetic.word());
-    let lane = |lane: i64| {
-        let (value, right) = split_shift(lane.into(), shift);
-        arithmetic.narrow(value, right)
+    let [x, y, z] = lanes.map(i64::unsigned_abs);
+    let shift = normalizing_shift([x.max(y).max(z).into(), 0, 0], arithmetic.word());
+    // A lane that goes left ends within the word, so 64 bits hold it.
+    let lane = |lane: i64| match u32::try_from(shift) {
+        Ok(right) => arithmetic.narrow64(lane, right),
+        Err(_) => arithmetic.narrow64(lane << -shift, 0),
     };
     (lanes.map(lane), shift)
 }
@@ -72,10 +74,11 @@ impl<T: Arithmetic> VectorRoom for T {
     #[inline]
     fn vdot(&self, a: Vector, b: Vector, i: i32) -> (i32, Done) {
         let product = |k: usize| i64::from(a[k]) * i64::from(b[k]);
-        // Three products may need 65 bits, two always fit 64.
-        let dot = match (product(0) + product(1)).checked_add(product(2)) {
+        // The sum of products of 62 bits rarely needs more than 64.
+        let sum = product(0).checked_add(product(1)).and_then(|sum| sum.checked_add(product(2)));
+        let dot = match sum {
             Some(sum) => self.narrow64(sum, i as u32),
-            None => self.narrow(i128::from(product(0)) + i128::from(product(1)) + i128::from(product(2)), i as u32),
+            None => self.narrow((0..3).map(|k| i128::from(product(k))).sum(), i as u32),
         };
         (dot, Done)
     }

@@ -69,9 +69,8 @@ impl Bus {
         Some(earliest.max(self.free_at).max(self.not_before))
     }
 
-    /// Lets the arbiter decide at [`Bus::next_decision`]; `None` when it leaves the bus idle for now.
-    pub fn decide(&mut self) -> Option<Grant> {
-        let clock = self.next_decision()?;
+    /// Lets the arbiter decide at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
+    pub fn decide(&mut self, clock: Clocks) -> Option<Grant> {
         self.present.clear();
         self.present.extend(self.waiting.iter().map(|&(claim, _)| claim).filter(|claim| claim.arrival <= clock));
         match self.arbiter.choose(clock, &self.present) {

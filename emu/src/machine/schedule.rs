@@ -235,14 +235,15 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             (Some((at, act, number)), decision) if decision.is_none_or(|clock| at <= clock) => {
                 self.act(number, at, act)?;
             }
-            (_, Some(_)) => self.decide(),
+            (_, Some(clock)) => self.decide(clock),
             (_, None) => return Ok(false),
         }
         Ok(true)
     }
 
-    fn decide(&mut self) {
-        let Some(grant) = self.bus.decide() else { return };
+    /// Lets the arbiter choose, and the chosen one do what it waits for.
+    fn decide(&mut self, clock: Clocks) {
+        let Some(grant) = self.bus.decide(clock) else { return };
         let number = grant.master as usize;
         let processor = &mut self.processors[number];
         processor.wait_until(grant.start, grant.end);

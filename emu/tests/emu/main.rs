@@ -2,3 +2,6 @@
 
 mod builder;
 mod machine;
+mod meanings;
+mod profile;
+mod traps;

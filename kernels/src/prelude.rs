@@ -52,7 +52,7 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, is_main: bool) -> S
     for part in image.layout.structures() {
         structure(&mut text, part);
     }
-    text.push_str(RAY_NODE);
+    text.push_str(NOTES);
     text.push_str(".buffer\n");
     text.push_str(TRAVERSAL);
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
@@ -89,6 +89,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("MISSED", largest),
         ("MOST_STEPS", leaves as i64 + 1),
         ("TRAP_STUCK", TRAP_STUCK.into()),
+        ("DEPTH", image.tree.statistics().depth.into()),
         ("ROOT", image.root.into()),
         ("FRAME", image.region(Kind::Frame).start.into()),
         ("MATERIALS_BUS", image.region(Kind::Materials).start.into()),
@@ -115,6 +116,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
 const TRAVERSAL: &str = "\
 NODE: .space 2 * sizeof(node)
 RUNS: .space 24                 ; run x direction, a wide number an axis
+FARS: .space DEPTH * sizeof(far)
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
@@ -141,8 +143,15 @@ fn core(text: &mut String, image: &Image, features: &Features) {
     }
 }
 
-/// A node of the ray tree in the buffer: what its refracted child will need when the walk is back (report, table 2).
-const RAY_NODE: &str = "\
+/// Structures of the buffer alone: the far side of a split of the kd tree, and a node of the ray tree with what its refracted child
+/// will need when the walk is back (report, table 2).
+const NOTES: &str = "\
+.struct far
+    .field node, 4          ; address of the far child
+    .field low, 12          ; box of its parent, where nodes have none
+    .field high, 12
+    .field fars, 12         ; the notes before this one
+.endstruct
 .struct raynode
     .field k, 4             ; 1 - eta^2 (1 - cosine^2), direction format
     .field eta, 4           ; ratio of the indices of refraction

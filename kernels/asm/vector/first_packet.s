@@ -48,6 +48,7 @@
     jump  first_missed
 1:
     .endr
+    vmov  fars, zero_vector
     call  link_step, descend
     ret   link_packet
 first_missed:

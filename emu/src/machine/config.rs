@@ -106,7 +106,7 @@ macro_rules! mode_name {
                 let name = String::deserialize(deserializer)?;
                 let names: Vec<&str> = $type::ALL.iter().map(|mode| mode.name()).collect();
                 $type::from_name(&name).ok_or_else(|| {
-                    serde::de::Error::custom(format!("unknown mode `{name}`, expected one of {}", names.join(", ")))
+                    serde::de::Error::custom(format!("unknown mode `{name}`, expected one of `{}`", names.join("`, `")))
                 })
             }
         }
@@ -269,5 +269,61 @@ impl Config {
     /// The machine as a file with every key.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("a machine has nothing that TOML cannot hold")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Config, String> {
+        Config::parse(&Source::new("m.toml", text)).map_err(|report| report.render(false))
+    }
+
+    #[test]
+    fn what_a_file_leaves_out_is_the_reports() {
+        assert_eq!(parse(""), Ok(Config::default()));
+        let config = parse("cores = 8\n[clocks]\ndiv = 16\n[bus]\noctets_per_beat = 4\n").expect("it is right");
+        assert_eq!((config.cores, config.clocks.0[Class::Div], config.clocks.0[Class::Mul]), (8, 16, 1));
+        assert_eq!(config.bus.length(Octets(31)), Clocks(16));
+        assert_eq!(Config::default().bus.length(Octets(31)), Clocks(62));
+    }
+
+    #[test]
+    fn the_effective_machine_reads_back_as_itself() {
+        let mut config = Config::default();
+        config.arithmetic.quantization = Quantization::TrnZero;
+        config.units.0[Class::Mul] = 3;
+        config.main.traffic = false;
+        assert_eq!(parse(&config.text()), Ok(config));
+        assert_eq!(parse(&Config::default().text()), Ok(Config::default()));
+    }
+
+    #[test]
+    fn mistakes_are_shown_with_place_and_suggestion() {
+        for (text, place, hint) in [
+            ("core = 3", "m.toml:1:1", "did you mean `cores`?"),
+            ("\n[bus]\nclocks_per_bet = 3", "m.toml:3:1", "did you mean `clocks_per_beat`?"),
+            ("[bus]\narbiter = \"round-robbin\"", "m.toml:2:11", "did you mean `round-robin`?"),
+            ("[clocks]\nmull = 3", "m.toml", "did you mean `mul`?"),
+            ("[arithmetic]\nquantization = \"RNG\"", "m.toml:2:16", "did you mean `RND`?"),
+            ("cores = \"four\"", "m.toml:1:9", ""),
+            ("cores = ", "m.toml:1", ""),
+            ("cores = -1", "m.toml:1:9", ""),
+        ] {
+            let shown = parse(text).expect_err(text);
+            assert!(shown.contains(place) && shown.contains(hint), "{text}\n{shown}");
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_their_range_are_all_named() {
+        let text = "cores = 0\nbuffer_octets = 4000000000\n[arithmetic]\nword = 7\n[units]\nmul = 0\n\
+                    [bus]\nclocks_per_beat = 0\n";
+        let shown = parse(text).expect_err("nothing is right");
+        for key in ["`cores` is 0", "`buffer_octets`", "`arithmetic.word` is 7", "`units.mul`", "`bus.clocks_per_beat`"]
+        {
+            assert!(shown.contains(key), "{key}\n{shown}");
+        }
     }
 }

@@ -1,7 +1,10 @@
 //! Programs on the machine, and what they must do, take and count.
 
 mod builder;
+mod bus;
+mod engine;
 mod machine;
 mod meanings;
+mod messages;
 mod profile;
 mod traps;

@@ -10,24 +10,21 @@ use isa::program::Line as ProgramLine;
 use isa::table::Op;
 use isa::{Isa, Program};
 
-use crate::cursor::Cursor;
 use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
 use crate::explain;
 use crate::expression::{Expression, Step};
 use crate::frame::{Frame, Origin, file_lines};
 use crate::instruction::Argument;
-use crate::limits::{FRACTION_BITS, SOURCES, TEXT_OCTETS, WORDS};
+use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
 use crate::line::Line;
 use crate::listing::Record;
 use crate::macros::Macro;
-use crate::map::{MapEntry, NameKind};
-use crate::message::{Among, At, Messages, Parsed, Problem};
+use crate::message::{Among, At, Messages, Problem};
 use crate::pseudo::PSEUDOS;
 use crate::region::OpenRegion;
 use crate::structure::Structure;
 use crate::symbol::{Meaning, Name, Names};
-use crate::token::{Kind, tokens};
 use crate::{Attempt, Options};
 
 /// Where statements go.
@@ -69,11 +66,12 @@ pub(crate) struct Assembler<'a> {
     pub entry: Option<Expression>,
     /// Names that decide the layout and were not known yet.
     pub early: Vec<(Step, At)>,
-    included: HashMap<(String, u16), u16>,
+    /// Files by the name that was asked for and the file that asked.
+    pub included: HashMap<(String, u16), u16>,
     pub records: Vec<Record>,
     /// The name that the statement gave a number to.
     pub named: Option<Name>,
-    pending_records: Vec<(usize, Name)>,
+    pub pending_records: Vec<(usize, Name)>,
     pub expansions: usize,
     pub lines_read: usize,
     pub octets_read: usize,
@@ -164,140 +162,6 @@ impl Assembler<'_> {
         }
     }
 
-    fn line(&mut self, line: &Line) {
-        let place = self.records.len();
-        self.record(line);
-        self.named = None;
-        self.read_line(line);
-        // The record has the section behind the line, so that a line which changes it shows no address.
-        let (section, end) = (self.section, self.location() as u32);
-        let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.meaning.clone()));
-        let record = &mut self.records[place];
-        if record.section == section {
-            record.made.end = end;
-        }
-        match (value, self.named) {
-            (Some(Some(Meaning::Constant(value) | Meaning::Variable(value, _))), _) => record.value = Some(value),
-            (Some(Some(Meaning::Pending(_))), Some(name)) => self.pending_records.push((place, name)),
-            _ => {}
-        }
-    }
-
-    /// Notes a line for the listing, without anything made.
-    pub(crate) fn record(&mut self, line: &Line) {
-        let here = self.location() as u32;
-        let depth = self.frames.iter().filter(|frame| !matches!(frame.origin, Origin::File(_))).count();
-        self.records.push(Record {
-            source: line.source,
-            line: line.number,
-            depth: depth.min(255) as u8,
-            section: self.section,
-            made: here..here,
-            value: None,
-            text: line.is_substituted().then(|| Arc::from(&*line.text)),
-        });
-    }
-
-    fn read_line(&mut self, line: &Line) {
-        if self.is_skipping() {
-            let word = crate::frame::leading_directive(&line.text);
-            let matters = word.is_some_and(|word| word.starts_with(".if") || word.starts_with(".e"));
-            if !matters {
-                return;
-            }
-        }
-        let (tokens, unreadable) = tokens(&line.text);
-        let mut cursor = Cursor { line, tokens: &tokens, position: 0 };
-        if let Some(unreadable) = &unreadable
-            && !self.is_skipping()
-        {
-            let at = line.at(unreadable.start, unreadable.end);
-            self.messages.add(Problem::new(unreadable.code, &*unreadable.message, at, unreadable.label));
-            self.messages.is_muted = true;
-        }
-        let result = self.statement(&mut cursor);
-        if let Err(problem) = result {
-            self.messages.add(problem);
-        }
-        self.messages.is_muted = false;
-    }
-
-    fn statement(&mut self, cursor: &mut Cursor) -> Parsed<()> {
-        let is_skipping = self.is_skipping();
-        while let (Some(first), Some(second)) = (cursor.peek(), cursor.peek_second()) {
-            let is_name = matches!(first.kind, Kind::Name | Kind::Directive | Kind::Integer);
-            if !is_name || second.kind != Kind::Mark(":") {
-                break;
-            }
-            cursor.skip();
-            cursor.skip();
-            if !is_skipping {
-                self.label(first.kind, cursor.text(first), cursor.at(first));
-            }
-        }
-        let Some(first) = cursor.peek() else { return Ok(()) };
-        let (text, at) = (cursor.text(first), cursor.at(first));
-        if is_skipping {
-            let steers =
-                matches!(text, ".if" | ".ifdef" | ".ifndef" | ".ifb" | ".ifnb" | ".elseif" | ".else" | ".endif");
-            if !steers {
-                return Ok(());
-            }
-        }
-        match first.kind {
-            Kind::Directive => {
-                cursor.skip();
-                self.directive(text, at, cursor)
-            }
-            Kind::Name if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("=")) => {
-                self.assign("=", cursor)
-            }
-            Kind::Name if !self.macros.contains_key(text) && !self.takes_instructions() => {
-                Err(self.no_instruction_here(text, at))
-            }
-            Kind::Name => {
-                cursor.skip();
-                self.instruction(text, at, cursor);
-                Ok(())
-            }
-            _ => Err(cursor.expected("an instruction, a directive or a label")),
-        }
-    }
-
-    fn label(&mut self, kind: Kind, text: &str, at: At) {
-        if let Some(open) = &self.structure {
-            let message = format!("the label `{text}` stands in a structure");
-            self.messages.add(
-                Problem::new(explain::SECTION, message, at, "no place for a label").also(Some(open.at), "opened here"),
-            );
-        } else if kind == Kind::Integer && !text.bytes().all(|c| c.is_ascii_digit()) {
-            let message = format!("`{text}` cannot be a label");
-            self.messages.add(Problem::new(explain::SYNTAX, message, at, "a name, or a decimal number"));
-        } else {
-            self.define_label(text, at);
-        }
-    }
-
-    fn takes_instructions(&self) -> bool {
-        self.section == Section::Code && self.structure.is_none()
-    }
-
-    fn no_instruction_here(&mut self, text: &str, at: At) -> Box<Problem> {
-        if let Some(open) = &self.structure {
-            let message = format!("`{text}` does not stand in a structure");
-            return Problem::new(explain::SECTION, message, at, "in a structure")
-                .also(Some(open.at), "opened here")
-                .hint("`.endstruct` ends the structure");
-        }
-        let is_known = self.operations.contains_key(text) || crate::pseudo::find(text).is_some();
-        if is_known {
-            let message = format!("the instruction `{text}` stands in the buffer");
-            return Problem::new(explain::SECTION, message, at, "the section is the buffer here")
-                .hint("write `.text` before code");
-        }
-        self.unknown_instruction(text, at, false)
-    }
-
     /// The current place: in words in the code, in octets in the buffer.
     pub(crate) fn location(&self) -> i64 {
         match self.section {
@@ -316,47 +180,6 @@ impl Assembler<'_> {
         self.program.words.push(word);
         self.program.lines.push(ProgramLine { source: line.source, line: line.number });
         self.program.region_of.push(self.regions.last().map(|open| open.index));
-    }
-
-    /// Reads another file here.
-    pub(crate) fn include_file(&mut self, name: &str, at: At) -> Parsed<()> {
-        let refuse = |assembler: &mut Self, code, message: String, label: String| {
-            assembler.is_incomplete = true;
-            Err(Problem::new(code, message, at, label))
-        };
-        let from = at.source;
-        let known = self.included.get(&(name.to_string(), from)).copied();
-        let index = match known {
-            Some(index) => index,
-            None => {
-                let source = match (self.options.include)(name, &self.program.sources[from as usize].name) {
-                    Ok(source) => source,
-                    Err(why) => return refuse(self, explain::INCLUDE, format!("cannot include `{name}`"), why),
-                };
-                let same = self.program.sources.iter().position(|other| other.name == source.name);
-                let index = same.unwrap_or(self.program.sources.len());
-                if index > SOURCES {
-                    let message = format!("the program has more than {SOURCES} files");
-                    return refuse(self, explain::SIZE, message, "one too many".into());
-                }
-                if source.text.len() > TEXT_OCTETS {
-                    let message = format!("`{name}` is longer than {TEXT_OCTETS} octets");
-                    return refuse(self, explain::SIZE, message, "included here".into());
-                }
-                if same.is_none() {
-                    self.program.sources.push(source);
-                }
-                self.included.insert((name.to_string(), from), index as u16);
-                index as u16
-            }
-        };
-        if self.frames.iter().any(|frame| frame.origin == Origin::File(index)) {
-            let message = format!("`{name}` includes itself");
-            return refuse(self, explain::DEPTH, message, "it is being read already".into());
-        }
-        let text = self.program.sources[index as usize].clone();
-        self.enter(Frame::new(file_lines(&text.text, index), Origin::File(index)), at);
-        Ok(())
     }
 
     fn second_pass(&mut self) {
@@ -395,31 +218,6 @@ impl Assembler<'_> {
             }
         }
         self.resolve_entry();
-    }
-
-    /// The names of the program, for people: those that belong to one expansion or are numbers are left out.
-    fn map(&self) -> Vec<MapEntry> {
-        let starts = |source: &Arc<Source>| -> Vec<usize> {
-            [0].into_iter().chain(source.text.match_indices('\n').map(|(at, _)| at + 1)).collect()
-        };
-        let starts: Vec<Vec<usize>> = self.program.sources.iter().map(starts).collect();
-        let mut entries = Vec::new();
-        for (_, text, symbol) in self.names.symbols() {
-            let (kind, value) = match symbol.meaning {
-                Meaning::Code(value) => (NameKind::Code, value),
-                Meaning::Buffer(value) => (NameKind::Buffer, value),
-                Meaning::Constant(value) | Meaning::Variable(value, _) => (NameKind::Constant, value),
-                Meaning::Pending(_) | Meaning::Broken => continue,
-            };
-            if !text.contains(['$', '#']) {
-                let place = symbol.at.map(|at| {
-                    let line = starts[at.source as usize].partition_point(|&start| start <= at.start as usize);
-                    ProgramLine { source: at.source, line: line as u32 }
-                });
-                entries.push(MapEntry { name: text.to_string(), kind, value, place });
-            }
-        }
-        entries
     }
 
     fn finish(mut self) -> Attempt {

@@ -5,8 +5,10 @@ use std::rc::Rc;
 
 use crate::assembler::Assembler;
 use crate::explain;
-use crate::expression::{Binary, Expression, Function, Step};
+use crate::expression::{Expression, Step};
+use crate::function::Function;
 use crate::message::{Among, At, Parsed, Problem};
+use crate::operator::{Checked, OVERFLOW};
 use crate::symbol::{Meaning, Name};
 
 /// Why an expression has no value.
@@ -18,57 +20,6 @@ pub(crate) enum Failure {
     Reported,
     /// The arithmetic fails whatever follows.
     Wrong(Box<Problem>),
-}
-
-/// Result of a checked operation; the error is the sentence about it and its code.
-pub(crate) type Checked = Result<i64, (&'static str, &'static str)>;
-
-const OVERFLOW: (&str, &str) = (explain::OVERFLOW, "the result does not fit 64 bits");
-
-/// Applies an operator.
-pub(crate) fn binary(operator: Binary, a: i64, b: i64) -> Checked {
-    let shift = || u32::try_from(b).ok().filter(|&count| count < 64).ok_or((explain::SHIFT, "shifts go from 0 to 63"));
-    let divided = |result: Option<i64>| {
-        if b == 0 { Err((explain::DIVISION, "division by zero")) } else { result.ok_or(OVERFLOW) }
-    };
-    match operator {
-        Binary::Or => Ok(a | b),
-        Binary::ExclusiveOr => Ok(a ^ b),
-        Binary::And => Ok(a & b),
-        Binary::Equal => Ok((a == b).into()),
-        Binary::Different => Ok((a != b).into()),
-        Binary::Less => Ok((a < b).into()),
-        Binary::LessOrEqual => Ok((a <= b).into()),
-        Binary::Greater => Ok((a > b).into()),
-        Binary::GreaterOrEqual => Ok((a >= b).into()),
-        Binary::Left => shift().and_then(|count| {
-            let shifted = a << count;
-            if shifted >> count == a { Ok(shifted) } else { Err(OVERFLOW) }
-        }),
-        Binary::Right => shift().map(|count| a >> count),
-        Binary::Add => a.checked_add(b).ok_or(OVERFLOW),
-        Binary::Subtract => a.checked_sub(b).ok_or(OVERFLOW),
-        Binary::Multiply => a.checked_mul(b).ok_or(OVERFLOW),
-        Binary::Divide => divided(a.checked_div(b)),
-        Binary::Remainder => divided(a.checked_rem(b)),
-    }
-}
-
-/// Applies a function; `b` is 0 where it takes one number.
-pub(crate) fn function(function: Function, a: i64, b: i64) -> Checked {
-    let word = |half: i64| {
-        let fits = (-(1 << 31)..1 << 32).contains(&a);
-        if fits { Ok(half) } else { Err((explain::RANGE, "the number does not fit 32 bits")) }
-    };
-    match function {
-        Function::Min => Ok(a.min(b)),
-        Function::Max => Ok(a.max(b)),
-        Function::Abs => a.checked_abs().ok_or(OVERFLOW),
-        Function::Bits if a < 0 => Err((explain::RANGE, "`bits` takes a number that is not negative")),
-        Function::Bits => Ok(i64::from(64 - a.leading_zeros())),
-        Function::Low => word(i64::from(a as i16)),
-        Function::High => word(a >> 16 & 0xffff),
-    }
 }
 
 impl Assembler<'_> {
@@ -132,12 +83,12 @@ impl Assembler<'_> {
                 }
                 Step::Binary(operator) => {
                     let (b, a) = (pop(), pop());
-                    checked(binary(*operator, a, b), &|| format!("{a} {} {b}", operator.mark()))?
+                    checked(operator.apply(a, b), &|| format!("{a} {} {b}", operator.mark()))?
                 }
                 Step::Function(name) => {
                     let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
                     let a = pop();
-                    checked(function(*name, a, b), &|| format!("of {a}"))?
+                    checked(name.apply(a, b), &|| format!("of {a}"))?
                 }
             };
             stack.push(value);

@@ -6,92 +6,12 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::decimal::Decimal;
 use crate::explain;
+use crate::function::{Argument, FUNCTIONS, Function, is_function};
 use crate::limits::PARENTHESES;
 use crate::message::{At, Parsed, Problem};
+use crate::operator::Binary;
 use crate::symbol::Name;
 use crate::token::{Kind, Token, character_value, integer_value};
-
-/// An operator with two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Binary {
-    Or,
-    ExclusiveOr,
-    And,
-    Equal,
-    Different,
-    Less,
-    LessOrEqual,
-    Greater,
-    GreaterOrEqual,
-    Left,
-    Right,
-    Add,
-    Subtract,
-    Multiply,
-    Divide,
-    Remainder,
-}
-
-impl Binary {
-    /// All operators.
-    pub const ALL: [Binary; 16] = {
-        use Binary::*;
-        [
-            Or,
-            ExclusiveOr,
-            And,
-            Equal,
-            Different,
-            Less,
-            LessOrEqual,
-            Greater,
-            GreaterOrEqual,
-            Left,
-            Right,
-            Add,
-            Subtract,
-            Multiply,
-            Divide,
-            Remainder,
-        ]
-    };
-
-    /// How it is written.
-    pub fn mark(self) -> &'static str {
-        const MARKS: [&str; 16] =
-            ["|", "^", "&", "==", "!=", "<", "<=", ">", ">=", "<<", ">>", "+", "-", "*", "/", "%"];
-        MARKS[self as usize]
-    }
-}
-
-/// A function of one or two numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
-    Min,
-    Max,
-    Abs,
-    Bits,
-    Low,
-    High,
-}
-
-/// Functions of numbers, with how many they take.
-const FUNCTIONS: [(&str, Function, usize); 6] = [
-    ("min", Function::Min, 2),
-    ("max", Function::Max, 2),
-    ("abs", Function::Abs, 1),
-    ("bits", Function::Bits, 1),
-    ("low", Function::Low, 1),
-    ("high", Function::High, 1),
-];
-
-/// Functions of names.
-const NAME_FUNCTIONS: [&str; 3] = ["sizeof", "offsetof", "defined"];
-
-/// Whether the text is a function's name, which nothing else may have.
-pub(crate) fn is_function(text: &str) -> bool {
-    NAME_FUNCTIONS.contains(&text) || FUNCTIONS.iter().any(|&(name, ..)| name == text)
-}
 
 /// One step of an evaluation on a stack.
 #[derive(Clone, Debug)]
@@ -144,21 +64,13 @@ enum Infix {
 }
 
 fn infix(mark: &str) -> Option<(Infix, u8)> {
-    let level = match mark {
+    match mark {
         "||" => return Some((Infix::OneTrue, 1)),
         "&&" => return Some((Infix::BothTrue, 2)),
-        "|" => 3,
-        "^" => 4,
-        "&" => 5,
-        "==" | "!=" => 6,
-        "<" | "<=" | ">" | ">=" => 7,
-        "<<" | ">>" => 8,
-        "+" | "-" => 9,
-        "*" | "/" | "%" => 10,
-        _ => return None,
-    };
-    let operator = Binary::ALL.into_iter().find(|operator| operator.mark() == mark)?;
-    Some((Infix::Binary(operator), level))
+        _ => {}
+    }
+    let operator = Binary::from_mark(mark)?;
+    Some((Infix::Binary(operator), operator.level()))
 }
 
 impl Assembler<'_> {
@@ -358,42 +270,41 @@ impl Assembler<'_> {
             let message = format!("more than {PARENTHESES} parentheses inside each other");
             return Err(Problem::new(explain::NESTING, message, open, "one too many"));
         }
-        if NAME_FUNCTIONS.contains(&text) {
-            let token = cursor.peek();
-            let (argument, argument_at) = match token {
-                Some(token) if token.kind == Kind::Directive => {
-                    cursor.skip();
-                    (cursor.text(token), cursor.at(token))
+        let described = FUNCTIONS.iter().find(|function| function.name == text).expect("only called for functions");
+        let function = match described.argument {
+            Argument::Numbers(function, count) => {
+                for argument in 0..count {
+                    if argument > 0 {
+                        cursor.expect(",")?;
+                    }
+                    self.infix_expression(cursor, steps, 1, depth + 1)?;
                 }
-                _ => cursor.name("a name")?,
-            };
-            cursor.expect(")")?;
-            let step = match text {
-                "sizeof" => Step::Size(self.names.intern(argument)),
-                "offsetof" if !argument.contains('.') => {
-                    return Err(Problem::new(
-                        explain::SYNTAX,
-                        "`offsetof` takes a field",
-                        argument_at,
-                        "expected `structure.field`",
-                    ));
-                }
-                "offsetof" => Step::Symbol(self.names.intern(argument)),
-                _ => Step::Number(self.is_defined(argument).into()),
-            };
-            steps.push((step, cursor.since(first)));
-            return Ok(());
-        }
-        let (_, function, count) = FUNCTIONS.into_iter().find(|&(name, ..)| name == text).expect("a function's name");
-        for argument in 0..count {
-            if argument > 0 {
-                cursor.expect(",")?;
+                Step::Function(function)
             }
-            self.infix_expression(cursor, steps, 1, depth + 1)?;
-        }
+            _ => self.name_function(described.argument, cursor)?,
+        };
         cursor.expect(")")?;
-        steps.push((Step::Function(function), cursor.since(first)));
+        steps.push((function, cursor.since(first)));
         Ok(())
+    }
+
+    fn name_function(&mut self, argument: Argument, cursor: &mut Cursor) -> Parsed<Step> {
+        let (name, at) = match cursor.peek() {
+            Some(token) if token.kind == Kind::Directive => {
+                cursor.skip();
+                (cursor.text(token), cursor.at(token))
+            }
+            _ => cursor.name("a name")?,
+        };
+        match argument {
+            Argument::Size => Ok(Step::Size(self.names.intern(name))),
+            Argument::Field if !name.contains('.') => {
+                let message = "`offsetof` takes a field";
+                Err(Problem::new(explain::SYNTAX, message, at, "expected `structure.field`"))
+            }
+            Argument::Field => Ok(Step::Symbol(self.names.intern(name))),
+            _ => Ok(Step::Number(self.is_defined(name).into())),
+        }
     }
 }
 

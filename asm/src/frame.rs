@@ -185,6 +185,9 @@ impl Assembler<'_> {
             self.record(&line);
             lines.push(line);
         }
+        if self.frames.is_empty() {
+            return None;
+        }
         let message = format!("`{closing}` is missing");
         self.messages.add(Problem::new(explain::UNCLOSED, message, at, "opened here"));
         None

@@ -18,6 +18,8 @@ pub const INCLUDE_DEPTH: usize = 32;
 pub const PARENTHESES: usize = 100;
 /// Functions and regions of a program.
 pub const REGIONS: usize = 65_535;
+/// Functions and regions inside each other.
+pub const REGION_DEPTH: usize = 64;
 /// Files of a program.
 pub const SOURCES: usize = 65_535;
 /// Messages that are shown; the others are counted.

@@ -1,10 +1,14 @@
 //! The symbol map: every name with its value and place, every function and region with its words.
 
 use std::fmt::Write;
+use std::sync::Arc;
 
+use isa::diagnostic::Source;
 use isa::program::Line;
 
 use crate::Assembled;
+use crate::assembler::Assembler;
+use crate::symbol::Meaning;
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -84,4 +88,31 @@ pub fn symbol_map(assembled: &Assembled) -> String {
         );
     }
     text.trim_end().to_string() + "\n"
+}
+
+impl Assembler<'_> {
+    /// The names of the program, for people: those that belong to one expansion or are numbers are left out.
+    pub(crate) fn map(&self) -> Vec<MapEntry> {
+        let starts = |source: &Arc<Source>| -> Vec<usize> {
+            [0].into_iter().chain(source.text.match_indices('\n').map(|(at, _)| at + 1)).collect()
+        };
+        let starts: Vec<Vec<usize>> = self.program.sources.iter().map(starts).collect();
+        let mut entries = Vec::new();
+        for (_, text, symbol) in self.names.symbols() {
+            let (kind, value) = match symbol.meaning {
+                Meaning::Code(value) => (NameKind::Code, value),
+                Meaning::Buffer(value) => (NameKind::Buffer, value),
+                Meaning::Constant(value) | Meaning::Variable(value, _) => (NameKind::Constant, value),
+                Meaning::Pending(_) | Meaning::Broken => continue,
+            };
+            if !text.contains(['$', '#']) {
+                let place = symbol.at.map(|at| {
+                    let line = starts[at.source as usize].partition_point(|&start| start <= at.start as usize);
+                    Line { source: at.source, line: line as u32 }
+                });
+                entries.push(MapEntry { name: text.to_string(), kind, value, place });
+            }
+        }
+        entries
+    }
 }

@@ -186,7 +186,7 @@ fn parts(input: &[u8]) -> Read<'_, Result<Program, &'static str>> {
     let (input, lines) = list(input, count, |input| (le_u16, le_u32).parse(input))?;
     let (input, region_count) = le_u32(input)?;
     let (input, regions) = list(input, region_count as usize, |input| (text, le_u8, le_u16).parse(input))?;
-    let (input, places) = list(input, count, |input| le_u16(input))?;
+    let (input, places) = list(input, count, le_u16)?;
     let region = |number: u16| (number != NONE).then_some(number);
     let build = || {
         if reserved != 0 {

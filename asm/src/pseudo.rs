@@ -4,7 +4,8 @@
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
-use crate::expression::{Expression, Function};
+use crate::expression::Expression;
+use crate::function::Function;
 use crate::instruction::describe;
 use crate::message::{At, Problem};
 use crate::operand::{Operand, Written};

@@ -7,7 +7,7 @@ use isa::program::Region;
 use crate::assembler::{Assembler, Section};
 use crate::cursor::Cursor;
 use crate::explain;
-use crate::limits::REGIONS;
+use crate::limits::{REGION_DEPTH, REGIONS};
 use crate::message::{At, Parsed, Problem};
 
 /// A function or region that is not closed yet.
@@ -35,6 +35,11 @@ impl Assembler<'_> {
     pub(crate) fn open_region(&mut self, is_function: bool, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let header = cursor.name("a name").and_then(|found| cursor.end().map(|_| found));
         let (name, name_at) = *header.as_ref().unwrap_or(&("?", at));
+        if self.regions.len() >= REGION_DEPTH {
+            let message = format!("more than {REGION_DEPTH} functions and regions inside each other");
+            self.give_up(Problem::new(explain::DEPTH, message, at, "one too many"));
+            return Ok(());
+        }
         let parent = self.regions.last().map(|open| open.index);
         let key = (String::from(name), is_function, parent);
         let index = match self.known_regions.get(&key) {

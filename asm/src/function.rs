@@ -1,0 +1,84 @@
+//! The functions of expressions, as data for readers and manuals, and their arithmetic.
+
+use crate::explain;
+use crate::operator::{Checked, OVERFLOW};
+
+/// A function of one or two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Function {
+    Min,
+    Max,
+    Abs,
+    Bits,
+    Low,
+    High,
+}
+
+/// What a function takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Argument {
+    /// So many numbers.
+    Numbers(Function, usize),
+    /// A structure or a field.
+    Size,
+    /// A field.
+    Field,
+    /// Any name.
+    Defined,
+}
+
+/// A function.
+#[derive(Clone, Copy, Debug)]
+pub struct Described {
+    /// Its name, which nothing else may have.
+    pub name: &'static str,
+    /// How it is written.
+    pub usage: &'static str,
+    /// Its value, in a sentence.
+    pub doc: &'static str,
+    pub(crate) argument: Argument,
+}
+
+macro_rules! functions {
+    ($($name:literal $usage:literal $argument:expr, $doc:literal;)*) => {
+        /// All functions.
+        pub const FUNCTIONS: &[Described] =
+            &[$(Described { name: $name, usage: $usage, doc: $doc, argument: $argument }),*];
+    };
+}
+
+functions! {
+    "sizeof" "sizeof(structure)" Argument::Size, "Octets of a structure, or of a field and all its elements.";
+    "offsetof" "offsetof(structure.field)" Argument::Field, "Octets before a field: the same as `structure.field`.";
+    "defined" "defined(name)" Argument::Defined, "1 when the name is defined above, else 0.";
+    "min" "min(a, b)" Argument::Numbers(Function::Min, 2), "The smaller number.";
+    "max" "max(a, b)" Argument::Numbers(Function::Max, 2), "The larger number.";
+    "abs" "abs(a)" Argument::Numbers(Function::Abs, 1), "The absolute value.";
+    "bits" "bits(a)" Argument::Numbers(Function::Bits, 1), "The number of bits that `a` needs, which is not negative; 0 for 0.";
+    "low" "low(a)" Argument::Numbers(Function::Low, 1), "The low 16 bits of a number of 32 bits, with their sign: what `movi` takes.";
+    "high" "high(a)" Argument::Numbers(Function::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
+}
+
+/// Whether the text is a function's name.
+pub(crate) fn is_function(text: &str) -> bool {
+    FUNCTIONS.iter().any(|function| function.name == text)
+}
+
+impl Function {
+    /// Its value; `b` is 0 where it takes one number.
+    pub fn apply(self, a: i64, b: i64) -> Checked {
+        let word = |half: i64| {
+            let fits = (-(1 << 31)..1 << 32).contains(&a);
+            if fits { Ok(half) } else { Err((explain::RANGE, "the number does not fit 32 bits")) }
+        };
+        match self {
+            Function::Min => Ok(a.min(b)),
+            Function::Max => Ok(a.max(b)),
+            Function::Abs => a.checked_abs().ok_or(OVERFLOW),
+            Function::Bits if a < 0 => Err((explain::RANGE, "`bits` takes a number that is not negative")),
+            Function::Bits => Ok(i64::from(64 - a.leading_zeros())),
+            Function::Low => word(i64::from(a as i16)),
+            Function::High => word(a >> 16 & 0xffff),
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Files that are read in the middle of others.
+
+use crate::assembler::Assembler;
+use crate::explain;
+use crate::frame::{Frame, Origin, file_lines};
+use crate::limits::{SOURCES, TEXT_OCTETS};
+use crate::message::{At, Parsed, Problem};
+
+impl Assembler<'_> {
+    /// Reads another file here.
+    pub(crate) fn include_file(&mut self, name: &str, at: At) -> Parsed<()> {
+        let refuse = |assembler: &mut Self, code, message: String, label: String| {
+            assembler.is_incomplete = true;
+            Err(Problem::new(code, message, at, label))
+        };
+        let from = at.source;
+        let known = self.included.get(&(name.to_string(), from)).copied();
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let source = match (self.options.include)(name, &self.program.sources[from as usize].name) {
+                    Ok(source) => source,
+                    Err(why) => return refuse(self, explain::INCLUDE, format!("cannot include `{name}`"), why),
+                };
+                let same = self.program.sources.iter().position(|other| other.name == source.name);
+                let index = same.unwrap_or(self.program.sources.len());
+                if index > SOURCES {
+                    let message = format!("the program has more than {SOURCES} files");
+                    return refuse(self, explain::SIZE, message, "one too many".into());
+                }
+                if source.text.len() > TEXT_OCTETS {
+                    let message = format!("`{name}` is longer than {TEXT_OCTETS} octets");
+                    return refuse(self, explain::SIZE, message, "included here".into());
+                }
+                if same.is_none() {
+                    self.program.sources.push(source);
+                }
+                self.included.insert((name.to_string(), from), index as u16);
+                index as u16
+            }
+        };
+        if self.frames.iter().any(|frame| frame.origin == Origin::File(index)) {
+            let message = format!("`{name}` includes itself");
+            return refuse(self, explain::DEPTH, message, "it is being read already".into());
+        }
+        let text = self.program.sources[index as usize].clone();
+        self.enter(Frame::new(file_lines(&text.text, index), Origin::File(index)), at);
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! One line: its labels, and the statement behind them.
+
+use std::sync::Arc;
+
+use crate::assembler::{Assembler, Section};
+use crate::cursor::Cursor;
+use crate::explain;
+use crate::frame::{Origin, leading_directive};
+use crate::line::Line;
+use crate::listing::Record;
+use crate::message::{At, Parsed, Problem};
+use crate::symbol::Meaning;
+use crate::token::{Kind, tokens};
+
+impl Assembler<'_> {
+    /// Assembles a line.
+    pub(crate) fn line(&mut self, line: &Line) {
+        let place = self.records.len();
+        self.record(line);
+        self.named = None;
+        self.read_line(line);
+        // The record has the section behind the line, so that a line which changes it shows no address.
+        let (section, end) = (self.section, self.location() as u32);
+        let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.meaning.clone()));
+        let record = &mut self.records[place];
+        if record.section == section {
+            record.made.end = end;
+        }
+        match (value, self.named) {
+            (Some(Some(Meaning::Constant(value) | Meaning::Variable(value, _))), _) => record.value = Some(value),
+            (Some(Some(Meaning::Pending(_))), Some(name)) => self.pending_records.push((place, name)),
+            _ => {}
+        }
+    }
+
+    /// Notes a line for the listing, without anything made.
+    pub(crate) fn record(&mut self, line: &Line) {
+        let here = self.location() as u32;
+        let depth = self.frames.iter().filter(|frame| !matches!(frame.origin, Origin::File(_))).count();
+        self.records.push(Record {
+            source: line.source,
+            line: line.number,
+            depth: depth.min(255) as u8,
+            section: self.section,
+            made: here..here,
+            value: None,
+            text: line.is_substituted().then(|| Arc::from(&*line.text)),
+        });
+    }
+
+    fn read_line(&mut self, line: &Line) {
+        if self.is_skipping() {
+            let word = leading_directive(&line.text);
+            let matters = word.is_some_and(|word| word.starts_with(".if") || word.starts_with(".e"));
+            if !matters {
+                return;
+            }
+        }
+        let (tokens, unreadable) = tokens(&line.text);
+        let mut cursor = Cursor { line, tokens: &tokens, position: 0 };
+        if let Some(unreadable) = &unreadable
+            && !self.is_skipping()
+        {
+            let at = line.at(unreadable.start, unreadable.end);
+            self.messages.add(Problem::new(unreadable.code, &*unreadable.message, at, unreadable.label));
+            self.messages.is_muted = true;
+        }
+        let result = self.statement(&mut cursor);
+        if let Err(problem) = result {
+            self.messages.add(problem);
+        }
+        self.messages.is_muted = false;
+    }
+
+    fn statement(&mut self, cursor: &mut Cursor) -> Parsed<()> {
+        let is_skipping = self.is_skipping();
+        while let (Some(first), Some(second)) = (cursor.peek(), cursor.peek_second()) {
+            let is_name = matches!(first.kind, Kind::Name | Kind::Directive | Kind::Integer);
+            if !is_name || second.kind != Kind::Mark(":") {
+                break;
+            }
+            cursor.skip();
+            cursor.skip();
+            if !is_skipping {
+                self.label(first.kind, cursor.text(first), cursor.at(first));
+            }
+        }
+        let Some(first) = cursor.peek() else { return Ok(()) };
+        let (text, at) = (cursor.text(first), cursor.at(first));
+        if is_skipping {
+            let steers =
+                matches!(text, ".if" | ".ifdef" | ".ifndef" | ".ifb" | ".ifnb" | ".elseif" | ".else" | ".endif");
+            if !steers {
+                return Ok(());
+            }
+        }
+        match first.kind {
+            Kind::Directive => {
+                cursor.skip();
+                self.directive(text, at, cursor)
+            }
+            Kind::Name if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("=")) => {
+                self.assign("=", cursor)
+            }
+            Kind::Name if !self.macros.contains_key(text) && !self.takes_instructions() => {
+                Err(self.no_instruction_here(text, at))
+            }
+            Kind::Name => {
+                cursor.skip();
+                self.instruction(text, at, cursor);
+                Ok(())
+            }
+            _ => Err(cursor.expected("an instruction, a directive or a label")),
+        }
+    }
+
+    fn label(&mut self, kind: Kind, text: &str, at: At) {
+        if let Some(open) = &self.structure {
+            let message = format!("the label `{text}` stands in a structure");
+            self.messages.add(
+                Problem::new(explain::SECTION, message, at, "no place for a label").also(Some(open.at), "opened here"),
+            );
+        } else if kind == Kind::Integer && !text.bytes().all(|c| c.is_ascii_digit()) {
+            let message = format!("`{text}` cannot be a label");
+            self.messages.add(Problem::new(explain::SYNTAX, message, at, "a name, or a decimal number"));
+        } else {
+            self.define_label(text, at);
+        }
+    }
+
+    fn takes_instructions(&self) -> bool {
+        self.section == Section::Code && self.structure.is_none()
+    }
+
+    fn no_instruction_here(&mut self, text: &str, at: At) -> Box<Problem> {
+        if let Some(open) = &self.structure {
+            let message = format!("`{text}` does not stand in a structure");
+            return Problem::new(explain::SECTION, message, at, "in a structure")
+                .also(Some(open.at), "opened here")
+                .hint("`.endstruct` ends the structure");
+        }
+        let is_known = self.operations.contains_key(text) || crate::pseudo::find(text).is_some();
+        if is_known {
+            let message = format!("the instruction `{text}` stands in the buffer");
+            return Problem::new(explain::SECTION, message, at, "the section is the buffer here")
+                .hint("write `.text` before code");
+        }
+        self.unknown_instruction(text, at, false)
+    }
+}

@@ -1,0 +1,85 @@
+//! Hostile sources: one clear error each, soon, whatever they ask for.
+
+use std::sync::Arc;
+
+use asm::{Options, assemble, limits};
+use isa::Isa;
+use isa::diagnostic::{Report, Source};
+
+fn report(text: &str) -> Report {
+    let include = |name: &str, _: &str| -> Result<Arc<Source>, String> {
+        // Every file includes two others, without end and without coming back.
+        Ok(Source::new(format!("{name}x"), format!(".include \"{name}l\"\n.include \"{name}r\"\n")))
+    };
+    let options = Options { include: &include, ..Options::default() };
+    match assemble(&Source::new("t.s", text), &Isa::base(), &options) {
+        Ok(_) => Report::default(),
+        Err(report) => report,
+    }
+}
+
+fn codes(text: &str) -> Vec<&'static str> {
+    report(text).0.iter().map(|message| message.code.unwrap_or("")).collect()
+}
+
+#[test]
+fn what_is_too_deep_is_one_error() {
+    let many = 100_000;
+    assert_eq!(codes(&format!(".equ a, {}1{}", "(".repeat(many), ")".repeat(many))), ["E032"]);
+    assert_eq!(codes(&format!(".equ a, {}1{}", "abs(".repeat(many), ")".repeat(many))), ["E032"]);
+    assert_eq!(codes(&".if 1\n".repeat(many)), ["E022"]);
+    assert_eq!(codes(&".region a\n".repeat(many)), ["E021"]);
+    assert_eq!(codes(&".macro m\n".repeat(many)), ["E022"]);
+    assert_eq!(codes(".macro m\nm\n.endm\nm"), ["E021"]);
+    assert_eq!(codes(".include \"a\""), ["E021"]);
+    assert_eq!(codes(&format!("{}nop\n{}", ".rept 1\n".repeat(70), ".endr\n".repeat(70))), ["E021"]);
+}
+
+#[test]
+fn what_is_long_but_possible_is_assembled() {
+    let many = 100_000;
+    assert_eq!(codes(&format!(".equ a, {}1", "-".repeat(many))), [""; 0]);
+    assert_eq!(codes(&format!(".equ a, {}1", "1 + ".repeat(many))), [""; 0]);
+    let chain: String = (0..many).map(|n| format!(".equ a{n}, a{}\n", n + 1)).collect();
+    assert_eq!(codes(&format!("{chain}.equ a{many}, 1\nmovi s1, a0")), [""; 0]);
+    assert_eq!(codes(&format!("{chain}.equ a{many}, a0")), ["E017"]);
+    assert_eq!(codes(&format!(".rept {}\nnop\n.endr", limits::LINES - 3)), [""; 0]);
+    assert_eq!(codes(".text\n.org 1 << 20\n.buffer\n.space 16 << 20"), [""; 0]);
+}
+
+#[test]
+fn what_is_too_large_is_one_error() {
+    for text in [
+        ".rept 1000000000\nnop\n.endr",
+        ".rept 1000\n.rept 1000\n.rept 1000\nnop\n.endr\n.endr\n.endr",
+        ".macro m n\nm \\n\\n\n.endm\nm x",
+        ".macro m n\n.if \\n\nm \\n - 1\nm \\n - 1\n.endif\n.endm\nm 60",
+        ".org 1 << 20\nnop",
+        ".org 1 << 62",
+        ".align 1 << 24\nnop\n.align 1 << 24",
+        &"nop\n".repeat(limits::LINES + 1),
+        &format!("; {}", "long ".repeat(limits::LINE_OCTETS / 5)),
+    ] {
+        let found = codes(text);
+        assert!(matches!(found[..], ["E025"] | ["E021"]), "{found:?} from {}", &text[..text.len().min(60)]);
+    }
+    for text in [".space 1 << 40", ".org 1 << 40", ".space 16 << 20\n.byte 1", ".space 1\n.space 9223372036854775807"] {
+        assert_eq!(codes(&format!(".buffer\n{text}")), ["E026"], "{text}");
+    }
+}
+
+#[test]
+fn many_errors_are_cut_and_counted() {
+    let found = report(&"frobnicate s1\n".repeat(250));
+    assert_eq!(found.0.len(), limits::MESSAGES + 1);
+    assert_eq!(found.0.last().unwrap().message, "... and 150 more");
+    let places: Vec<usize> =
+        found.0.iter().filter_map(|m| m.place.as_ref().map(|(place, _)| place.span.start)).collect();
+    assert!(places.is_sorted());
+    assert_eq!(report(&"frobnicate s1\n".repeat(5_000)).0.last().unwrap().message, "... and 4900 more");
+}
+
+#[test]
+fn the_same_error_of_a_macro_is_said_once() {
+    assert_eq!(codes(".macro m\nmovi s1, 99999\n.endm\n.rept 50\nm\n.endr"), ["E008"]);
+}

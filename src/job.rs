@@ -11,7 +11,7 @@ use scenes::layout::Layout;
 use scenes::model::{Camera, Scene, View};
 
 use crate::arguments::{
-    CameraKind, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments,
+    CameraKind, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments, overrides,
 };
 use crate::failure::Failure;
 use crate::{files, input, machine};
@@ -98,7 +98,7 @@ impl Job {
             word: job.machine.arithmetic.word,
             layout: arguments.machine.layout.unwrap_or(Layout::Wide),
             kd_depth: arguments.effort.kd_depth,
-            formats: arguments.numbers.overrides(),
+            formats: overrides::collect(&arguments.numbers.formats),
         };
         job.kernels.profile = arguments.kernels.profile;
         job.kernels.weight_cutoff = arguments.effort.weight_cutoff;

@@ -1,6 +1,7 @@
 //! lancer's command line as a library: from scene files through the emulated coprocessor to pictures, counts and
 //! tables. What a command prints is decided here; what it computes, in the crates below.
 
+pub mod annex;
 pub mod arguments;
 pub mod command;
 pub mod drawing;
@@ -11,6 +12,7 @@ pub mod job;
 pub mod listing;
 pub mod machine;
 pub mod result;
+pub mod scene_facts;
 pub mod summary;
 pub mod table;
 pub mod terminal;

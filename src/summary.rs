@@ -39,26 +39,26 @@ pub fn rays(result: &Render) -> String {
     )
 }
 
-/// Calls, inclusive operations and the classes of exclusive ones, function by function: first those of the cores, then
+/// Calls, inclusive operations and the classes of own ones, function by function: first those of the cores, then
 /// those of the main processor.
 pub fn functions(result: &Render) -> String {
-    let lists = [(&result.functions[..], ""), (&result.regions, "  "), (&result.main.functions, "main: ")];
-    function_table(&lists)
+    let cores = function_table(&[(&result.functions, ""), (&result.regions, "  ")]);
+    let main = function_table(&[(&result.main.functions, "")]);
+    format!(
+        "Operations by function: inclusive and own ones (add, sub, mul, div and cmp), own ones by class\n{cores}\nMain processor\n{main}"
+    )
 }
 
 /// Lists of functions, each under a prefix, those with the most inclusive operations first.
 pub fn function_table(lists: &[(&[Region], &str)]) -> String {
-    let head = ["function", "calls", "inclusive", "exclusive"].into_iter().map(str::to_owned);
+    let head = ["function", "calls", "incl.", "own"].into_iter().map(str::to_owned);
     let mut rows: Vec<Vec<String>> = vec![head.chain(COLUMNS.iter().map(|class| class.name().to_owned())).collect()];
     for (regions, prefix) in lists {
         let mut regions: Vec<&Region> = regions.iter().filter(|region| region.calls != 0).collect();
         regions.sort_by_key(|region| std::cmp::Reverse(region.inclusive.0.elementary()));
         rows.extend(regions.into_iter().map(|region| function(region, prefix)));
     }
-    format!(
-        "Operations by function (inclusive, exclusive: add to cmp together; right of them exclusive)\n{}",
-        table(rows)
-    )
+    table(rows)
 }
 
 fn function(region: &Region, prefix: &str) -> Vec<String> {
@@ -75,7 +75,7 @@ pub fn classes(result: &Render) -> String {
     let mut rows = vec![row(["class", "cores", "a pixel", "main", "what"])];
     let a_pixel = |count: u64| format!("{:.1}", count as f64 / pixels.max(1) as f64);
     for (class, count) in counts.iter() {
-        let first = class.doc().trim().split(['.', ';']).next().unwrap_or_default().to_lowercase();
+        let first = class.doc().trim().split(['.', ';', ':', '(']).next().unwrap_or_default().trim().to_lowercase();
         rows.push(vec![class.name().into(), grouped(count), a_pixel(count), grouped(main[class]), first]);
     }
     let (all, all_main) = (counts.elementary(), main.elementary());
@@ -175,4 +175,13 @@ pub fn pixel(drawing: &Drawing) -> String {
         text += &format!("double precision: {}\n", shown(*reference));
     }
     text
+}
+
+/// How the operations spread over the pixels, which is the scale of a heat map.
+pub fn heat_scale(operations: &[u64]) -> String {
+    let mut sorted = operations.to_vec();
+    sorted.sort_unstable();
+    let last = sorted.len().saturating_sub(1);
+    let at = |place: usize| grouped(sorted.get(place).copied().unwrap_or(0));
+    format!("dark 0 to bright {}; least {}, median {}", at(last), at(0), at(last / 2))
 }

@@ -5,6 +5,7 @@ mod effort;
 mod kernel;
 mod machine;
 mod numbers;
+pub mod overrides;
 mod value;
 mod view;
 

@@ -3,7 +3,8 @@
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use isa::number::{Overflow, Quantization};
-use scenes::cadrage::Overrides;
+
+use super::overrides;
 
 /// Options of the arithmetic.
 #[derive(Args, Clone, Debug)]
@@ -19,7 +20,7 @@ pub struct NumberArguments {
     #[arg(long, value_name = "MODE", ignore_case = true, value_parser = overflow())]
     pub overflow: Option<Overflow>,
     /// Fraction bits of a quantity: pos, dir, bary, t, weight or colour; may be repeated [default: chosen for the scene].
-    #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = format)]
+    #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
     pub formats: Vec<String>,
 }
 
@@ -31,20 +32,4 @@ fn rounding() -> impl TypedValueParser<Value = Quantization> {
 fn overflow() -> impl TypedValueParser<Value = Overflow> {
     let names = PossibleValuesParser::new(Overflow::ALL.iter().map(|mode| mode.name()));
     names.map(|name| Overflow::from_name(&name).expect("the parser lets only names pass"))
-}
-
-/// Lets a setting pass that [`Overrides::set`] takes.
-fn format(text: &str) -> Result<String, String> {
-    Overrides::default().set(text).map(|()| text.to_owned()).map_err(|report| super::kernel::plain(&report.0[0]))
-}
-
-impl NumberArguments {
-    /// The fraction bits that the user sets.
-    pub fn overrides(&self) -> Overrides {
-        let mut overrides = Overrides::default();
-        for setting in &self.formats {
-            overrides.set(setting).expect("the parser has tried it");
-        }
-        overrides
-    }
 }

@@ -2,21 +2,34 @@
 
 mod assemble;
 mod completions;
+mod demo;
 mod disassemble;
 mod machine;
 mod render;
 mod run;
 mod run_arguments;
 mod run_result;
+mod scene;
 
 use clap::{Parser, Subcommand};
 
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 
+const EXAMPLES: &str = "\
+Examples:
+  lancer                                  the demo: a picture, maps, counts, clocks and errors
+  lancer render cornell --size 160x120    a generated scene, or a .dsc or .off file
+  lancer run first.s --reg s1=5           a program of your own on one core
+
+Exit codes: 0 done, 1 errors in the input, 2 usage, 3 trap in the guest, 4 a comparison out of
+tolerance, 5 step limit. Results go to standard output, messages to standard error.";
+
 /// Emulator of a fixed-point ray-tracing coprocessor: kernels in assembly, several cores, one shared bus.
+///
+/// Without a command, lancer runs the demo: it draws the Cornell box and writes pictures below out/.
 #[derive(Parser, Debug)]
-#[command(name = "lancer", version, max_term_width = 100)]
+#[command(name = "lancer", version, max_term_width = 100, after_help = EXAMPLES)]
 pub struct Lancer {
     #[command(subcommand)]
     command: Option<Command>,
@@ -28,6 +41,7 @@ enum Command {
     Run(run::RunArguments),
     Assemble(assemble::AssembleArguments),
     Disassemble(disassemble::DisassembleArguments),
+    Scene(scene::SceneArguments),
     Machine(machine::MachineArguments),
     Completions(completions::CompletionsArguments),
 }
@@ -38,11 +52,12 @@ enum Command {
 /// Whatever keeps the command from doing its work.
 pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Failure> {
     match &arguments.command {
-        None => Ok(Exit::Done),
+        None => demo::execute(terminal),
         Some(Command::Render(arguments)) => render::execute(arguments, terminal),
         Some(Command::Run(arguments)) => run::execute(arguments, terminal),
         Some(Command::Assemble(arguments)) => assemble::execute(arguments, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
+        Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Completions(arguments)) => completions::execute(arguments, terminal),
     }

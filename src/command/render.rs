@@ -12,7 +12,6 @@ use crate::files::{self, map};
 use crate::job::{Job, JobArguments, result_name};
 use crate::result::{Host, Render};
 use crate::summary;
-use crate::table::grouped;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -131,7 +130,10 @@ fn text(result: &Render, job: &Job, drawing: &Drawing) -> String {
     if drawing.words.len() == 1 {
         parts.push(summary::pixel(drawing));
     }
-    parts.push(heat(&drawing.operations()) + &summary::hashes(result));
+    parts.push(
+        format!("elementary operations a pixel: {}\n", summary::heat_scale(&drawing.operations()))
+            + &summary::hashes(result),
+    );
     if let Some(host) = &result.host {
         parts.push(format!(
             "host: load {:.2} s, build {:.2} s, run {:.2} s, reference {:.2} s (beside the run)\n",
@@ -139,17 +141,4 @@ fn text(result: &Render, job: &Job, drawing: &Drawing) -> String {
         ));
     }
     parts.join("\n")
-}
-
-/// One line on how the operations spread over the pixels: the scale of the heat map.
-pub(super) fn heat(operations: &[u64]) -> String {
-    let mut sorted = operations.to_vec();
-    sorted.sort_unstable();
-    let at = |share: f64| sorted.get(((sorted.len().max(1) - 1) as f64 * share) as usize).copied().unwrap_or(0);
-    format!(
-        "elementary operations a pixel: least {}, median {}, largest {}\n",
-        grouped(at(0.0)),
-        grouped(at(0.5)),
-        grouped(at(1.0))
-    )
 }

@@ -1,0 +1,73 @@
+//! `lancer` alone: the demo. It draws the Cornell box on the report's machine and shows everything that comes of it.
+
+use std::fs;
+use std::path::Path;
+
+use isa::diagnostic::Diagnostic;
+use scenes::generate;
+
+use super::render::{draw, write_maps};
+use crate::drawing::Comparison;
+use crate::failure::{Exit, Failure};
+use crate::files::map::LEAST_ERROR;
+use crate::files::picture::Format;
+use crate::job::Job;
+use crate::result::Render;
+use crate::terminal::Terminal;
+use crate::{annex, files, summary};
+
+/// Folder for the demo's pictures.
+const FOLDER: &str = "out";
+
+const NEXT: &str = "\
+Try next:
+  lancer render sphereflake --shift 0.137,0.071      another scene (lancer scene generate --help lists them)
+  lancer render cornell --camera perspective --bounces 2
+  lancer render cornell --pixel 160,120              one pixel: its colour and what it took
+  lancer render cornell --json --cores 8             all figures, on a machine with more cores
+  lancer scene info terrain                          tree, memory and precision of a scene
+  lancer machine                                     the machine, as a file to change
+  lancer --help
+";
+
+/// Measures, draws, writes and prints.
+pub(super) fn execute(terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let folder = Path::new(FOLDER);
+    fs::create_dir_all(folder).map_err(|error| {
+        let message = Diagnostic::error(format!("the folder {FOLDER} for the demo's pictures cannot be made: {error}"));
+        message.hint("the demo writes below the current folder; start it where it may")
+    })?;
+    let measured = annex::measure()?;
+    terminal.print(&annex::text(&measured))?;
+    let mut job = Job::new(generate::scene("cornell", &generate::Options::default())?);
+    // Parallel rays through pixel centres would run along edges of the axis-aligned room.
+    job.view.shift = [0.137, 0.071];
+    let drawing = draw(&job, Comparison::Reference, terminal)?;
+    let result = Render::new(&job, &drawing);
+    let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));
+    files::write(&paths[0], &Format::Png.encode(&drawing.picture))?;
+    write_maps(&drawing, Some(&paths[1]), Some(&paths[2]))?;
+    let [picture, heat, error] = paths.map(|path| path.display().to_string());
+    let pictures = format!(
+        "{picture:<22}  the picture\n\
+         {heat:<22}  elementary operations of each pixel: {}\n\
+         {error:<22}  difference from double precision: dark {LEAST_ERROR:e} to bright 1, logarithmic; black: none\n",
+        summary::heat_scale(&drawing.operations()),
+    );
+    let parts = [
+        String::new(),
+        summary::title(&result) + &summary::rays(&result),
+        summary::functions(&result),
+        summary::classes(&result),
+        summary::processors(&result, job.machine.clock_hz),
+        result.error.as_ref().map(summary::error).unwrap_or_default(),
+        pictures,
+        summary::hashes(&result),
+        NEXT.to_owned(),
+    ];
+    terminal.print(&parts.join("\n"))?;
+    match measured.iter().all(annex::Measurement::is_met) {
+        true => Ok(Exit::Done),
+        false => Ok(Exit::Tolerance),
+    }
+}

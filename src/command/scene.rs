@@ -1,0 +1,30 @@
+//! `lancer scene`: scenes as files and as figures.
+
+mod generate;
+mod info;
+
+use clap::{Args, Subcommand};
+
+use crate::failure::{Exit, Failure};
+use crate::terminal::Terminal;
+
+/// Generates scenes and says what is in them.
+#[derive(Args, Debug)]
+pub struct SceneArguments {
+    #[command(subcommand)]
+    command: SceneCommand,
+}
+
+#[derive(Subcommand, Debug)]
+enum SceneCommand {
+    Generate(generate::GenerateArguments),
+    Info(Box<info::InfoArguments>),
+}
+
+/// Executes one of the commands.
+pub(super) fn execute(arguments: &SceneArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    match &arguments.command {
+        SceneCommand::Generate(arguments) => generate::execute(arguments, terminal),
+        SceneCommand::Info(arguments) => info::execute(arguments, terminal),
+    }
+}

@@ -1,0 +1,91 @@
+//! `lancer scene generate`: a scene made by the program, as files.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use isa::diagnostic::Diagnostic;
+use scenes::generate::{self, Options, SCENES};
+use scenes::write;
+
+use crate::arguments::{self, Size};
+use crate::failure::{Exit, Failure};
+use crate::files;
+use crate::table::count;
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer scene generate cornell
+  lancer scene generate terrain --triangles 5000 -o scenes
+  lancer scene generate sphereflake --level 3 --size 640x480";
+
+/// Writes a scene as NAME.dsc and NAME.off, the same octets on every run.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct GenerateArguments {
+    /// Scene.
+    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(names()))]
+    name: String,
+    /// Folder for the files [default: the current one].
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Fineness, for scenes that have one: what it counts and its range depend on the scene.
+    #[arg(long, value_name = "N", long_help = level_help())]
+    level: Option<u32>,
+    /// Number of triangles, for scenes that can be cut to any.
+    #[arg(long, value_name = "N", long_help = triangles_help())]
+    triangles: Option<u32>,
+    /// Size of the picture in the .dsc, in pixels.
+    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "320x240")]
+    size: Size,
+}
+
+fn names() -> impl Iterator<Item = PossibleValue> {
+    SCENES.iter().map(|scene| PossibleValue::new(scene.name).help(scene.description))
+}
+
+fn level_help() -> String {
+    let known = SCENES.iter().filter_map(|scene| Some((scene.name, scene.level.as_ref()?)));
+    settings("Fineness, for scenes that have one:", known)
+}
+
+fn triangles_help() -> String {
+    let known = SCENES.iter().filter_map(|scene| Some((scene.name, scene.triangles.as_ref()?)));
+    settings("Number of triangles, for scenes that can be cut to any:", known)
+}
+
+fn settings(title: &str, known: impl Iterator<Item = (&'static str, &'static generate::Setting)>) -> String {
+    let line = |(name, setting): (&str, &generate::Setting)| {
+        let (least, most) = (setting.range.start(), setting.range.end());
+        format!("\n{name}: {}, {least} to {most} [default: {}]", setting.meaning, setting.default)
+    };
+    title.to_owned() + &known.map(line).collect::<String>()
+}
+
+/// Generates and writes.
+pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let options = Options { level: arguments.level, triangles: arguments.triangles, size: arguments.size };
+    let folder = arguments.output.clone().unwrap_or_default();
+    let paths = ["dsc", "off"].map(|extension| folder.join(format!("{}.{extension}", arguments.name)));
+    for path in &paths {
+        files::check_target(path)?;
+    }
+    let scene = generate::scene(&arguments.name, &options)?;
+    let (mut description, mut mesh) = (Vec::new(), Vec::new());
+    let written = write::dsc(&scene, &mut description).and_then(|()| write::off(&scene, &mut mesh));
+    written.map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
+    let [description_path, mesh_path] = &paths;
+    // The mesh first: a .dsc without its mesh would be no scene.
+    files::write(mesh_path, &mesh)?;
+    files::write(description_path, &description)?;
+    terminal.print(&format!(
+        "{} and {}: {}, {}, {}\n",
+        description_path.display(),
+        mesh_path.display(),
+        count(scene.triangles.len() as u64, "triangle", "triangles"),
+        count(scene.materials.len() as u64, "material", "materials"),
+        count(scene.lights.len() as u64, "light", "lights"),
+    ))?;
+    Ok(Exit::Done)
+}

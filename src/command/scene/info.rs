@@ -1,0 +1,151 @@
+//! `lancer scene info`: what a scene holds and what it will cost.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use scenes::image::Options;
+use scenes::layout::Layout;
+
+use crate::arguments::overrides;
+use crate::failure::{Exit, Failure};
+use crate::scene_facts::SceneFacts;
+use crate::table::{count, grouped, row, table};
+use crate::terminal::Terminal;
+use crate::{input, result};
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer scene info cornell
+  lancer scene info house.dsc --layout report
+  lancer scene info bunny.off --word 16 --json";
+
+/// Most materials that are listed one by one.
+const MOST_LISTED: usize = 24;
+
+/// Says what a scene holds: parts, kd tree, octets in memory, and what the grid costs in precision.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct InfoArguments {
+    /// Scene: a .dsc with its mesh beside it, a mesh, or the name of a generated scene such as cornell.
+    scene: String,
+    /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Structures of global memory.
+    #[arg(long, value_name = "NAME", value_parser = layout(), default_value = Layout::Wide.name())]
+    layout: Layout,
+    /// Levels of the kd tree below its root, 0 to 40.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=40), default_value = "16")]
+    kd_depth: u32,
+    /// Bits of a word, 8 to 32.
+    #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32), default_value = "32")]
+    word: u32,
+    /// Fraction bits of a quantity: pos, dir, bary, t, weight or colour; may be repeated [default: chosen for the scene].
+    #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
+    formats: Vec<String>,
+    /// Prints the facts as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+fn layout() -> impl TypedValueParser<Value = Layout> {
+    let names = PossibleValuesParser::new(Layout::ALL.iter().map(|layout| layout.name()));
+    names.map(|name| name.parse().expect("the parser lets only names pass"))
+}
+
+/// Reads the scene and prints its facts.
+pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
+    terminal.show(&loaded.warnings);
+    let options = Options {
+        word: arguments.word,
+        layout: arguments.layout,
+        kd_depth: arguments.kd_depth,
+        formats: overrides::collect(&arguments.formats),
+    };
+    let facts = SceneFacts::new(&loaded.scene, &options)?;
+    terminal.print(&if arguments.json { result::json(&facts) } else { text(&facts) })?;
+    Ok(Exit::Done)
+}
+
+fn text(facts: &SceneFacts) -> String {
+    let mut text = format!(
+        "{}: {}, {}, {}, {}; {} x {} pixels\n",
+        facts.scene,
+        count(facts.triangles as u64, "triangle", "triangles"),
+        count(facts.vertices as u64, "vertex", "vertices"),
+        count(facts.materials.len() as u64, "material", "materials"),
+        count(facts.lights as u64, "light", "lights"),
+        facts.width,
+        facts.height,
+    );
+    if facts.unused_vertices != 0 {
+        text += &format!("{} in no triangle\n", count(facts.unused_vertices as u64, "vertex is", "vertices are"));
+    }
+    text += &match facts.bounds {
+        Some([low, high]) => format!("box {} to {}\n", point(low), point(high)),
+        None => "no box: there is no triangle\n".to_owned(),
+    };
+    let mirror = if facts.has_mirror { "mirrors" } else { "no mirror" };
+    text += &format!("{mirror}, {}\n\n", if facts.has_glass { "glass" } else { "no glass" });
+    text += &materials(facts);
+    text += &memory(facts);
+    let tree = &facts.tree;
+    text += &format!(
+        "\nkd tree: {} on {}, {} ({} empty), {} ({:.1} a leaf, at most {})\n",
+        count(tree.nodes as u64, "node", "nodes"),
+        count(u64::from(tree.depth) + 1, "level", "levels"),
+        count(tree.leaves as u64, "leaf", "leaves"),
+        grouped(tree.empty_leaves as u64),
+        count(tree.references as u64, "reference", "references"),
+        tree.mean_triangles,
+        grouped(tree.most_triangles as u64),
+    );
+    let formats: Vec<String> = facts.formats.0.iter().skip(1).map(|(name, bits)| format!("{name} {bits}")).collect();
+    text += &format!("formats: word {}, fraction bits {}\n", facts.formats.0[0].1, formats.join(", "));
+    let precision = &facts.precision;
+    text + &format!(
+        "grid: steps of 2^{} = {:.3e}, the box's longest side is {} steps;\n\
+         corners move by up to {:.3e} (rms {:.3e})\n\
+         {} without area, and {} that lose it on the grid\n",
+        precision.step.log2(),
+        precision.step,
+        grouped(precision.steps),
+        precision.largest_move,
+        precision.rms_move,
+        count(precision.degenerate as u64, "triangle", "triangles"),
+        count(precision.collapsed as u64, "triangle", "triangles"),
+    )
+}
+
+fn point(point: [f64; 3]) -> String {
+    let [x, y, z] = point.map(|x| format!("{}", (x * 1e6).round() / 1e6 + 0.0));
+    format!("({x}, {y}, {z})")
+}
+
+fn materials(facts: &SceneFacts) -> String {
+    if facts.materials.is_empty() {
+        return String::new();
+    }
+    let mut rows = vec![row(["material", "colour", "ks", "kd", "kt", "index", "triangles"])];
+    rows.extend(facts.materials.iter().take(MOST_LISTED).enumerate().map(|(number, material)| {
+        let colour = material.colour.map(|component| format!("{component:.2}")).join(" ");
+        let numbers = [material.reflection, material.intensity, material.transmission, material.index];
+        let mut cells = vec![number.to_string(), colour];
+        cells.extend(numbers.map(|number| format!("{number:.2}")));
+        cells.push(grouped(material.triangles as u64));
+        cells
+    }));
+    let more = facts.materials.len().saturating_sub(MOST_LISTED);
+    let rest = if more == 0 { String::new() } else { format!("and {} more\n", grouped(more as u64)) };
+    table(rows) + &rest + "\n"
+}
+
+fn memory(facts: &SceneFacts) -> String {
+    let memory = &facts.memory;
+    let mut rows = vec![row(["memory", "octets"])];
+    rows.extend(memory.octets.0.iter().map(|(name, octets)| vec![name.clone(), grouped(*octets)]));
+    rows.push(vec![format!("all ({})", memory.layout), grouped(memory.total as u64)]);
+    table(rows)
+}

@@ -66,11 +66,12 @@ registers come from `.reg`.
 largest number that fit.
 
     movi s1, 40000          ; 16 bits with the sign: -32768 to 32767; `li` takes any 32 bits
+    .buffer
     .byte 256               ; -128 to 255";
     REACH "E009" "target out of reach"
 "A branch holds the distance to its target in a field of its word. The message names the distance and the reach.
 
-    beq s1, s2, far         ; more than 32767 words away: `bne s1, s2, .+2` and then `jump far`";
+    beq s1, s2, .+40000     ; `bne s1, s2, .+2` and then `jump .+39999` go further";
     SYNTAX "E010" "unexpected text"
 "Something else was expected at this place. Operands are separated by commas; each line is one statement; comments
 begin with `;`, `#` or `//`.
@@ -86,6 +87,7 @@ the point.
 "A text stands between quotation marks on one line, a character between apostrophes. Escapes are \\n \\t \\r \\0 \\\\ \\'
 \\\" and \\x with two hexadecimal digits.
 
+    .buffer
     .ascii \"open           ; the closing quotation mark is missing";
     CHARACTER "E013" "unexpected character"
 "The character has no meaning outside of texts and comments. A backslash means something in macros only, before the
@@ -99,12 +101,16 @@ name of a parameter.
     DIVISION "E015" "division by zero"
 "The right operand of `/` or `%` is 0.
 
-    .equ each, total / count    ; with `count` 0";
+    .equ count, 0
+    .equ each, 12 / count";
     LAYOUT "E016" "value needed too early"
 "The number decides what the program looks like (a condition, a count, an alignment), so that it must be known when the
 line is read. Labels and constants from further on are not known yet.
 
-    .if end > 100           ; `end` is defined below";
+    .if end > 100           ; `end` is defined below
+    nop
+    .endif
+    end:";
     CYCLE "E017" "defined by itself"
 "The value of a constant depends on the constant itself, perhaps through others.
 
@@ -131,7 +137,8 @@ the limit. A macro that calls itself needs a condition that ends it.
 
     .macro again n
     again \\n + 1            ; never ends
-    .endm";
+    .endm
+    again 1";
     UNCLOSED "E022" "not closed"
 "A block is opened but not closed in the same file, macro or repetition: `.if` and `.endif`, `.macro` and `.endm`,
 `.rept` and `.endr`, `.struct` and `.endstruct`, `.func` and `.endfunc`, `.region` and `.endregion`.
@@ -155,10 +162,13 @@ named as in `copy to=s1`.
 "The program, with all its expansions, goes beyond a limit of the assembler: words, lines, octets of text, files. A
 repetition without end looks like this, too.
 
-    .rept 1000000000";
+    .rept 1000000000
+    nop
+    .endr";
     BUFFER "E026" "buffer too large"
 "The initial contents of the buffer go beyond the limit of 16 MiB.
 
+    .buffer
     .space 1 << 40";
     SECTION "E027" "wrong section"
 "Instructions stand in the code (`.text`), data stand in the buffer (`.buffer`); only words of 32 bits stand in both.
@@ -173,21 +183,26 @@ In a structure stand fields only. A branch leads to code.
     ASSERTED "E029" "assertion failed"
 "The expression of an `.assert` is 0. It is evaluated when all names are known.
 
+    .struct node
+    .field bounds, 54
+    .endstruct
     .assert sizeof(node) == 55, \"a node has 55 octets\"";
     RESERVED "E030" "reserved name"
 "The name means something already: a register, another name of a register, a function of expressions, or, for a macro,
 an instruction.
 
-s1: nop                     ; `s1` is a register";
+    s1: nop                 ; `s1` is a register";
     PLACE "E031" "impossible place"
 "`.align` takes a power of two, and `.org` only goes forward.
 
     .align 3";
     NESTING "E032" "too many parentheses"
-"Parentheses stand inside each other more than a hundred deep.";
+"Parentheses, or functions of expressions, stand inside each other more than a hundred deep. Name the parts by `.equ`.";
     ENTRY "E033" "impossible entry"
 "`.entry` must lead to an instruction of the program.
 
+    .buffer
+    table: .word 1
     .entry table            ; `table` is in the buffer";
     NUMERIC_LABEL "E034" "no such numeric label"
 "`1b` is the last label `1:` before the line, `1f` the next one after it.

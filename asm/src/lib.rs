@@ -1,5 +1,8 @@
 //! Assembler and disassembler of lancer: text to [`isa::Program`] and words back to text. What an instruction is comes
 //! from the rows of [`isa::Isa`] alone; this crate knows the language around them and runs nothing.
+//!
+//! The language is described in [`LANGUAGE`]; its parts are data: [`directive::DIRECTIVES`], [`pseudo::PSEUDOS`],
+//! [`function::FUNCTIONS`], and the messages in [`explain::CODES`].
 
 mod assembler;
 mod conditional;
@@ -41,6 +44,9 @@ use isa::{Isa, Program};
 pub use disassembly::disassemble;
 pub use listing::listing;
 pub use map::{MapEntry, NameKind, symbol_map};
+
+/// A description of the language in Markdown; every example in it assembles.
+pub const LANGUAGE: &str = include_str!("language.md");
 
 /// Reads what `.include "name"` asks for; the second argument is the name of the including source.
 pub type Loader<'a> = &'a dyn Fn(&str, &str) -> Result<Arc<Source>, String>;

@@ -394,6 +394,32 @@ fn defines_and_formats_come_from_outside() {
 }
 
 #[test]
+fn the_examples_of_the_description_assemble() {
+    let examples: Vec<&str> =
+        asm::LANGUAGE.split("```asm\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert!(examples.len() >= 5);
+    for example in examples {
+        assert!(!program(example).words.is_empty());
+    }
+}
+
+#[test]
+fn the_examples_of_the_codes_are_wrong_in_that_way() {
+    let mut shown = 0;
+    for code in asm::explain::CODES.iter().filter(|code| code.code.starts_with('E')) {
+        let example: Vec<&str> = code.text.lines().filter(|line| line.starts_with("    ")).collect();
+        if example.is_empty() {
+            continue;
+        }
+        shown += 1;
+        let example = example.join("\n");
+        let report = assemble(&Source::new("t.s", &*example), &Isa::base(), &Options::default()).expect_err(code.code);
+        assert!(report.0.iter().any(|message| message.code == Some(code.code)), "{}\n{report}", code.code);
+    }
+    assert!(shown + 1 >= asm::explain::CODES.len() - 1, "{shown} examples");
+}
+
+#[test]
 fn entries_are_labels() {
     assert_eq!(program("nop\nmain: nop\nx: nop\n.entry x").entry, 2);
     assert_eq!(program("nop\nmain: nop").entry, 1);

@@ -69,11 +69,11 @@ fn written(isa: &Isa, op: Op, numbers: &[i64], style: u8) -> String {
         }
         parts.push(match operand.kind {
             Kind::Rel => format!(". + {}", number(value, style)),
-            Kind::Lane if style % 3 == 0 => ["x", "y", "z"][value as usize].to_string(),
+            Kind::Lane if style.is_multiple_of(3) => ["x", "y", "z"][value as usize].to_string(),
             _ => number(value, style),
         });
     }
-    format!("{} {}", row.name, parts.join(if style % 2 == 0 { ", " } else { "," }))
+    format!("{} {}", row.name, parts.join(if style.is_multiple_of(2) { ", " } else { "," }))
 }
 
 #[test]

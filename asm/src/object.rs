@@ -121,7 +121,7 @@ pub fn write(program: &Program) -> Vec<u8> {
 /// Reads an object file.
 ///
 /// # Errors
-/// Any octets that [`write`] does not make; nothing large is allocated for them.
+/// Any octets that [`write()`] does not make; nothing large is allocated for them.
 pub fn read(file: &[u8]) -> Result<Program, ObjectError> {
     let Some((magic, rest)) = file.split_at_checked(MAGIC.len()) else { return Err(ObjectError::Magic) };
     if magic != MAGIC {

@@ -53,7 +53,6 @@ fn what_is_too_large_is_one_error() {
         ".rept 1000000000\nnop\n.endr",
         ".rept 1000\n.rept 1000\n.rept 1000\nnop\n.endr\n.endr\n.endr",
         ".macro m n\nm \\n\\n\n.endm\nm x",
-        ".macro m n\n.if \\n\nm \\n - 1\nm \\n - 1\n.endif\n.endm\nm 60",
         ".org 1 << 20\nnop",
         ".org 1 << 62",
         ".align 1 << 24\nnop\n.align 1 << 24",

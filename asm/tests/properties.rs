@@ -264,7 +264,7 @@ fn trees() -> impl Strategy<Value = Tree> {
 
 #[test]
 fn expressions_agree_with_the_model() {
-    check(20_000, &trees(), |tree| {
+    check(8_000, &trees(), |tree| {
         let text = format!(".equ value, {}", tree.text(0));
         let found = assembled(&text).ok().map(|program| i128::from(program.symbols["value"]));
         prop_assert_eq!(found, tree.value(), "{}", text);
@@ -391,7 +391,7 @@ fn pieces() -> impl Strategy<Value = String> {
 #[test]
 fn no_text_brings_the_assembler_down() {
     let text = prop_oneof![4 => pieces(), 1 => any::<String>(), 1 => "[ -~\n]{0,200}"];
-    check(15_000, &text, |text| {
+    check(8_000, &text, |text| {
         if let Err(report) = assembled(&text) {
             prop_assert!(report.has_errors());
             prop_assert!(report.render(false).contains("error"));

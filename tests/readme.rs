@@ -1,0 +1,122 @@
+//! What the README shows is what happens: its commands run, and its table is measured again.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn repository() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn readme() -> String {
+    fs::read_to_string(repository().join("README.md")).expect("there is a README")
+}
+
+/// A folder with what the README's commands read.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder for what the commands write");
+    fs::create_dir(folder.path().join("examples")).unwrap();
+    for file in fs::read_dir(repository().join("examples")).unwrap() {
+        let file: PathBuf = file.unwrap().path();
+        fs::copy(&file, folder.path().join("examples").join(file.file_name().unwrap())).unwrap();
+    }
+    folder
+}
+
+fn lancer(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lancer")).args(arguments).current_dir(folder).output().expect("lancer starts")
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = lancer(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "lancer {}: {errors}", arguments.join(" "));
+    String::from_utf8(output.stdout).expect("results are text")
+}
+
+#[test]
+fn the_demo_writes_three_pictures_and_meets_the_annex() {
+    let folder = folder();
+    let text = succeed(folder.path(), &[]);
+    for name in ["cornell.png", "cornell-heat.png", "cornell-error.png"] {
+        assert!(folder.path().join("out").join(name).exists(), "{name}");
+    }
+    for expected in ["292", "61", "2,561", "run hash"] {
+        assert!(text.contains(expected), "{expected} in\n{text}");
+    }
+}
+
+#[test]
+fn the_commands_of_the_readme_run() {
+    let folder = folder();
+    let readme = readme();
+    let commands: Vec<&str> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("$ lancer "))
+        .map(|line| line.split('#').next().unwrap_or_default().trim())
+        .collect();
+    assert!(commands.len() >= 7, "the README has commands");
+    for command in commands {
+        succeed(folder.path(), &command.split_whitespace().collect::<Vec<_>>());
+    }
+}
+
+/// 1234567 as 1,234,567.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let first = (digits.len() - 1) % 3 + 1;
+    let mut text = digits[..first].to_owned();
+    for group in digits.as_bytes()[first..].chunks(3) {
+        text.push(',');
+        text.push_str(std::str::from_utf8(group).unwrap());
+    }
+    text
+}
+
+/// Measures a scene as the table says and compares with its line.
+fn measure(scene: &str) {
+    let folder = folder();
+    let text = succeed(folder.path(), &["render", scene, "--shift", "0.137,0.071", "--json"]);
+    let result: Value = serde_json::from_str(&text).expect("--json prints JSON");
+    let number = |value: &Value| value.as_u64().unwrap_or_else(|| panic!("{value} is a count"));
+    let rays: u64 = ["camera", "reflected", "refracted", "shadow"].iter().map(|kind| number(&result["rays"][kind])).sum();
+    let operations: u64 = ["add", "sub", "mul", "div", "cmp"].iter().map(|class| number(&result["counts"][class])).sum();
+    let pixels = number(&result["width"]) * number(&result["height"]);
+    let off = number(&result["error"]["off_pixels"]);
+    let psnr = result["error"]["psnr_others_db"].as_f64().expect("the picture is not exact");
+    assert!(off <= 20 && psnr >= 90.0, "{scene}: {off} pixels off, {psnr} dB");
+    let line = format!(
+        "| {scene} | {} | {} | {} | {off} | {psnr:.2} dB |",
+        grouped(number(&result["triangles"])),
+        grouped(rays),
+        grouped((operations as f64 / pixels as f64).round() as u64),
+    );
+    assert!(readme().contains(&line), "the README should say\n{line}");
+}
+
+#[test]
+fn the_table_is_measured_cornell() {
+    measure("cornell");
+}
+
+#[test]
+fn the_table_is_measured_sphereflake() {
+    measure("sphereflake");
+}
+
+#[test]
+fn the_table_is_measured_slabs() {
+    measure("slabs");
+}
+
+#[test]
+fn the_table_is_measured_mirrors() {
+    measure("mirrors");
+}
+
+#[test]
+fn the_table_is_measured_terrain() {
+    measure("terrain");
+}

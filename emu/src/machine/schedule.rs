@@ -44,6 +44,8 @@ struct Machine<'a, T, O> {
     bus: Bus,
     kinds: Kinds,
     aside: Octets,
+    /// Clock of the last thing that concerned others.
+    now: Clocks,
     items: Vec<Item>,
     item_count: u64,
     has_main_halted: bool,
@@ -80,6 +82,7 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             bus: Bus::new(&config.bus, cores + 1),
             kinds: Kinds::new(&setup.kinds),
             aside: Octets(0),
+            now: Clocks(0),
             items: Vec::new(),
             item_count: 0,
             has_main_halted: false,
@@ -243,6 +246,7 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
 
     /// Lets the arbiter choose, and the chosen one do what it waits for.
     fn decide(&mut self, clock: Clocks) {
+        self.now = clock;
         let Some(grant) = self.bus.decide(clock) else { return };
         let number = grant.master as usize;
         let processor = &mut self.processors[number];
@@ -253,6 +257,7 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
     }
 
     fn act(&mut self, number: usize, at: Clocks, act: Act) -> Result<(), Failure> {
+        self.now = at;
         let main = self.main();
         let processor = &mut self.processors[number];
         processor.idle_until(at);
@@ -303,7 +308,7 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         }
     }
 
-    /// Lets all leave the barrier at the clock of the last to come, when nobody is missing.
+    /// Lets all leave the barrier, when nobody is missing, at the clock at which the last one came or had no more to do.
     fn leave_barrier(&mut self) {
         let is_here = |processor: &Processor<O>| match processor.standing {
             Standing::Meets | Standing::Rests => true,
@@ -316,8 +321,9 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         }
         let meets = |processor: &&mut Processor<O>| processor.standing == Standing::Meets;
         let last = self.processors.iter_mut().filter(meets).map(|processor| processor.clock).max();
+        let at = last.unwrap_or_default().max(self.now);
         for processor in self.processors.iter_mut().filter(meets) {
-            processor.standing = Standing::Acts { at: last.unwrap_or_default(), act: Act::Leave };
+            processor.standing = Standing::Acts { at, act: Act::Leave };
         }
         self.meeting = 0;
     }

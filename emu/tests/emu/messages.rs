@@ -67,12 +67,12 @@ fn the_earliest_message_is_taken_first_then_the_lowest_senders() {
 
 #[test]
 fn a_send_waits_until_the_mailbox_is_free() {
-    // The core is busy for 100 clocks before it takes its second message; the third must wait in the sender.
+    // The core works 500 clocks before it takes its second message; the third must wait in the sender.
     let frame = frame(
         1,
         |p| {
             p.emit(Op::recv5, &[0, 20]);
-            p.repeat(1, 50, |_| {});
+            p.repeat(1, 250, |_| {});
             p.emit(Op::recv5, &[5, 20]).emit(Op::recv5, &[10, 20]);
             p.emit(Op::vadd, &[0, 0, 5]).emit(Op::vadd, &[0, 0, 10]).emit(Op::stv, &[0, 0, 0]).emit(Op::halt, &[]);
         },
@@ -84,13 +84,12 @@ fn a_send_waits_until_the_mailbox_is_free() {
         },
     );
     assert_eq!(word(&frame, 0), 321);
-    let (core, main) = (frame.processors[0], frame.processors[1]);
-    // Between sends the main processor takes three clocks for address and loop.
-    assert_eq!(main.waiting, Clocks(3 * 120));
-    assert_eq!(core.busy, Clocks(100 + 6));
-    assert_eq!(core.waiting, Clocks(24), "the core itself moves twelve octets");
-    // The second message is there after 120 + 2 + 120 clocks, long after the core has asked for it.
-    assert_eq!(main.idle + main.busy + main.waiting, frame.clocks);
+    // Messages of 60 octets arrive at 120, 242 and, since the second is taken at 620 only, 740; between two sends the
+    // main processor takes two clocks. Then the core adds for six and stores for 24.
+    assert_eq!(frame.clocks, Clocks(770));
+    let [core, main] = [frame.processors[0], frame.processors[1]];
+    assert_eq!((core.busy, core.waiting, core.idle), (Clocks(506), Clocks(24), Clocks(120 + 120)));
+    assert_eq!((main.busy, main.waiting, main.idle), (Clocks(6), Clocks(360), Clocks((620 - 244) + (770 - 742))));
     assert_eq!(frame.bus.transfers, 4);
 }
 
@@ -121,6 +120,50 @@ fn cores_wait_for_each_other_at_a_barrier() {
         assert_eq!((4..8).map(|at| word(&frame, at)).collect::<Vec<_>>(), [11, 12, 13, 10], "{waits}");
         assert!(frame.processors[0].idle > frame.processors[3].idle, "who comes first waits longest");
     }
+}
+
+#[test]
+fn cores_without_work_are_not_waited_for_once_the_main_processor_is_done() {
+    let frame = frame(
+        4,
+        |p| {
+            p.emit(Op::recv5, &[0, 20]).emit(Op::barrier, &[]).emit(Op::core, &[1]).emit(Op::slli, &[2, 1, 2]);
+            p.emit(Op::iaddi, &[1, 1, 1]).emit(Op::stw, &[1, 2, 0]).emit(Op::halt, &[]);
+        },
+        |p| {
+            p.emit(Op::movi, &[1, 1]).emit(Op::send5, &[1, 0]).emit(Op::movi, &[1, 3]).emit(Op::send5, &[1, 0]);
+            p.repeat(1, 500, |_| {}).emit(Op::halt, &[]);
+        },
+    );
+    assert_eq!((0..4).map(|at| word(&frame, at)).collect::<Vec<_>>(), [0, 2, 0, 4]);
+    // The main processor halts after both messages, at 240, and 500 turns of two clocks.
+    assert_eq!(frame.processors[1].idle, Clocks(1240 + 8));
+    assert_eq!(frame.clocks, Clocks(1240 + 1 + 2 * 8));
+}
+
+#[test]
+fn a_message_beside_the_bus_overtakes_one_that_is_still_on_it() {
+    let mut config = Config { cores: 2, ..Config::default() };
+    config.main.traffic = false;
+    let core = program(|p| {
+        let receiver = p.label();
+        p.emit(Op::core, &[1]);
+        p.branch(Op::beq, &[1, 0], receiver);
+        p.emit(Op::send5, &[0, 0]).emit(Op::recv5, &[0, 20]);
+        p.place(receiver).emit(Op::recv5, &[0, 20]);
+        p.repeat(2, 15, |_| {});
+        p.emit(Op::recv5, &[0, 21]).emit(Op::stw, &[20, 0, 0]).emit(Op::stw, &[21, 0, 4]).emit(Op::halt, &[]);
+    });
+    let main = program(|p| {
+        p.repeat(1, 25, |_| {}).emit(Op::send5, &[0, 0]).emit(Op::halt, &[]);
+    });
+    let frame = result(&config, &core, &main).unwrap_or_else(|trap| panic!("{trap}"));
+    // Core 1's message is on the bus from its one comparison at 1 on to 121; the main processor's comes at 50.
+    assert_eq!((word(&frame, 0), word(&frame, 1)), (2, 1));
+    assert_eq!(frame.clocks, Clocks(121 + 2 * 8));
+    assert_eq!(frame.aside.0, 60);
+    let core = frame.processors[0];
+    assert_eq!((core.busy, core.idle, core.waiting), (Clocks(1 + 30), Clocks(49 + 41), Clocks(16)));
 }
 
 #[test]

@@ -11,6 +11,7 @@ pub mod input;
 pub mod job;
 pub mod listing;
 pub mod machine;
+pub mod manual;
 pub mod result;
 pub mod scene_facts;
 pub mod summary;

@@ -177,11 +177,11 @@ pub fn pixel(drawing: &Drawing) -> String {
     text
 }
 
-/// How the operations spread over the pixels, which is the scale of a heat map.
-pub fn heat_scale(operations: &[u64]) -> String {
+/// How the operations spread over the pixels; a heat map goes from the least (dark) to the largest (bright).
+pub fn spread(operations: &[u64]) -> String {
     let mut sorted = operations.to_vec();
     sorted.sort_unstable();
     let last = sorted.len().saturating_sub(1);
     let at = |place: usize| grouped(sorted.get(place).copied().unwrap_or(0));
-    format!("dark 0 to bright {}; least {}, median {}", at(last), at(0), at(last / 2))
+    format!("least {}, median {}, largest {}", at(0), at(last / 2), at(last))
 }

@@ -1,6 +1,7 @@
 //! Where results and messages go: results to standard output, progress and messages to standard error, colours only
 //! where a terminal shows them.
 
+use std::ffi::OsStr;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -19,10 +20,9 @@ impl Terminal {
     /// The process's own streams.
     pub fn new() -> Terminal {
         let is_watched = io::stderr().is_terminal();
-        // https://no-color.org: any value but an empty one switches colours off.
-        let is_unwanted = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let is_dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
-        let is_coloured = is_watched && !is_unwanted && !is_dumb;
+        let variable = |name| std::env::var_os(name);
+        let is_dumb = variable("TERM").is_some_and(|value| value == "dumb");
+        let is_coloured = is_coloured(is_watched && !is_dumb, variable("NO_COLOR").as_deref());
         Terminal { out: Box::new(io::BufWriter::new(io::stdout())), is_coloured, is_watched: is_watched && !is_dumb }
     }
 
@@ -71,8 +71,34 @@ impl Terminal {
     }
 }
 
+/// Whether messages have colours, given whether a terminal would show them and the value of `NO_COLOR`, which switches
+/// them off by any value but an empty one (<https://no-color.org>).
+fn is_coloured(is_shown: bool, no_color: Option<&OsStr>) -> bool {
+    is_shown && no_color.is_none_or(OsStr::is_empty)
+}
+
 impl Default for Terminal {
     fn default() -> Terminal {
         Terminal::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_need_a_terminal_and_no_veto() {
+        let cases = [
+            (false, None, false),
+            (true, None, true),
+            (true, Some(""), true),
+            (true, Some("1"), false),
+            (true, Some("0"), false),
+            (false, Some(""), false),
+        ];
+        for (is_shown, no_color, expected) in cases {
+            assert_eq!(is_coloured(is_shown, no_color.map(OsStr::new)), expected, "{is_shown} {no_color:?}");
+        }
     }
 }

@@ -81,8 +81,10 @@ fn measure(scene: &str) {
     let text = succeed(folder.path(), &["render", scene, "--shift", "0.137,0.071", "--json"]);
     let result: Value = serde_json::from_str(&text).expect("--json prints JSON");
     let number = |value: &Value| value.as_u64().unwrap_or_else(|| panic!("{value} is a count"));
-    let rays: u64 = ["camera", "reflected", "refracted", "shadow"].iter().map(|kind| number(&result["rays"][kind])).sum();
-    let operations: u64 = ["add", "sub", "mul", "div", "cmp"].iter().map(|class| number(&result["counts"][class])).sum();
+    let rays: u64 =
+        ["camera", "reflected", "refracted", "shadow"].iter().map(|kind| number(&result["rays"][kind])).sum();
+    let operations: u64 =
+        ["add", "sub", "mul", "div", "cmp"].iter().map(|class| number(&result["counts"][class])).sum();
     let pixels = number(&result["width"]) * number(&result["height"]);
     let off = number(&result["error"]["off_pixels"]);
     let psnr = result["error"]["psnr_others_db"].as_f64().expect("the picture is not exact");

@@ -15,7 +15,7 @@ pub struct EffortArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=40), default_value = "16")]
     pub kd_depth: u32,
     /// Weight that a reflected or refracted ray must exceed to be followed, 0 to 1.
-    #[arg(long, value_name = "WEIGHT", value_parser = weight, default_value = "0")]
+    #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true, default_value = "0")]
     pub weight_cutoff: f64,
 }
 

@@ -19,7 +19,7 @@ pub struct NumberArguments {
     /// Overflow mode, by its IEEE 1666 name [default: the machine's, SAT].
     #[arg(long, value_name = "MODE", ignore_case = true, value_parser = overflow())]
     pub overflow: Option<Overflow>,
-    /// Fraction bits of a quantity: pos, dir, bary, t, weight or colour; may be repeated [default: chosen for the scene].
+    /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
     #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
     pub formats: Vec<String>,
 }

@@ -27,7 +27,7 @@ pub struct ViewArguments {
     #[arg(long, value_name = "X,Y,Z", value_parser = value::point::<3>, allow_hyphen_values = true)]
     pub look: Option<[f64; 3]>,
     /// Vertical field of view, in degrees [default: 45].
-    #[arg(long, value_name = "DEGREES", value_parser = field)]
+    #[arg(long, value_name = "DEGREES", value_parser = field, allow_hyphen_values = true)]
     pub fov: Option<f64>,
     /// Size of the picture, in pixels [default: the size in the .dsc, else 320x240].
     #[arg(long, value_name = "WxH", value_parser = value::size)]
@@ -42,10 +42,10 @@ pub struct ViewArguments {
     #[arg(long, value_name = "X,Y", value_parser = value::whole::<2>, conflicts_with = "crop")]
     pub pixel: Option<[u32; 2]>,
     /// Ambient intensity.
-    #[arg(long, value_name = "I", value_parser = intensity, default_value = "0.1")]
+    #[arg(long, value_name = "I", value_parser = intensity, allow_hyphen_values = true, default_value = "0.1")]
     pub ambient: f64,
     /// Colour where a ray hits nothing, components of 0 to 1.
-    #[arg(long, value_name = "R,G,B", value_parser = colour, default_value = "0,0,0")]
+    #[arg(long, value_name = "R,G,B", value_parser = colour, allow_hyphen_values = true, default_value = "0,0,0")]
     pub background: [f64; 3],
 }
 

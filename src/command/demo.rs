@@ -7,6 +7,7 @@ use isa::diagnostic::Diagnostic;
 use scenes::generate;
 
 use super::render::{draw, write_maps};
+use crate::arguments::Size;
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::files::map::LEAST_ERROR;
@@ -21,17 +22,17 @@ const FOLDER: &str = "out";
 
 const NEXT: &str = "\
 Try next:
-  lancer render sphereflake --shift 0.137,0.071      another scene (lancer scene generate --help lists them)
-  lancer render cornell --camera perspective --bounces 2
-  lancer render cornell --pixel 160,120              one pixel: its colour and what it took
-  lancer render cornell --json --cores 8             all figures, on a machine with more cores
-  lancer scene info terrain                          tree, memory and precision of a scene
-  lancer machine                                     the machine, as a file to change
+  lancer render sphereflake --shift 0.137,0.071    another scene; the list: lancer scene generate -h
+  lancer render cornell --camera perspective       seen from an eye in front of the room
+  lancer render cornell --pixel 160,120            one pixel: its colour and what it took
+  lancer render cornell --json --cores 8           all figures, on a machine with more cores
+  lancer scene info terrain                        tree, memory and precision of a scene
+  lancer machine                                   the machine, as a file to change
   lancer --help
 ";
 
 /// Measures, draws, writes and prints.
-pub(super) fn execute(terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let folder = Path::new(FOLDER);
     fs::create_dir_all(folder).map_err(|error| {
         let message = Diagnostic::error(format!("the folder {FOLDER} for the demo's pictures cannot be made: {error}"));
@@ -39,7 +40,7 @@ pub(super) fn execute(terminal: &mut Terminal) -> Result<Exit, Failure> {
     })?;
     let measured = annex::measure()?;
     terminal.print(&annex::text(&measured))?;
-    let mut job = Job::new(generate::scene("cornell", &generate::Options::default())?);
+    let mut job = Job::new(generate::scene("cornell", &generate::Options { size, ..generate::Options::default() })?);
     // Parallel rays through pixel centres would run along edges of the axis-aligned room.
     job.view.shift = [0.137, 0.071];
     let drawing = draw(&job, Comparison::Reference, terminal)?;
@@ -50,9 +51,11 @@ pub(super) fn execute(terminal: &mut Terminal) -> Result<Exit, Failure> {
     let [picture, heat, error] = paths.map(|path| path.display().to_string());
     let pictures = format!(
         "{picture:<22}  the picture\n\
-         {heat:<22}  elementary operations of each pixel: {}\n\
-         {error:<22}  difference from double precision: dark {LEAST_ERROR:e} to bright 1, logarithmic; black: none\n",
-        summary::heat_scale(&drawing.operations()),
+         {heat:<22}  elementary operations of each pixel, from dark to bright, logarithmic:\n\
+         {:<22}  {}\n\
+         {error:<22}  difference from double precision: black none, dark {LEAST_ERROR:e}, bright 1, logarithmic\n",
+        "",
+        summary::spread(&drawing.operations()),
     );
     let parts = [
         String::new(),

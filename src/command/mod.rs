@@ -4,7 +4,9 @@ mod assemble;
 mod completions;
 mod demo;
 mod disassemble;
+mod explain;
 mod machine;
+mod manual;
 mod render;
 mod run;
 mod run_arguments;
@@ -13,6 +15,7 @@ mod scene;
 
 use clap::{Parser, Subcommand};
 
+use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 
@@ -29,8 +32,11 @@ tolerance, 5 step limit. Results go to standard output, messages to standard err
 ///
 /// Without a command, lancer runs the demo: it draws the Cornell box and writes pictures below out/.
 #[derive(Parser, Debug)]
-#[command(name = "lancer", version, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "lancer", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Lancer {
+    /// Size of the demo's picture, in pixels.
+    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "320x240")]
+    size: Size,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -43,6 +49,8 @@ enum Command {
     Disassemble(disassemble::DisassembleArguments),
     Scene(scene::SceneArguments),
     Machine(machine::MachineArguments),
+    Manual(manual::ManualArguments),
+    Explain(explain::ExplainArguments),
     Completions(completions::CompletionsArguments),
 }
 
@@ -52,13 +60,15 @@ enum Command {
 /// Whatever keeps the command from doing its work.
 pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Failure> {
     match &arguments.command {
-        None => demo::execute(terminal),
+        None => demo::execute(arguments.size, terminal),
         Some(Command::Render(arguments)) => render::execute(arguments, terminal),
         Some(Command::Run(arguments)) => run::execute(arguments, terminal),
         Some(Command::Assemble(arguments)) => assemble::execute(arguments, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
+        Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
+        Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),
         Some(Command::Completions(arguments)) => completions::execute(arguments, terminal),
     }
 }

@@ -42,7 +42,7 @@ pub struct RenderArguments {
     /// Adds the host's times, in seconds.
     #[arg(long, help_heading = "Results")]
     timing: bool,
-    /// Map of the elementary operations of each pixel: .png, .ppm or .pfm.
+    /// Map of the elementary operations of each pixel, logarithmic: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     heat: Option<PathBuf>,
     /// Map of each pixel's difference from double precision, logarithmic: .png, .ppm or .pfm.
@@ -131,7 +131,7 @@ fn text(result: &Render, job: &Job, drawing: &Drawing) -> String {
         parts.push(summary::pixel(drawing));
     }
     parts.push(
-        format!("elementary operations a pixel: {}\n", summary::heat_scale(&drawing.operations()))
+        format!("elementary operations a pixel: {}\n", summary::spread(&drawing.operations()))
             + &summary::hashes(result),
     );
     if let Some(host) = &result.host {

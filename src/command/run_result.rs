@@ -137,7 +137,7 @@ impl RunResult {
         if rows.len() > 1 {
             parts.push(table(rows));
         }
-        if !self.functions.is_empty() {
+        if self.functions.iter().chain(&self.regions).any(|region| region.calls != 0) {
             parts.push(summary::function_table(&[(&self.functions, ""), (&self.regions, "  ")]));
         }
         for dump in &self.dumps {

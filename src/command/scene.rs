@@ -8,8 +8,14 @@ use clap::{Args, Subcommand};
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 
+const EXAMPLES: &str = "\
+Examples:
+  lancer scene generate cornell -o scenes
+  lancer scene info scenes/cornell.dsc";
+
 /// Generates scenes and says what is in them.
 #[derive(Args, Debug)]
+#[command(after_help = EXAMPLES)]
 pub struct SceneArguments {
     #[command(subcommand)]
     command: SceneCommand,

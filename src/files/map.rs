@@ -33,10 +33,14 @@ pub fn colour(at: f64) -> [u8; 3] {
     [between(0), between(1), between(2)]
 }
 
-/// A heat map: numbers from 0 (dark) to the largest of them (bright), linear.
+/// A heat map: from the least number (dark) to the largest (bright), logarithmic, so that both the sky and the glass
+/// show their structure. Numbers below 1 count as 1.
 pub fn heat(size: (u32, u32), values: &[u64]) -> Pixels {
-    let most = values.iter().copied().max().unwrap_or(0).max(1) as f64;
-    Pixels { size, colours: values.iter().map(|&value| colour(value as f64 / most)).collect() }
+    let logarithm = |value: u64| (value.max(1) as f64).ln();
+    let least = logarithm(values.iter().copied().min().unwrap_or(0));
+    let most = logarithm(values.iter().copied().max().unwrap_or(0));
+    let shade = |&value: &u64| colour(if most > least { (logarithm(value) - least) / (most - least) } else { 0.0 });
+    Pixels { size, colours: values.iter().map(shade).collect() }
 }
 
 /// An error map: differences from [`LEAST_ERROR`] (dark) to 1 (bright), logarithmic; no difference at all is black.
@@ -66,9 +70,11 @@ mod tests {
     }
 
     #[test]
-    fn heat_is_linear_up_to_the_largest_number() {
-        assert_eq!(heat((3, 1), &[0, 9, 1]).colours, [VIRIDIS[0], VIRIDIS[9], VIRIDIS[1]]);
-        assert_eq!(heat((1, 1), &[0]).colours, [VIRIDIS[0]]);
+    fn heat_is_logarithmic_between_least_and_largest() {
+        let map = heat((4, 1), &[2, 1024, 4, 8]);
+        assert_eq!(map.colours, [VIRIDIS[0], VIRIDIS[9], VIRIDIS[1], VIRIDIS[2]]);
+        assert_eq!(heat((2, 1), &[7, 7]).colours, [VIRIDIS[0]; 2]);
+        assert_eq!(heat((2, 1), &[0, 1]).colours, [VIRIDIS[0]; 2]);
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub struct InfoArguments {
     /// Bits of a word, 8 to 32.
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32), default_value = "32")]
     word: u32,
-    /// Fraction bits of a quantity: pos, dir, bary, t, weight or colour; may be repeated [default: chosen for the scene].
+    /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
     #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
     formats: Vec<String>,
     /// Prints the facts as JSON.

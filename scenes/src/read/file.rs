@@ -6,11 +6,10 @@ use std::path::{Path, PathBuf};
 
 use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 
+use super::format::SCENES;
+
 /// Octets of the largest file that is read.
 const LARGEST: u64 = 1 << 30;
-
-/// Extensions of all files that make up scenes.
-const SCENES: [&str; 2] = ["dsc", "off"];
 
 /// All octets of a file.
 ///
@@ -22,7 +21,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
         let error = Diagnostic::error(format!("{shown} is a folder, not a scene file"));
         let names = scene_files(path, &SCENES);
         let hint = match names.is_empty() {
-            true => "there is no .dsc or .off in it".to_string(),
+            true => "there is no .dsc in it, and no mesh".to_string(),
             false => format!("scene files in it: {}", listed(&names)),
         };
         return Err(error.hint(hint).into());

@@ -4,8 +4,8 @@ use isa::diagnostic::{Diagnostic, Report};
 
 use super::Loaded;
 use super::dsc::Description;
-use super::mesh::Mesh;
-use crate::model::{Light, Material, Scene, Triangle};
+use super::mesh::{GREY, Mesh};
+use crate::model::{Light, Scene, Triangle};
 
 /// The scene of a `.dsc` and its mesh. Error: their numbers of triangles differ.
 pub(super) fn described(name: String, description: Description, mesh: Mesh) -> Result<Loaded, Report> {
@@ -49,7 +49,7 @@ pub(super) fn alone(name: String, mesh: Mesh) -> Loaded {
         vertices: mesh.vertices,
     };
     if scene.materials.is_empty() {
-        scene.materials.push(Material { colour: [0.8; 3], reflection: 0.0, intensity: 0.9, index: 0.0 });
+        scene.materials.push(GREY);
     }
     let (low, high) = scene.bounds().unwrap_or(([0.0; 3], [0.0; 3]));
     let size = (high[0] - low[0]).max(high[1] - low[1]);

@@ -1,4 +1,4 @@
-//! A text as words, the layer under the .dsc and .off readers: blanks, line ends and `#` comments between, numbers with
+//! A text as words, the layer under all readers of text: blanks, line ends and `#` comments between, numbers with
 //! their complaints. What the words mean is not known here.
 
 use std::borrow::Cow;
@@ -13,6 +13,8 @@ use nom::combinator::recognize;
 use nom::multi::many0_count;
 use nom::sequence::preceded;
 use nom::{IResult, Parser};
+
+use super::mesh::Mesh;
 
 /// Errors, and warnings, about one file that are shown; what follows them is likely their consequence.
 const SHOWN: usize = 20;
@@ -33,6 +35,14 @@ impl Word<'_> {
     /// Its octets in the text.
     pub(super) fn span(&self) -> Range<usize> {
         self.start..self.start + self.text.len()
+    }
+}
+
+impl<'a> Word<'a> {
+    /// The words of a whole line.
+    pub(super) fn parts(self) -> impl Iterator<Item = Word<'a>> {
+        let start = move |part: &str| self.start + (part.as_ptr() as usize - self.text.as_ptr() as usize);
+        self.text.split_whitespace().map(move |text| Word { text, start: start(text) })
     }
 }
 
@@ -151,6 +161,23 @@ impl<'a> Words<'a> {
         })
     }
 
+    /// Goes on behind the end of a line, which must be next.
+    pub(super) fn pass_line_end(&mut self) {
+        let rest = &self.source.text[self.at..];
+        self.at += match rest.as_bytes() {
+            [b'\r', b'\n', ..] => 2,
+            [b'\r' | b'\n', ..] => 1,
+            _ => 0,
+        };
+    }
+
+    /// What follows octet `at` on its line, without the blanks at both ends; `#` is nothing special in it.
+    pub(super) fn line_from(&self, at: usize) -> Word<'a> {
+        let rest = &self.source.text[at..];
+        let rest = &rest[..rest.bytes().position(is_line_end).unwrap_or(rest.len())];
+        Word { text: rest.trim(), start: at + rest.len() - rest.trim_start().len() }
+    }
+
     /// A place in this text.
     pub(super) fn place(&self, span: Range<usize>) -> Place {
         Place::new(self.source, span)
@@ -222,6 +249,19 @@ impl<'a> Words<'a> {
         Report(self.messages)
     }
 
+    /// The mesh when there was no error, its warnings behind those of the text; else everything that was found.
+    pub(super) fn finish(self, mesh: Option<Mesh>) -> Result<Mesh, Report> {
+        let has_errors = self.has_errors();
+        let mut report = self.into_report();
+        match mesh {
+            Some(mut mesh) if !has_errors => {
+                report.0.append(&mut mesh.warnings.0);
+                Ok(Mesh { warnings: report, ..mesh })
+            }
+            _ => Err(report),
+        }
+    }
+
     /// Whether the rest of the text may hold `count` things of at least `octets` each. A count that is only somewhat
     /// too large passes: that is a file cut short, which is better said where it ends. What the rest can really hold.
     pub(super) fn room(&mut self, count: u32, word: Word<'_>, what: &str, octets: usize) -> Option<usize> {
@@ -287,6 +327,20 @@ fn digits(text: &str) -> Option<u32> {
     let text = text.strip_prefix('+').unwrap_or(text);
     let is_plain = !text.is_empty() && text.bytes().all(|octet| octet.is_ascii_digit());
     is_plain.then(|| text.parse().ok()).flatten()
+}
+
+/// Refuses UTF-16 text, which would otherwise look like words with gaps.
+pub(super) fn refuse_utf16(bytes: &[u8], name: &str) -> Result<(), Report> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        let error = Diagnostic::error(format!("{name} is UTF-16 text, which is not read"));
+        return Err(error.hint("save it as UTF-8 or ASCII").into());
+    }
+    Ok(())
+}
+
+/// Where the text of a file starts: behind the byte order mark, if there is one.
+pub(super) fn start(bytes: &[u8]) -> usize {
+    if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
 }
 
 /// A file's octets as a source; what is not UTF-8 is replaced, and refused where it is more than a comment.

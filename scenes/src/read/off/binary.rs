@@ -5,11 +5,12 @@ use isa::diagnostic::Diagnostic;
 use nom::number::complete::{be_f32, be_u32};
 use nom::{IResult, Parser};
 
+use super::super::colour::{Spec, Writing};
+use super::super::faces::Faces;
 use super::super::mesh::Mesh;
 use super::super::words::{Words, counted};
-use super::colour::{Spec, Writing};
 use super::header::{Binary, DIMENSIONS, Header};
-use super::{Faces, position};
+use super::position;
 use crate::model::Vec3;
 
 /// Octets at the start of a file in which a binary file's header must end.

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use isa::diagnostic::Diagnostic;
 
+use super::super::colour::{Spec, Writing};
+use super::super::faces::Faces;
 use super::super::mesh::Mesh;
 use super::super::words::{Word, Words, counted, shortened};
-use super::colour::{Spec, Writing};
 use super::header::Header;
-use super::{Faces, position};
+use super::position;
 use crate::model::Vec3;
 
 /// A count and its word.

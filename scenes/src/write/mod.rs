@@ -1,8 +1,18 @@
-//! Writers of `.dsc` and `.off` files (report 5.2). What they write reads back as the same scene, bit for bit.
+//! Writers of `.dsc` and `.off` files (report 5.2), which read back as the same scene, bit for bit, and of the meshes of
+//! other programs. What a format cannot say is told by [`losses`].
+
+mod format;
+mod obj;
+mod ply;
+mod stl;
 
 use std::fmt;
 use std::io::{self, Error, ErrorKind, Write};
 
+pub use self::format::{MeshFormat, losses, mesh};
+pub use self::obj::{mtl, obj};
+pub use self::ply::ply;
+pub use self::stl::stl;
 use crate::model::{Scene, Vec3};
 
 /// Writes the mesh of a scene as an ASCII `.off` file: header, counts, vertices, triangles.

@@ -1,10 +1,10 @@
-//! Colours of faces in all of OFF's styles, and the materials they stand for.
+//! Colours of faces in the styles of OFF and PLY, and the materials they stand for.
 
 use std::collections::HashMap;
 
 use isa::diagnostic::Diagnostic;
 
-use super::super::words::counted;
+use super::words::counted;
 use crate::model::{Material, Vec3};
 
 /// Share of the light that a coloured surface scatters.

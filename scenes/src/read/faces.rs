@@ -1,0 +1,78 @@
+//! From the faces of a file to the triangles of a mesh, the same for every mesh format. Where corners and colours come
+//! from is not known here.
+
+use isa::diagnostic::{Diagnostic, Place, Report};
+
+use super::colour::{FaceColours, Spec};
+use super::mesh::{Mesh, census};
+use super::polygon::Cutter;
+use super::words::counted;
+use crate::model::Vec3;
+
+/// Faces on their way to triangles.
+#[derive(Default)]
+pub(super) struct Faces {
+    cutter: Cutter,
+    colours: FaceColours,
+    triangles: Vec<[u32; 3]>,
+    /// The face of each triangle, counted without those left out.
+    origins: Vec<u32>,
+    drawn: u32,
+    left_out: usize,
+}
+
+impl Faces {
+    /// No faces yet, and memory for as many as the file can hold.
+    pub(super) fn with_room(room: usize) -> Faces {
+        Faces { triangles: Vec::with_capacity(room), origins: Vec::with_capacity(room), ..Faces::default() }
+    }
+
+    /// Takes a face whose corners are all in range; false when it has too few to be drawn.
+    pub(super) fn push(&mut self, vertices: &[Vec3], corners: &[u32], colour: Spec) -> bool {
+        if corners.len() < 3 {
+            self.left_out += 1;
+            return false;
+        }
+        let (triangles, origins, face) = (&mut self.triangles, &mut self.origins, self.drawn);
+        self.cutter.cut(vertices, corners, |triangle| {
+            triangles.push(triangle);
+            origins.push(face);
+        });
+        self.colours.push(self.drawn as usize, colour);
+        self.drawn += 1;
+        true
+    }
+
+    /// What each drawn face has, in their order, for each triangle.
+    pub(super) fn spread(&self, of_faces: &[u32]) -> Vec<u32> {
+        self.origins.iter().map(|&face| of_faces[face as usize]).collect()
+    }
+
+    /// The mesh, with warnings about what is odd in it.
+    pub(super) fn into_mesh(mut self, name: &str, vertices: Vec<Vec3>, count: Option<Place>) -> Mesh {
+        let mut warnings = Vec::new();
+        if self.left_out > 0 {
+            let subject = counted(self.left_out, "face has", "faces have");
+            warnings.push(Diagnostic::warning(format!("{name}: {subject} fewer than 3 corners and cannot be seen")));
+        }
+        if self.triangles.is_empty() && self.left_out == 0 && !vertices.is_empty() {
+            warnings.push(Diagnostic::warning(format!("{name}: vertices without faces cannot be seen")));
+        }
+        let (materials, of_faces) =
+            std::mem::take(&mut self.colours).into_materials(self.drawn as usize, name, &mut warnings);
+        let surfaces = match materials.is_empty() {
+            true => Vec::new(),
+            false => self.spread(&of_faces),
+        };
+        warnings.extend(census(name, &vertices, &self.triangles));
+        Mesh {
+            vertices,
+            triangles: self.triangles,
+            materials,
+            surfaces,
+            faces: self.drawn as usize,
+            count,
+            warnings: Report(warnings),
+        }
+    }
+}

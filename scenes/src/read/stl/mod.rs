@@ -1,0 +1,78 @@
+//! The reader of `.stl` meshes, text and binary. The formats are decoded by the library `stl_io`; what a file is, and
+//! what is wrong with it, is found out here and in `text`.
+
+mod binary;
+mod text;
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use isa::diagnostic::{Diagnostic, Report};
+use stl_io::Triangle;
+
+use super::colour::Spec;
+use super::faces::Faces;
+use super::mesh::Mesh;
+use super::words;
+use crate::model::Vec3;
+
+/// Reads an STL file; `name` is shown in messages. Numbers are of single precision, in text too.
+///
+/// - Corners with the same coordinates become one vertex; normals are not used.
+/// - A file is binary when its length is that of the triangles it announces, whatever its first word is.
+/// - Colours, which some programs hide in binary files, are read over with a warning.
+///
+/// Errors: the first mistake.
+pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Report> {
+    let bytes = bytes.into();
+    words::refuse_utf16(&bytes, name)?;
+    if binary::is_exact(&bytes) || !(is_text(&bytes) || bytes.is_empty()) {
+        return binary::parse(bytes, name);
+    }
+    text::parse(bytes, name)
+}
+
+/// Whether a file starts as text does. A binary file has zeros in the number of its triangles at least, if that is
+/// less than 2^24.
+fn is_text(bytes: &[u8]) -> bool {
+    let is_control = |&octet: &u8| octet < b' ' && !octet.is_ascii_whitespace() && octet != b'\x0b';
+    !bytes[..bytes.len().min(512)].iter().any(is_control)
+}
+
+/// Whether a file is a binary STL for certain.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    binary::is_exact(bytes)
+}
+
+/// Triangles on their way to a mesh.
+#[derive(Default)]
+struct Corners {
+    vertices: Vec<Vec3>,
+    numbers: HashMap<[u32; 3], u32>,
+    faces: Faces,
+}
+
+impl Corners {
+    /// Takes a triangle; false when a coordinate is not finite.
+    fn push(&mut self, triangle: &Triangle) -> bool {
+        if !triangle.vertices.iter().flat_map(|corner| corner.0).all(f32::is_finite) {
+            return false;
+        }
+        let corners = triangle.vertices.map(|corner| {
+            // Adding zero makes -0 and 0 the same.
+            let corner = corner.0.map(|x| x + 0.0);
+            *self.numbers.entry(corner.map(f32::to_bits)).or_insert_with(|| {
+                self.vertices.push(corner.map(f64::from));
+                self.vertices.len() as u32 - 1
+            })
+        });
+        self.faces.push(&self.vertices, &corners, Spec::Default);
+        true
+    }
+
+    fn into_mesh(self, name: &str, mut warnings: Vec<Diagnostic>) -> Mesh {
+        let mut mesh = self.faces.into_mesh(name, self.vertices, None);
+        warnings.append(&mut mesh.warnings.0);
+        Mesh { warnings: Report(warnings), ..mesh }
+    }
+}

@@ -1,4 +1,4 @@
-//! What the README shows is what happens: its commands run, and its table is measured again.
+//! What the README and the tutorial show is what happens: their commands run, and the README's table is measured again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,17 +10,20 @@ fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn readme() -> String {
-    fs::read_to_string(repository().join("README.md")).expect("there is a README")
+fn document(name: &str) -> String {
+    fs::read_to_string(repository().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// A folder with what the README's commands read.
+/// A folder with what the documents' commands read.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder for what the commands write");
-    fs::create_dir(folder.path().join("examples")).unwrap();
-    for file in fs::read_dir(repository().join("examples")).unwrap() {
-        let file: PathBuf = file.unwrap().path();
-        fs::copy(&file, folder.path().join("examples").join(file.file_name().unwrap())).unwrap();
+    for name in ["examples", "kernels/asm/report"] {
+        let copy = folder.path().join(name);
+        fs::create_dir_all(&copy).unwrap();
+        for file in fs::read_dir(repository().join(name)).unwrap() {
+            let file: PathBuf = file.unwrap().path();
+            fs::copy(&file, copy.join(file.file_name().unwrap())).unwrap();
+        }
     }
     folder
 }
@@ -48,19 +51,23 @@ fn the_demo_writes_three_pictures_and_meets_the_annex() {
     }
 }
 
+/// Runs the commands of a document in its order, and returns how many there are.
+fn run_commands(name: &str) -> usize {
+    let folder = folder();
+    let text = document(name);
+    let commands = text.lines().filter_map(|line| line.strip_prefix("$ lancer "));
+    let commands = commands.map(|line| line.split(" # ").next().unwrap_or_default().trim());
+    commands.map(|command| succeed(folder.path(), &command.split_whitespace().collect::<Vec<_>>())).count()
+}
+
 #[test]
 fn the_commands_of_the_readme_run() {
-    let folder = folder();
-    let readme = readme();
-    let commands: Vec<&str> = readme
-        .lines()
-        .filter_map(|line| line.strip_prefix("$ lancer "))
-        .map(|line| line.split('#').next().unwrap_or_default().trim())
-        .collect();
-    assert!(commands.len() >= 7, "the README has commands");
-    for command in commands {
-        succeed(folder.path(), &command.split_whitespace().collect::<Vec<_>>());
-    }
+    assert_eq!(run_commands("README.md"), 7);
+}
+
+#[test]
+fn the_commands_of_the_tutorial_run() {
+    assert_eq!(run_commands("docs/tutorial.md"), 12);
 }
 
 /// 1234567 as 1,234,567.
@@ -95,7 +102,7 @@ fn measure(scene: &str) {
         grouped(rays),
         grouped((operations as f64 / pixels as f64).round() as u64),
     );
-    assert!(readme().contains(&line), "the README should say\n{line}");
+    assert!(document("README.md").contains(&line), "the README should say\n{line}");
 }
 
 #[test]

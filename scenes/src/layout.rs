@@ -1,10 +1,14 @@
 //! The structures of global memory as data: names, octets and offsets of all fields, in both layouts. The image is written and read by these
 //! tables, and the assembler's `.struct` definitions are generated from them, so that a field has one place. Little-endian throughout.
 
+mod manual;
+
 use std::fmt;
 use std::str::FromStr;
 
 use isa::diagnostic::{Diagnostic, did_you_mean};
+
+pub use self::manual::manual;
 
 /// A field: one or more integers of the same width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

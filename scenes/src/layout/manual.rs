@@ -1,0 +1,108 @@
+//! The memory layouts as a manual in Markdown, from the tables that images are written by.
+
+use std::fmt::Write;
+
+use super::{Field, LIGHT, Layout, MATERIAL, PIXEL, Structure};
+use crate::image::{HEADER, Kind};
+
+/// The manual of both layouts: `docs/layouts.md`.
+pub fn manual() -> String {
+    let mut text = INTRODUCTION.to_string();
+    for (number, kind) in Kind::ALL.into_iter().enumerate() {
+        let holds = match kind {
+            Kind::Header => format!("{HEADER} octets that are never used, so that 0 is no structure's address"),
+            Kind::Nodes => "nodes of the kd tree, level by level; the root is the first".to_string(),
+            Kind::References => "references of the leaves to their triangles, leaf by leaf".to_string(),
+            Kind::Triangles => "triangles, by index".to_string(),
+            Kind::Materials => "materials, by number".to_string(),
+            Kind::Lights => "lights, by number".to_string(),
+            Kind::Frame => "pixels, row 0 (the top) first, from left to right; zero at the start".to_string(),
+        };
+        line(&mut text, &format!("{}. `{}`: {holds}.", number + 1, kind.name()));
+    }
+    line(&mut text, FORMATS);
+    for layout in Layout::ALL {
+        let about = match layout {
+            Layout::Report => REPORT,
+            Layout::Wide => WIDE,
+        };
+        line(&mut text, &format!("## Layout `{layout}`\n\n{about}"));
+        for structure in [layout.node(), layout.reference(), layout.triangle()] {
+            table(&mut text, structure);
+        }
+    }
+    line(&mut text, "## Structures of both layouts\n");
+    for structure in [&MATERIAL, &LIGHT, &PIXEL] {
+        table(&mut text, structure);
+    }
+    // One line end at the end of the file.
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+const INTRODUCTION: &str = "\
+# Layouts of global memory
+
+<!-- Written by scenes::layout::manual from the tables in scenes/src/layout.rs; a test says when this file is stale. -->
+
+A scene is put into global memory once, before the machine starts; kernels read it there and write the frame. There are
+two layouts: `report` has the report's structures bit for bit (Annex I), `wide` is the default and keeps all bits of a
+coordinate. `--layout` chooses one.
+
+Integers are little-endian, signed ones in two's complement, and structures have no gaps between their fields.
+Structures follow each other without gaps too, in this order; each kind starts at the next multiple of 8:
+
+";
+
+const FORMATS: &str = "
+Kernels know field offsets by name: the assembler's `.struct` definitions come from the same tables. How many fraction
+bits a number has is not part of the layout but chosen for each scene and word length (`lancer scene info` prints it),
+or set with `--format`:
+
+| format | what has it | default in a word of `w` bits |
+| --- | --- | --- |
+| position | coordinates, relative to the middle of the scene's box | the finest power of two with everything within 2^(w-2) |
+| weight | material coefficients and colours, 0 to 1 | w - 2 |
+| colour | light colours and pixels | the most that hold the brightest sum, at most w - 3 |
+| index | indices of refraction | w - 4 |
+";
+
+const REPORT: &str = "\
+Coordinates are stored in 16 bits: shifted right by w - 16 in words of w bits, rounded to nearest, ties up. They are
+shifted left again when they are loaded. The tree is built on the coordinates as they are stored. A triangle names 256
+materials at most, and a leaf has 65,535 triangles at most. Addresses are those of octets; structures are not aligned.
+";
+
+const WIDE: &str = "\
+Coordinates are stored as they are in registers. A node has 8 octets at an address that is a multiple of 8, so that the
+low bits of `link` can hold a tag; a leaf's references are an array. A triangle names 65,536 materials at most.
+";
+
+fn line(text: &mut String, line: &str) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+/// What an integer of a field is.
+fn kind(field: &Field) -> String {
+    let sign = if field.is_signed { "signed" } else { "unsigned" };
+    let bits = 8 * field.width;
+    match field.elements {
+        1 => format!("{sign} {bits}"),
+        count => format!("{count} x {sign} {bits}"),
+    }
+}
+
+fn table(text: &mut String, structure: &Structure) {
+    let mut write = || {
+        writeln!(text, "### `{}`: {} octets\n", structure.name, structure.octets())?;
+        writeln!(text, "| offset | octets | field | bits | holds |\n| ---: | ---: | --- | --- | --- |")?;
+        for (offset, field) in structure.offsets() {
+            let (octets, kind) = (field.octets(), kind(field));
+            writeln!(text, "| {offset} | {octets} | `{}` | {kind} | {} |", field.name, field.holds)?;
+        }
+        writeln!(text)
+    };
+    write().expect("text takes whatever is written to it");
+}

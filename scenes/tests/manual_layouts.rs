@@ -1,0 +1,37 @@
+//! `docs/layouts.md` is what the tables of the layouts say.
+
+use std::fs;
+use std::path::Path;
+
+use scenes::layout;
+
+/// Set to 1, this environment variable makes the test write the manual instead of comparing it.
+const BLESS: &str = "LANCER_BLESS";
+
+#[test]
+fn the_manual_of_the_layouts_is_not_stale() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/layouts.md");
+    let manual = layout::manual();
+    if std::env::var_os(BLESS).is_some_and(|value| value != "0") {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, &manual).unwrap();
+    }
+    let written = fs::read_to_string(&path).unwrap_or_default();
+    let stale = written.lines().zip(manual.lines()).position(|(written, manual)| written != manual);
+    let line = stale.unwrap_or_else(|| written.lines().count().min(manual.lines().count())) + 1;
+    assert!(
+        written == manual,
+        "docs/layouts.md is stale from line {line} on. Write it anew: {BLESS}=1 cargo test -p scenes --test manual_layouts"
+    );
+}
+
+#[test]
+fn every_field_is_in_the_manual() {
+    let manual = layout::manual();
+    for structure in layout::Layout::ALL.into_iter().flat_map(layout::Layout::structures) {
+        for (offset, field) in structure.offsets() {
+            let row = format!("| {offset} | {} | `{}` |", field.octets(), field.name);
+            assert!(manual.contains(&row), "{}: {row}", structure.name);
+        }
+    }
+}

@@ -5,6 +5,7 @@ pub mod camera;
 pub mod generate;
 pub mod grid;
 pub mod image;
+pub mod info;
 pub mod kdtree;
 pub mod layout;
 pub mod metrics;

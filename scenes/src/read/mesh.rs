@@ -37,6 +37,18 @@ pub(super) fn census(name: &str, vertices: &[Vec3], triangles: &[[u32; 3]]) -> V
         let message = format!("{name}: {subject} no area and cannot be seen ({})", which(first, more));
         warnings.push(Diagnostic::warning(message));
     }
+    let repeated = repeated(triangles);
+    if let Some(&first) = repeated.first() {
+        let more = repeated.len() - 1;
+        let subject = counted(more + 1, "triangle repeats an earlier one", "triangles repeat earlier ones");
+        let message = format!("{name}: {subject} ({})", which(first as usize, more));
+        warnings.push(Diagnostic::warning(message));
+    }
+    warnings
+}
+
+/// Triangles with the same three vertices as an earlier one, in any order, by number.
+pub(crate) fn repeated(triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut sorted: Vec<([u32; 3], u32)> = (0..)
         .zip(triangles)
         .map(|(n, corners)| {
@@ -46,14 +58,10 @@ pub(super) fn census(name: &str, vertices: &[Vec3], triangles: &[[u32; 3]]) -> V
         })
         .collect();
     sorted.sort_unstable();
-    let twice = sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1);
-    if let Some(first) = twice.clone().min() {
-        let more = twice.count() - 1;
-        let subject = counted(more + 1, "triangle repeats an earlier one", "triangles repeat earlier ones");
-        let message = format!("{name}: {subject} ({})", which(first as usize, more));
-        warnings.push(Diagnostic::warning(message));
-    }
-    warnings
+    let mut repeated: Vec<u32> =
+        sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1].1).collect();
+    repeated.sort_unstable();
+    repeated
 }
 
 fn which(first: usize, more: usize) -> String {
@@ -61,7 +69,7 @@ fn which(first: usize, more: usize) -> String {
 }
 
 /// Whether a triangle has no area. Edges are scaled first, so that small coordinates do not vanish in the product.
-fn is_flat([a, b, c]: [Vec3; 3]) -> bool {
+pub(crate) fn is_flat([a, b, c]: [Vec3; 3]) -> bool {
     let edge = |p: Vec3| {
         let edge = [0, 1, 2].map(|k| p[k] / 2.0 - a[k] / 2.0);
         let size = edge.iter().fold(0.0_f64, |size, x| size.max(x.abs()));

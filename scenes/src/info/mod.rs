@@ -1,0 +1,202 @@
+//! What is known about a scene before it is drawn: its parts, its tree, its octets in memory, and what the grid costs.
+//! How it is printed is not decided here; it serializes as the JSON of `lancer scene info`.
+
+mod precision;
+
+use isa::diagnostic::Report;
+use serde::{Serialize, Serializer};
+
+pub use self::precision::Precision;
+use crate::image::{self, Image, Options};
+use crate::kdtree::Statistics;
+use crate::model::{Scene, Vec3, View};
+use crate::read::mesh::repeated;
+
+/// Version of [`SceneInfo`].
+pub const SCHEMA: &str = "lancer-scene-1";
+
+/// The facts of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct SceneInfo {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// Name of the scene.
+    pub scene: String,
+    /// Width of its picture in pixels.
+    pub width: u32,
+    /// Height of its picture in pixels.
+    pub height: u32,
+    /// Triangles.
+    pub triangles: usize,
+    /// Vertices.
+    pub vertices: usize,
+    /// Vertices that no triangle has.
+    pub unused_vertices: usize,
+    /// Triangles with the same three vertices as an earlier one, in any order.
+    pub repeated: usize,
+    /// Smallest and largest corner of the triangles' box, in scene units; `None` without triangles.
+    pub bounds: Option<[Vec3; 2]>,
+    /// Materials in the order of their numbers.
+    pub materials: Vec<MaterialInfo>,
+    /// Lights.
+    pub lights: usize,
+    /// Whether a triangle's material reflects.
+    pub has_mirror: bool,
+    /// Whether a triangle's material is transparent.
+    pub has_glass: bool,
+    /// The kd tree.
+    pub tree: Statistics,
+    /// Structures of global memory.
+    pub memory: Memory,
+    /// Bits of a word, and fraction bits of each quantity.
+    pub formats: Named<i32>,
+    /// What the grid costs.
+    pub precision: Precision,
+}
+
+/// A material and how many triangles have it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MaterialInfo {
+    /// Diffuse colour.
+    pub colour: Vec3,
+    /// Specular coefficient ks.
+    pub reflection: f64,
+    /// Diffuse coefficient kd.
+    pub intensity: f64,
+    /// Transmission coefficient kt.
+    pub transmission: f64,
+    /// Index of refraction, 0 for an opaque material.
+    pub index: f64,
+    /// Triangles that have it.
+    pub triangles: usize,
+}
+
+/// Octets of global memory.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Memory {
+    /// Name of the layout.
+    pub layout: &'static str,
+    /// Octets by structure, in the order of the addresses.
+    pub octets: Named<u64>,
+    /// All octets, gaps between the structures included.
+    pub total: usize,
+}
+
+/// Values by name in an order that is kept; a map where it is serialized.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<T>(pub Vec<(&'static str, T)>);
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+impl SceneInfo {
+    /// The facts of a scene in memory, with the default view.
+    ///
+    /// # Errors
+    /// What [`image::build`] refuses.
+    pub fn new(scene: &Scene, options: &Options) -> Result<SceneInfo, Report> {
+        let image = image::build(scene, &View::new(scene.size), options)?;
+        Ok(SceneInfo::of_image(scene, &image))
+    }
+
+    /// The facts of a scene and its image.
+    pub fn of_image(scene: &Scene, image: &Image) -> SceneInfo {
+        let mut is_used = vec![false; scene.vertices.len()];
+        scene.triangles.iter().flat_map(|t| t.vertices).for_each(|vertex| is_used[vertex as usize] = true);
+        let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|triangle| triangle.vertices).collect();
+        let materials = materials(scene);
+        let has = |test: fn(&MaterialInfo) -> bool| materials.iter().any(|m| m.triangles > 0 && test(m));
+        let formats = &image.formats;
+        SceneInfo {
+            schema: SCHEMA,
+            scene: scene.name.clone(),
+            width: scene.size.0,
+            height: scene.size.1,
+            triangles: scene.triangles.len(),
+            vertices: scene.vertices.len(),
+            unused_vertices: is_used.iter().filter(|is_used| !**is_used).count(),
+            repeated: repeated(&corners).len(),
+            bounds: scene.bounds().map(|(low, high)| [low, high]),
+            lights: scene.lights.len(),
+            has_mirror: has(|material| material.reflection > 0.0),
+            has_glass: has(|material| material.transmission > 0.0),
+            materials,
+            tree: image.tree.statistics(),
+            memory: Memory {
+                layout: image.layout.name(),
+                octets: Named(image.regions.iter().map(|(kind, range)| (kind.name(), range.len() as u64)).collect()),
+                total: image.bytes.len(),
+            },
+            formats: Named([("word", formats.word as i32)].into_iter().chain(formats.entries()).collect()),
+            precision: Precision::new(scene, image),
+        }
+    }
+}
+
+fn materials(scene: &Scene) -> Vec<MaterialInfo> {
+    let mut uses = vec![0; scene.materials.len()];
+    scene.triangles.iter().for_each(|triangle| uses[triangle.material as usize] += 1);
+    let info = |(material, triangles): (&crate::model::Material, usize)| MaterialInfo {
+        colour: material.colour,
+        reflection: material.reflection,
+        intensity: material.intensity,
+        transmission: material.transmission(),
+        index: material.index,
+        triangles,
+    };
+    scene.materials.iter().zip(uses).map(info).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate;
+    use crate::layout::Layout;
+
+    fn info(name: &str, options: Options) -> SceneInfo {
+        let scene = generate::scene(name, &generate::Options::default()).unwrap();
+        SceneInfo::new(&scene, &options).unwrap()
+    }
+
+    #[test]
+    fn parts_add_up() {
+        for layout in Layout::ALL {
+            let info = info("cornell", Options { layout, ..Options::default() });
+            assert_eq!(info.materials.iter().map(|material| material.triangles).sum::<usize>(), info.triangles);
+            let octets: u64 = info.memory.octets.0.iter().map(|(_, octets)| octets).sum();
+            let gaps = info.memory.total as u64 - octets;
+            assert!(gaps < 8 * info.memory.octets.0.len() as u64, "{gaps}");
+            let of = |name: &str| info.memory.octets.0.iter().find(|(kind, _)| *kind == name).unwrap().1;
+            assert_eq!(of("triangles"), info.triangles as u64 * u64::from(layout.triangle().octets()));
+            assert_eq!(of("nodes"), info.tree.nodes as u64 * u64::from(layout.node().octets()));
+            assert_eq!(of("references"), info.tree.references as u64 * u64::from(layout.reference().octets()));
+            assert_eq!(of("frame"), 320 * 240 * 12);
+            assert!(info.has_mirror && info.has_glass && info.lights > 0);
+            assert_eq!((info.unused_vertices, info.repeated), (0, 0));
+        }
+    }
+
+    #[test]
+    fn what_is_odd_is_counted() {
+        let mut scene = generate::scene("triangle", &generate::Options::default()).unwrap();
+        let first = scene.triangles[0];
+        let [a, b, c] = first.vertices;
+        for vertices in [[b, a, c], [c, a, b], [a, a, b]] {
+            scene.triangles.push(crate::model::Triangle { vertices, ..first });
+        }
+        scene.vertices.push([0.25, 0.25, 0.0]);
+        let info = SceneInfo::new(&scene, &Options::default()).unwrap();
+        assert_eq!((info.repeated, info.unused_vertices, info.precision.degenerate), (2, 1, 1));
+        assert_eq!(info.materials[0].triangles, 4);
+    }
+
+    #[test]
+    fn nothing_has_no_box() {
+        let info = info("empty", Options::default());
+        assert_eq!((info.triangles, info.bounds, info.precision.largest_move), (0, None, 0.0));
+        assert_eq!((info.precision.largest_share, info.precision.rms_share), (0.0, 0.0));
+    }
+}

@@ -178,9 +178,13 @@ pub fn run<T: Watch, O: Observer>(
         }
         /// Executes one row: its operands are read, its meaning is asked, its results are written.
         macro_rules! execute {
-            ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-                finish!($trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*), $written)
-            };
+            ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
+                let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
+                if T::IS_WATCHING && arithmetic.take_division_by_zero() {
+                    break Pause::Fault(Fault::DivisionByZero);
+                }
+                finish!(result, $written)
+            }};
             ({ local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
                 match $trait::$name(buffer $(, read!(registers, fields, $letter $kind))*) {
                     Ok(result) => finish!(result, $written),
@@ -218,9 +222,6 @@ pub fn run<T: Watch, O: Observer>(
 
         let (exit, units): (usize, u32) = isa::rows!(dispatch);
 
-        if T::IS_WATCHING && arithmetic.take_division_by_zero() {
-            break Pause::Fault(Fault::DivisionByZero);
-        }
         let number = slot.first_exit as usize + exit;
         let pass = &mut passes[number];
         pass.count += 1;

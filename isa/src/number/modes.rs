@@ -156,7 +156,11 @@ impl Arithmetic for Modes {
             _ => self.quantization.divide(dividend, divisor),
         };
         // A quotient by zero has no low bits that could wrap: it saturates in every mode.
-        let overflow = if divisor == 0 { Overflow::Sat } else { self.overflow };
+        let overflow = match self.overflow {
+            Overflow::SatSym => Overflow::SatSym,
+            _ if divisor == 0 => Overflow::Sat,
+            other => other,
+        };
         overflow.fit(exact, self.word) as i32
     }
 }

@@ -46,8 +46,8 @@ macro_rules! vector_rows {
             vput (x: V, a: S, i: Lane)        "010000 xxxxx aaaaa ----- ----ii 10001"  [Done(move 1)];
             /// Puts `a` into lane `b` modulo 4; lane 3 is nowhere.
             vputr (x: V, a: S, b: S)          "010000 xxxxx aaaaa bbbbb ------ 10010"  [Done(move 1)];
-            /// Number of the lane with the largest absolute value; of equal ones the first.
-            vmajor (d: S, a: V)               "010000 ddddd aaaaa ----- ------ 10011"  [Done(cmp 2)];
+            /// Number of the lane with the largest absolute value, those taken as 32 unsigned bits; of equal ones the first.
+            vmajor (d: S, a: V)               "010000 ddddd aaaaa ----- ------ 10011"  [Done(sub 3, cmp 2)];
             /// A bit a lane (lane 0 lowest): set where `a < b`.
             vlt (d: S, a: V, b: V)            "010000 ddddd aaaaa bbbbb ------ 10100"  [Done(cmp 3)];
             /// Lane `i` from `a` where bit `i` of `b` is set, else unchanged.

@@ -32,8 +32,9 @@ macro_rules! wide_rows {
             wscale (d: S, a: W, b: S)         "010001 ddddd aaa-- bbbbb ------ 01011"  [Done(logic 1)];
             /// Quotient `a 2^i / b` of exact numbers, rounded once to a scalar; division by zero as in `div`.
             wdiv (d: S, a: W, b: W, i: Sh)    "010001 ddddd aaa-- bbb-- iiiiii 01100"  [Done(div 1)];
-            /// Square root of `a 2^i`, correctly rounded to a scalar; 0 for a negative `a`.
-            wsqrt (d: S, a: W, i: Sh)         "010001 ddddd aaa-- ----- iiiiii 01101"  [Done(add 3, sub 5, mul 8, cmp 3)];
+            /// Square root of `a 2^i`, correctly rounded to the nearest scalar; 0 for a negative `a`. It costs what a table of
+            /// reciprocal roots, a Newton step, a step with the exact remainder and an exact correction cost.
+            wsqrt (d: S, a: W, i: Sh)         "010001 ddddd aaa-- ----- iiiiii 01101"  [Done(add 3, sub 5, mul 7, cmp 2)];
             /// Bitwise and of the two's complement patterns.
             wand (d: W, a: W, b: W)           "010001 ddd-- aaa-- bbb-- ------ 01110"  [Done(logic 1)];
             /// Pattern of 64 bits shifted left by the low six bits of `b`, modulo 2^64.

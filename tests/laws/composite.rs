@@ -1,0 +1,201 @@
+//! A row that costs several operations costs what a body of elementary rows costs, and does the same: `oracles/` has
+//! that body for each.
+//!
+//! In a body the operands have the names of the row's letters; `i` is a number. Scratch registers are s8 and up, v8 and
+//! up, w0, w1, w2, w5 to w7. A line `; range: a 30 bits` or `; range: i 31..63` limits the operands to those that the
+//! elementary rows can say, a line `; arithmetic: default` the machines.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use emu::code::Code;
+use emu::machine::Config;
+use emu::machine::config::ArithmeticConfig;
+use emu::machine::single::{self, Single, SingleRun};
+use emu::octets::Memory;
+use emu::registers::Registers;
+use isa::diagnostic::Source;
+use isa::number::{Modes, Overflow, Quantization};
+use isa::{Class, Counts, Isa, Kind, Operand, Program, Row};
+
+use super::random::Random;
+
+/// Operands that a body and its row are run on, for each shift.
+const ROUNDS: usize = 60;
+
+/// Shifts of the rows that have one.
+const SHIFTS: [i64; 16] = [0, 1, 2, 7, 15, 16, 29, 30, 31, 32, 33, 45, 60, 61, 62, 63];
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/oracles")
+}
+
+/// The part of a cost that Annex II of the report counts.
+fn elementary(counts: &Counts) -> Counts {
+    let mut part = Counts::ZERO;
+    for &class in Class::ALL.iter().filter(|class| class.is_elementary()) {
+        part[class] = counts[class];
+    }
+    part
+}
+
+fn is_composite(row: &Row) -> bool {
+    row.exits.iter().any(|exit| exit.cost.elementary() > 1)
+}
+
+/// Where an operand lives.
+fn register(operand: &Operand) -> Option<(char, u8)> {
+    let number = match operand.letter {
+        b'a' => 1,
+        b'b' => 2,
+        b'c' => 3,
+        b'd' | b'x' => 4,
+        _ => 5,
+    };
+    Some((operand.kind.register_file()?, number))
+}
+
+/// A row and the body that it is compared with.
+struct Oracle<'a> {
+    row: &'a Row,
+    text: String,
+}
+
+impl Oracle<'_> {
+    /// What stands behind a key, on lines of their own.
+    fn settings<'t>(&'t self, key: &'t str) -> impl Iterator<Item = &'t str> {
+        self.text.lines().filter_map(move |line| line.strip_prefix("; ")?.strip_prefix(key)?.strip_prefix(": "))
+    }
+
+    fn range(&self, letter: u8) -> Option<&str> {
+        self.settings("range").find_map(|range| range.strip_prefix(letter as char)?.strip_prefix(' '))
+    }
+
+    fn shifts(&self) -> Vec<i64> {
+        if self.row.operand(b'i').is_none() {
+            return vec![0];
+        }
+        let (least, most) = match self.range(b'i').map(|range| range.split_once("..").unwrap()) {
+            Some((least, most)) => (least.parse().unwrap(), most.parse().unwrap()),
+            None => (0, 63),
+        };
+        SHIFTS.into_iter().filter(|shift| (least..=most).contains(shift)).collect()
+    }
+
+    fn arithmetics(&self) -> Vec<Modes> {
+        let all = [
+            Modes::default(),
+            Modes { word: 16, quantization: Quantization::Trn, overflow: Overflow::Wrap },
+            Modes { word: 24, quantization: Quantization::RndConv, overflow: Overflow::SatSym },
+            Modes { word: 12, quantization: Quantization::TrnZero, overflow: Overflow::SatZero },
+        ];
+        all[..if self.settings("arithmetic").any(|which| which == "default") { 1 } else { all.len() }].to_vec()
+    }
+
+    /// The program of a body, or of the row itself, with the operands' names.
+    fn program(&self, isa: &Isa, body: &str, shift: i64) -> Program {
+        let mut text = String::new();
+        for operand in self.row.operands.iter() {
+            if let Some((file, number)) = register(operand) {
+                text += &format!(".reg {}, {file}{number}\n", operand.letter as char);
+            }
+        }
+        text += &format!("{body}\nhalt\n");
+        let options = asm::Options { defines: vec![("i".into(), shift)], ..asm::Options::default() };
+        match asm::assemble(&Source::new(format!("{}.s", self.row.name), text), isa, &options) {
+            Ok(assembled) => assembled.program,
+            Err(report) => panic!("{}", report.render(false)),
+        }
+    }
+
+    /// The row in an instruction of its own.
+    fn statement(&self) -> String {
+        let letters: Vec<String> = self.row.operands.iter().map(|o| (o.letter as char).to_string()).collect();
+        format!("{} {}", self.row.name, letters.join(", "))
+    }
+
+    /// Registers with operands of the word, in the range that the body takes.
+    fn operands(&self, word: u32, random: &mut Random) -> Registers {
+        let mut registers = Registers::default();
+        for operand in self.row.operands.iter() {
+            let Some((_, number)) = register(operand) else { continue };
+            let limit = self.range(operand.letter).map(|range| range.trim_end_matches(" bits").parse().unwrap());
+            let mut next = |bits: u32| random.signed(limit.unwrap_or(bits - 1));
+            match operand.kind {
+                Kind::S | Kind::A => registers.set_scalar(number, next(word) as i32),
+                Kind::V => registers.set_vector(number, [0; 3].map(|_: i32| next(word) as i32)),
+                _ => (0..operand.kind.registers()).for_each(|at| registers.set_wide(number + at, next(2 * word))),
+            }
+        }
+        registers
+    }
+
+    /// The results that a run left.
+    fn results(&self, run: &SingleRun) -> Vec<i64> {
+        let registers = &run.state.registers;
+        let written = self.row.operands.iter().filter(|operand| operand.is_written());
+        written
+            .flat_map(|operand| {
+                let (file, number) = register(operand).unwrap();
+                (0..operand.kind.registers()).flat_map(move |at| match file {
+                    's' => vec![registers.scalar(number + at).into()],
+                    'v' => registers.vector(number + at).map(i64::from).to_vec(),
+                    _ => vec![registers.wide(number + at)],
+                })
+            })
+            .collect()
+    }
+}
+
+fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (SingleRun, Counts) {
+    let Modes { word, quantization, overflow } = modes;
+    let arithmetic = ArithmeticConfig { word, quantization, overflow, trap_division_by_zero: false };
+    let config = Config { arithmetic, ..Config::default() };
+    let registers = registers.clone();
+    let single = Single { config: &config, isa, program, registers, step_limit: 10_000, has_profile: false };
+    let run = single::run(&single, Memory::default()).unwrap();
+    if let Some(trap) = &run.trap {
+        panic!("{trap}");
+    }
+    let counts = elementary(&run.tally.counts(&Code::new(program, isa, config.timing())));
+    (run, counts)
+}
+
+#[test]
+fn every_composite_row_has_a_body_and_every_body_a_row() {
+    let names = |path: PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+    let bodies: BTreeSet<String> =
+        std::fs::read_dir(folder()).unwrap().map(|entry| names(entry.unwrap().path())).collect();
+    let rows: BTreeSet<String> =
+        isa::ROWS.iter().filter(|row| is_composite(row)).map(|row| row.name.to_string()).collect();
+    assert_eq!(bodies, rows);
+}
+
+#[test]
+fn every_composite_row_costs_and_does_what_its_body_does() {
+    let isa = Isa::base();
+    let mut random = Random(4);
+    for row in isa::ROWS.iter().filter(|row| is_composite(row)) {
+        let text = std::fs::read_to_string(folder().join(format!("{}.s", row.name))).unwrap();
+        let oracle = Oracle { row, text };
+        for shift in oracle.shifts() {
+            let body = oracle.program(&isa, &oracle.text, shift);
+            let statement = oracle.program(&isa, &oracle.statement(), shift);
+            for &word in &body.words {
+                let part = isa.row(isa.decode(word).unwrap().op);
+                assert!(!is_composite(part), "the body of `{}` uses `{}`", row.name, part.name);
+            }
+            for modes in oracle.arithmetics() {
+                for _ in 0..ROUNDS {
+                    let registers = oracle.operands(modes.word, &mut random);
+                    let (found, cost) = run(&isa, modes, &statement, &registers);
+                    let (expected, body_cost) = run(&isa, modes, &body, &registers);
+                    let (name, modes) = (&row.name, format!("shift {shift}, {modes:?}"));
+                    assert_eq!(cost, body_cost, "cost of `{name}`, {modes}, {registers:?}");
+                    let (found, expected) = (oracle.results(&found), oracle.results(&expected));
+                    assert_eq!(found, expected, "`{name}`, {modes}, {registers:?}");
+                }
+            }
+        }
+    }
+}

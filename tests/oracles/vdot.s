@@ -1,0 +1,15 @@
+; Three exact products, two exact sums, one rounding. Sums of 65 bits are beyond a wide accumulator.
+; arithmetic: default
+; range: a 30 bits
+; range: b 30 bits
+        .macro product wide, lane
+        vget s8, a, \lane
+        vget s9, b, \lane
+        wmul \wide, s8, s9
+        .endm
+        product w0, 0
+        product w1, 1
+        wadd w0, w0, w1
+        product w1, 2
+        wadd w0, w0, w1
+        wround d, w0, i

@@ -1,0 +1,2 @@
+        movi s1, -1
+        send5 s1, v1            ; trap: a message for core -1, where the largest number is 0

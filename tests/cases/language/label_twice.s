@@ -1,0 +1,2 @@
+done:   halt
+done:   halt                    ; error E004: `done` is defined twice

@@ -1,0 +1,2 @@
+        .func trace             ; error E022: `.endfunc` is missing
+        halt

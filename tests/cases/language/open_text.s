@@ -1,0 +1,4 @@
+; error E012 line 4: the text has no closing quotation mark
+        halt
+        .buffer
+        .asciz "open

@@ -1,0 +1,1 @@
+        .wrod 5                 ; error E002: `.wrod` is not a directive

@@ -1,0 +1,3 @@
+; A warning does not keep a program from running.
+        .warning "no shadows"   ; warning W001: no shadows
+        halt                    ; count: jump 1

@@ -1,0 +1,3 @@
+; machine: core = 4
+; error: unknown field `core`, expected one of `cores`, ...
+        halt

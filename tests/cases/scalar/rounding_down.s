@@ -1,0 +1,40 @@
+; RND_MIN_INF: to the nearest, ties towards minus infinity.
+; machine: arithmetic.quantization = "RND_MIN_INF"
+        movi s1, 4
+        movi s2, 1
+        rshift s3, s2, 2        ; s3 = 0 -- 0.25
+        div  s4, s2, s1, 0      ; s4 = 0
+        movi s2, 2
+        rshift s3, s2, 2        ; s3 = 0 -- 0.5
+        div  s4, s2, s1, 0      ; s4 = 0
+        movi s2, 3
+        rshift s3, s2, 2        ; s3 = 1 -- 0.75
+        div  s4, s2, s1, 0      ; s4 = 1
+        movi s2, 5
+        rshift s3, s2, 2        ; s3 = 1 -- 1.25
+        div  s4, s2, s1, 0      ; s4 = 1
+        movi s2, 6
+        rshift s3, s2, 2        ; s3 = 1 -- 1.5
+        div  s4, s2, s1, 0      ; s4 = 1
+        movi s2, 10
+        rshift s3, s2, 2        ; s3 = 2 -- 2.5
+        div  s4, s2, s1, 0      ; s4 = 2
+        movi s2, -1
+        rshift s3, s2, 2        ; s3 = 0 -- -0.25
+        div  s4, s2, s1, 0      ; s4 = 0
+        movi s2, -2
+        rshift s3, s2, 2        ; s3 = -1 -- -0.5
+        div  s4, s2, s1, 0      ; s4 = -1
+        movi s2, -3
+        rshift s3, s2, 2        ; s3 = -1 -- -0.75
+        div  s4, s2, s1, 0      ; s4 = -1
+        movi s2, -5
+        rshift s3, s2, 2        ; s3 = -1 -- -1.25
+        div  s4, s2, s1, 0      ; s4 = -1
+        movi s2, -6
+        rshift s3, s2, 2        ; s3 = -2 -- -1.5
+        div  s4, s2, s1, 0      ; s4 = -2
+        movi s2, -10
+        rshift s3, s2, 2        ; s3 = -3 -- -2.5
+        div  s4, s2, s1, 0      ; s4 = -3
+        halt                    ; count: div 12, move 13, logic 12, jump 1

@@ -1,7 +1,8 @@
 ; Ray against the triangle in the slot: Moeller-Trumbore on exact products. Signs are tested before anything is divided, and the
-; one quotient is rounded once. Decisions are exact as long as EDGE_SHIFT is 0; beyond, each product is rounded to 2 x word bits.
+; one quotient is rounded once. Decisions are exact as long as EDGE_SHIFT is 0; beyond, each determinant is rounded to 2 x word bits.
+; Both triangles of an edge round the same determinant of it, so a ray that hits the edge still hits one of them.
 ;
-; In: slot, origin, direction. Out: s12 = t > 0, or MISSED. Returns by link_step. Scratch: v6 to v11, w0 to w7.
+; In: slot, origin, direction. Out: s12 = t, or MISSED. Returns by link_step. Scratch: v6 to v11, s12, w0 to w7.
 
 ; Decides a number that is exactly 0 as if the direction were moved by (e, e^2, e^3), e infinitely small: by the first lane other
 ; than 0 of the wide normal \n. Falls through when that has the sign asked for; a normal of 0 is a miss.
@@ -43,7 +44,24 @@ u_\@:
     want  \sign, w5, tie_v_\@
 v_\@:
     wsub  w4, w4, w5                        ; (1 - u - v) det
-    want  \sign, w4, tie_w_\@
+.if EDGE_SHIFT > 0
+    ; The difference of three rounded numbers is off by less than 1.5: from -2 to 1 the edge's own determinant decides.
+    movi  s12, 2
+    wextend w5, s12, 0
+    wadd  w4, w4, w5
+  .if \sign > 0
+    bwltz w4, triangle_missed
+    wsrl  w4, w4, s12
+    bweqz w4, third_\@
+  .else
+    bwltz w4, w_\@
+    wsrl  w4, w4, s12
+    bweqz w4, third_\@
+    jump  triangle_missed
+  .endif
+.else
+    want  \sign, w4, third_\@
+.endif
 w_\@:
     wmixed w4, w0, v8, T_SHIFT              ; t det
     want  \sign, w4, triangle_missed
@@ -60,10 +78,16 @@ tie_v_\@:
     decide_tie \sign, w5, w6, w7
     wextend w5, s0, 0
     jump  v_\@
-tie_w_\@:
+third_\@:
     vsub  v10, v8, v9
     vsub  v11, v7, v9
     wcross w5, v10, v11
+.if EDGE_SHIFT > 0
+    wmixed w4, w5, direction, EDGE_SHIFT
+    want  \sign, w4, tie_w_\@
+    jump  w_\@
+tie_w_\@:
+.endif
     decide_tie \sign, w5, w6, w7
     jump  w_\@
 .endm

@@ -7,8 +7,8 @@
     bnez  near, 4f
     jump  2f
 1:  beqz  near, 3f
-2:  iaddi s12, near_t, 1
-    wmul  w0, s12, exit_slope
+2:  wextend w0, exit_slope, 0
+    wmac  w0, near_t, exit_slope            ; (t + 1) |D_k|: t + 1 itself may not fit a word
     wextend w1, exit_run, t + dir - pos
     bwlt  w0, w1, 4f
 3:  srl   s13, backwards, exit_axis

@@ -8,9 +8,11 @@
     mov   s14, packet_count
 2:  next_reference
 .else
-1:  movi  s12, REFERENCES_AT_ONCE
-    min   s12, s12, packet_count
-    isub  packet_count, packet_count, s12
+packet_block:
+    movi  s12, REFERENCES_AT_ONCE
+    blt   s12, packet_count, 1f             ; not min, which is of words: a count may not fit one
+    mov   s12, packet_count
+1:  isub  packet_count, packet_count, s12
     slli  s12, s12, 2
     movi  s13, REFERENCES
     load  s13, packet_refs, s12
@@ -29,7 +31,7 @@
     bnez  s14, 2b
 .else
 3:  bltu  s13, s14, 2b
-    bgtz  packet_count, 1b
+    bgtz  packet_count, packet_block
 .endif
 4:  ret   link_packet
 packet_nearer:

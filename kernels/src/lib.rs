@@ -1,10 +1,13 @@
-//! The ray-tracing kernels: their assembly, how a scene's constants reach it, and which file serves which function.
+//! The ray-tracing kernels: their assembly, how a scene's constants reach it, which file serves which function, and their bit-exact twins
+//! in Rust.
 //! What a word does is said in `emu`, what a scene is in `scenes`.
 
 pub mod annex;
 pub mod build;
+pub mod constants;
 pub mod function;
 pub mod prelude;
+pub mod twin;
 
 pub use build::{Build, Options, build};
 pub use function::{Function, Profile};

@@ -8,10 +8,10 @@ use isa::Isa;
 use isa::diagnostic::{Report, Source};
 use scenes::camera::RawCamera;
 use scenes::image::{Image, Kind};
-use scenes::kdtree::Content;
 use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
+use crate::constants::Constants;
 
 /// Octets of the buffer's tables of materials and lights (report 6.2); what does not fit stays in global memory.
 const TABLES: u32 = 768;
@@ -21,13 +21,6 @@ const REFERENCES_AT_ONCE: u32 = 128;
 
 /// Trap number of a ray that visits more packets than there are.
 const TRAP_STUCK: u32 = 1;
-
-/// Bits of the widest difference of two coordinates, in the sense |difference| < 2^n.
-fn difference_bits(image: &Image) -> u32 {
-    let reach = image.bounds.union(&image.grid.reach);
-    let widest = (0..3).map(|k| i64::from(reach.high[k]) - i64::from(reach.low[k]) + 1).max().unwrap_or(1);
-    64 - widest.leading_zeros()
-}
 
 /// A structure as a `.struct` of the assembler.
 pub(crate) fn structure(text: &mut String, structure: &Structure) {
@@ -72,22 +65,17 @@ fn is_local(image: &Image, kind: Kind) -> bool {
 }
 
 fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
-    let formats = &image.formats;
-    let bits = difference_bits(image);
-    let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
-    let spare = |needed: u32| needed.saturating_sub(2 * formats.word).into();
-    let leaves = image.tree.nodes.iter().filter(|node| matches!(node.content, Content::Leaf { .. })).count();
-    let largest = (1 << (formats.word - 1)) - 1;
+    let Constants { formats, edge_shift, t_shift, offset, never, missed, most_steps } = Constants::new(image);
     vec![
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
         ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
-        ("EDGE_SHIFT", spare(edge)),
-        ("T_SHIFT", spare(reach)),
-        ("OFFSET", if formats.t == formats.position { 2 } else { 3 }),
-        ("NEVER", largest - 1),
-        ("MISSED", largest),
-        ("MOST_STEPS", leaves as i64 + 1),
+        ("EDGE_SHIFT", edge_shift.into()),
+        ("T_SHIFT", t_shift.into()),
+        ("OFFSET", offset.into()),
+        ("NEVER", never.into()),
+        ("MISSED", missed.into()),
+        ("MOST_STEPS", most_steps.into()),
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.statistics().depth.into()),
         ("ROOT", image.root.into()),
@@ -201,7 +189,7 @@ fn camera(text: &mut String, camera: &RawCamera) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub(crate) fn included(layout: Layout) -> [Arc<Source>; 3] {
+pub fn included(layout: Layout) -> [Arc<Source>; 3] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -214,8 +202,11 @@ pub(crate) fn included(layout: Layout) -> [Arc<Source>; 3] {
     [file!("registers.inc"), file!("materials.inc"), structures]
 }
 
-/// Assembles files one after the other as one program.
-pub(crate) fn assemble(name: &str, files: &[Arc<Source>], isa: &Isa) -> Result<asm::Assembled, Report> {
+/// Assembles files one after the other as one program; `name` stands for the program in messages.
+///
+/// # Errors
+/// What the assembler finds in the files.
+pub fn assemble(name: &str, files: &[Arc<Source>], isa: &Isa) -> Result<asm::Assembled, Report> {
     let root: String = (0..files.len()).map(|n| format!(".include \"{n}\"\n")).collect();
     let include = |wanted: &str, _from: &str| -> Result<Arc<Source>, String> {
         wanted

@@ -1,0 +1,72 @@
+//! The numbers that a scene's formats make of the kernels: shifts and limits, the same for the assembly (by the prelude) and for its
+//! twins. What else a program is told about its scene is said in [`crate::prelude`].
+
+use scenes::cadrage::Formats;
+use scenes::image::Image;
+use scenes::kdtree::Content;
+
+/// Shifts and limits of a scene in a word length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Constants {
+    /// Fraction bits of all quantities.
+    pub formats: Formats,
+    /// Bits by which a determinant of a direction and two edges is shifted right to fit twice the word; 0 where it is exact.
+    pub edge_shift: u32,
+    /// Bits by which a determinant of three edges is shifted right to fit twice the word; 0 where it is exact.
+    pub t_shift: u32,
+    /// How far the origin of a secondary ray is moved off the surface along the normal's major axis, raw.
+    pub offset: i32,
+    /// A distance beyond all others, raw: that of the nearest hit as long as there is none.
+    pub never: i32,
+    /// What the triangle test returns for a miss: the largest word, beyond [`Constants::never`].
+    pub missed: i32,
+    /// Packets that a ray may visit after its first one; there are not as many.
+    pub most_steps: u32,
+}
+
+impl Constants {
+    /// The constants of an image.
+    pub fn new(image: &Image) -> Constants {
+        let formats = image.formats;
+        let bits = difference_bits(image);
+        let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
+        let spare = |needed: u32| needed.saturating_sub(2 * formats.word);
+        let leaves = image.tree.nodes.iter().filter(|node| matches!(node.content, Content::Leaf { .. })).count();
+        let largest = i32::MAX >> (32 - formats.word);
+        Constants {
+            formats,
+            edge_shift: spare(edge),
+            t_shift: spare(reach),
+            offset: if formats.t == formats.position { 2 } else { 3 },
+            never: largest - 1,
+            missed: largest,
+            most_steps: leaves as u32 + 1,
+        }
+    }
+
+    /// Bits by which the ratio of the two determinants of a hit is shifted left to be a distance. A program whose formats make this
+    /// negative cannot be assembled.
+    pub fn t_quotient(&self) -> u32 {
+        let Formats { direction, t, position, .. } = self.formats;
+        (direction as i32 + t - position + self.t_shift as i32 - self.edge_shift as i32).max(0) as u32
+    }
+
+    /// Fraction bits of the product of a direction and a distance beyond those of a position; as in [`Constants::t_quotient`], not negative.
+    pub fn along(&self) -> u32 {
+        let Formats { direction, t, position, .. } = self.formats;
+        (direction as i32 + t - position).max(0) as u32
+    }
+
+    /// Fraction bits of the product of a direction and a position beyond those of a distance; as in [`Constants::t_quotient`], not negative.
+    pub fn across(&self) -> u32 {
+        let Formats { direction, t, position, .. } = self.formats;
+        (direction as i32 + position - t).max(0) as u32
+    }
+}
+
+/// Bits of the widest difference of two coordinates, in the sense |difference| < 2^n.
+fn difference_bits(image: &Image) -> u32 {
+    let reach = image.bounds.union(&image.grid.reach);
+    let widest = (0..3).map(|k| i64::from(reach.high[k]) - i64::from(reach.low[k]) + 1).max().unwrap_or(1);
+    64 - widest.leading_zeros()
+}

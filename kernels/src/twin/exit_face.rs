@@ -1,0 +1,28 @@
+//! Where a ray leaves a packet, without division.
+
+use std::array::from_fn;
+
+use scenes::kdtree::Bounds;
+
+use super::lanes::Lanes;
+use super::ray::{Exit, Ray};
+
+/// The nearest of the three planes ahead of a ray that is in a box.
+///
+/// Of planes of axes a < b met at the same t, a is first exactly when the direction along a is positive.
+pub fn exit_face(arithmetic: &impl Lanes, ray: &Ray, bounds: &Bounds) -> Exit {
+    let plane = from_fn(|k| if ray.is_backwards(k) { bounds.low[k] } else { bounds.high[k] });
+    let run = runs(arithmetic, ray, plane);
+    let axis = (1..3).fold(0, |first, k| {
+        let met = arithmetic.wide_product(run[first], ray.steep[k]);
+        let other = arithmetic.wide_product(run[k], ray.steep[first]);
+        if other < met || other == met && ray.is_backwards(first) { k } else { first }
+    });
+    Exit { axis, plane: plane[axis], run: run[axis], slope: ray.steep[axis] }
+}
+
+/// How far planes lie ahead of a ray's origin, each along its axis.
+pub(super) fn runs(arithmetic: &impl Lanes, ray: &Ray, plane: [i32; 3]) -> [i32; 3] {
+    let ahead = arithmetic.difference(plane, ray.origin);
+    from_fn(|k| if ray.is_backwards(k) { arithmetic.negative(ahead[k]) } else { ahead[k] })
+}

@@ -1,0 +1,118 @@
+//! The arithmetic that kernels are written in: sums, products and determinants of raw integers, each exact and then quantized once to a
+//! word or to twice the word. [`Arithmetic`] says how that is done, formats are the caller's business.
+
+use std::array::from_fn;
+
+use isa::number::{Arithmetic, Vector, normalizing_shift, split_shift};
+
+/// Three wide lanes.
+pub type WideVector = [i64; 3];
+
+fn product(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
+}
+
+fn dot(a: Vector, b: Vector) -> i128 {
+    i128::from(product(a[0], b[0]) + product(a[1], b[1])) + i128::from(product(a[2], b[2]))
+}
+
+/// Exact cross product; a lane fits 64 bits: the largest product is 2^62, the least -(2^62 - 2^31).
+fn cross(a: Vector, b: Vector) -> WideVector {
+    let minor = |j: usize, k: usize| product(a[j], b[k]) - product(a[k], b[j]);
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
+}
+
+/// What can be computed in one rounding. A `shift` goes to the right.
+pub trait Lanes: Arithmetic {
+    /// Sum.
+    fn plus(&self, a: i32, b: i32) -> i32 {
+        self.narrow64(i64::from(a) + i64::from(b), 0)
+    }
+
+    /// Difference.
+    fn minus(&self, a: i32, b: i32) -> i32 {
+        self.narrow64(i64::from(a) - i64::from(b), 0)
+    }
+
+    /// Negation.
+    fn negative(&self, a: i32) -> i32 {
+        self.narrow64(-i64::from(a), 0)
+    }
+
+    /// Product.
+    fn times(&self, a: i32, b: i32, shift: u32) -> i32 {
+        self.narrow64(product(a, b), shift)
+    }
+
+    /// Sum, lane by lane.
+    fn sum(&self, a: Vector, b: Vector) -> Vector {
+        from_fn(|k| self.plus(a[k], b[k]))
+    }
+
+    /// Difference, lane by lane.
+    fn difference(&self, a: Vector, b: Vector) -> Vector {
+        from_fn(|k| self.minus(a[k], b[k]))
+    }
+
+    /// Absolute value, lane by lane.
+    fn magnitude(&self, a: Vector) -> Vector {
+        a.map(|lane| self.narrow64(i64::from(lane).abs(), 0))
+    }
+
+    /// Product with a scalar, lane by lane.
+    fn scaled(&self, a: Vector, b: i32, shift: u32) -> Vector {
+        a.map(|lane| self.times(lane, b, shift))
+    }
+
+    /// Product, lane by lane.
+    fn products(&self, a: Vector, b: Vector, shift: u32) -> Vector {
+        from_fn(|k| self.times(a[k], b[k], shift))
+    }
+
+    /// Dot product.
+    fn dot(&self, a: Vector, b: Vector, shift: u32) -> i32 {
+        self.narrow(dot(a, b), shift)
+    }
+
+    /// Product as a wide number.
+    fn wide_product(&self, a: i32, b: i32) -> i64 {
+        self.widen(product(a, b).into(), 0)
+    }
+
+    /// Difference of wide numbers.
+    fn wide_difference(&self, a: i64, b: i64) -> i64 {
+        self.widen(i128::from(a) - i128::from(b), 0)
+    }
+
+    /// Dot product as a wide number.
+    fn wide_dot(&self, a: Vector, b: Vector) -> i64 {
+        self.widen(dot(a, b), 0)
+    }
+
+    /// Cross product in wide lanes.
+    fn wide_cross(&self, a: Vector, b: Vector) -> WideVector {
+        cross(a, b).map(|lane| self.widen(lane.into(), 0))
+    }
+
+    /// Dot product of wide lanes and a vector: with [`Lanes::wide_cross`], a determinant.
+    fn wide_mixed(&self, a: WideVector, b: Vector, shift: u32) -> i64 {
+        self.widen((0..3).map(|k| i128::from(a[k]) * i128::from(b[k])).sum(), shift)
+    }
+
+    /// The vector times the power of two that brings its largest lane into [2^(word-3), 2^(word-2)]; zero stays zero.
+    fn normalized(&self, a: WideVector) -> Vector {
+        let lanes = a.map(i128::from);
+        let shift = normalizing_shift(lanes, self.word());
+        lanes.map(|lane| {
+            let (value, right) = split_shift(lane, shift);
+            self.narrow(value, right)
+        })
+    }
+
+    /// The direction of the cross product, scaled as in [`Lanes::normalized`].
+    fn normalized_cross(&self, a: Vector, b: Vector) -> Vector {
+        self.normalized(cross(a, b))
+    }
+}
+
+impl<A: Arithmetic> Lanes for A {}

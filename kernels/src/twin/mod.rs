@@ -1,0 +1,131 @@
+//! The twins: every function of the kernels in Rust, bit for bit. They are written from the same formulas and roundings as the assembly
+//! and share no code with it, so each is the other's test; together they draw whole pictures natively.
+//!
+//! A file has the name of the function that it is the twin of; small ones stand beside those that use them.
+
+pub mod camera;
+pub mod descend;
+pub mod exit_face;
+pub mod first_packet;
+pub mod lanes;
+pub mod ray;
+pub mod ray_tree;
+pub mod reflect;
+pub mod refract;
+pub mod report;
+mod shade;
+pub mod stage;
+pub mod surface;
+mod trace;
+pub mod triangle;
+pub mod unit;
+
+use std::fmt;
+
+use isa::number::{Arithmetic, Modes, Nearest32, Vector};
+use rayon::prelude::*;
+use scenes::camera::RawCamera;
+use scenes::image::Image;
+
+use crate::build::{Crop, Features};
+use crate::constants::Constants;
+use ray::Stuck;
+use stage::Stage;
+
+/// All that the twins of a scene's kernels share.
+#[derive(Clone, Debug)]
+pub struct Twin<A> {
+    /// Word and modes.
+    pub arithmetic: A,
+    /// Shifts and limits.
+    pub constants: Constants,
+    /// Which rays have children.
+    pub features: Features,
+    /// Tree, triangles, materials and lights.
+    pub stage: Stage,
+    /// Where the rays of the pixels start and go.
+    pub camera: RawCamera,
+    /// Ambient intensity in the colour format.
+    pub ambient: i32,
+    /// Colour where a ray hits nothing, in the colour format.
+    pub background: Vector,
+}
+
+/// Why there is no picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// The octets of the image hold no scene.
+    NoScene,
+    /// A ray of this pixel, counted from 0 row by row, visits more packets than there are.
+    Stuck {
+        /// The first such pixel.
+        pixel: u32,
+    },
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::NoScene => f.write_str("the memory image holds no scene"),
+            Failure::Stuck { pixel } => write!(f, "a ray of pixel {pixel} visits more packets than there are"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// The frame that the machine draws: the pixels of `crop` in the colour format, row by row, on all host threads.
+///
+/// # Errors
+/// An image that holds no scene, or a ray for which the machine traps.
+pub fn render(image: &Image, features: &Features, crop: &Crop, modes: Modes) -> Result<Vec<Vector>, Failure> {
+    if modes == Modes::default() {
+        Twin::new(image, features, Nearest32).ok_or(Failure::NoScene)?.render(crop)
+    } else {
+        Twin::new(image, features, modes).ok_or(Failure::NoScene)?.render(crop)
+    }
+}
+
+impl<A: Arithmetic> Twin<A> {
+    /// The twin of the kernels for an image, whose word the arithmetic has to have; `None` when its octets hold no scene.
+    pub fn new(image: &Image, features: &Features, arithmetic: A) -> Option<Twin<A>> {
+        Some(Twin {
+            arithmetic,
+            constants: Constants::new(image),
+            features: *features,
+            stage: Stage::new(image)?,
+            camera: image.camera,
+            ambient: image.ambient,
+            background: image.background,
+        })
+    }
+
+    /// The pixels of `crop` in the colour format, row by row; the same for any number of host threads.
+    ///
+    /// # Errors
+    /// A ray for which the machine traps.
+    pub fn render(&self, crop: &Crop) -> Result<Vec<Vector>, Failure>
+    where
+        A: Sync,
+    {
+        let rows: Vec<Result<Vec<Vector>, Failure>> =
+            (0..crop.height).into_par_iter().map(|row| self.row(crop, row)).collect();
+        let mut pixels = Vec::with_capacity(crop.width as usize * crop.height as usize);
+        for row in rows {
+            pixels.extend(row?);
+        }
+        Ok(pixels)
+    }
+
+    fn row(&self, crop: &Crop, row: u32) -> Result<Vec<Vector>, Failure> {
+        let mut branches = Vec::new();
+        let pixels = (0..crop.width).map(|column| {
+            let bits = self.constants.formats.direction;
+            let ray = camera::camera(&self.arithmetic, bits, &self.camera, crop.column + column, crop.row + row);
+            let first = first_packet::first_packet(&self.arithmetic, &self.stage, &ray);
+            self.ray_tree(ray, first, &mut branches)
+                .map_err(|Stuck| Failure::Stuck { pixel: row * crop.width + column })
+        });
+        pixels.collect()
+    }
+}

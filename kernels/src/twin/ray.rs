@@ -1,0 +1,73 @@
+//! What functions hand to each other: rays, the places where they leave packets, packets, and the search for a hit.
+
+use std::ops::Range;
+
+use isa::number::Vector;
+use scenes::kdtree::Bounds;
+
+use super::lanes::Lanes;
+
+/// A ray P(t) = origin + t direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ray {
+    /// Where it starts: a position.
+    pub origin: Vector,
+    /// Where it goes: a direction of unit length.
+    pub direction: Vector,
+    /// Absolute value of the direction, lane by lane.
+    pub steep: Vector,
+}
+
+impl Ray {
+    /// A ray from its origin and direction.
+    pub fn new(arithmetic: &impl Lanes, origin: Vector, direction: Vector) -> Ray {
+        Ray { origin, direction, steep: arithmetic.magnitude(direction) }
+    }
+
+    /// Whether it goes towards smaller coordinates of an axis; 0 counts as positive.
+    pub fn is_backwards(&self, axis: usize) -> bool {
+        self.direction[axis] < 0
+    }
+}
+
+/// A plane through which a ray leaves a packet (or enters the scene): met at t = run / slope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exit {
+    /// Axis of the plane; 3 for the start of a ray, which is no plane.
+    pub axis: usize,
+    /// Coordinate of the plane, raw.
+    pub plane: i32,
+    /// Distance from the origin to the plane along the axis, raw, counted in the ray's direction.
+    pub run: i32,
+    /// Absolute value of the direction along the axis.
+    pub slope: i32,
+}
+
+impl Exit {
+    /// Where a ray starts: t = 0.
+    pub const START: Exit = Exit { axis: 3, plane: 0, run: 0, slope: 1 };
+}
+
+/// A leaf of the kd tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Packet {
+    /// Its part of space.
+    pub bounds: Bounds,
+    /// Its references to triangles, by number.
+    pub references: Range<u32>,
+}
+
+/// A search for the nearest hit, or for any hit nearer than a distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Search {
+    /// Distance of the nearest hit so far; before the first one, the distance that it has to stay below.
+    pub t: i32,
+    /// The triangle of the nearest hit so far, by index.
+    pub triangle: Option<u32>,
+    /// Whether any hit ends the search.
+    pub takes_any: bool,
+}
+
+/// A ray has visited more packets than there are: a trap of the machine, which exact arithmetic never meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stuck;

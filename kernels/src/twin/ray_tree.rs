@@ -1,0 +1,82 @@
+//! The tree of a pixel's rays, walked depth first: a ray, its reflected child, its refracted child (report 5.4, pseudo code 5).
+
+use isa::number::{Arithmetic, Vector};
+
+use super::Twin;
+use super::descend::own_packet;
+use super::lanes::Lanes;
+use super::ray::{Packet, Ray, Search, Stuck};
+use super::reflect::{reflect, reflects};
+use super::refract::{Refraction, refract, refracts};
+use super::surface::Surface;
+
+/// A node of the ray tree that is still to be visited.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    ray: Ray,
+    packet: Option<Packet>,
+    /// Weight of the path to the node.
+    weight: i32,
+    /// Whether the ray is in a body.
+    inside: bool,
+    level: u32,
+}
+
+impl<A: Arithmetic> Twin<A> {
+    /// The colour that a camera ray sees. `branches` is room for nodes, empty before and after, that calls may share.
+    ///
+    /// # Errors
+    /// A ray that visits more packets than there are.
+    pub fn ray_tree(&self, ray: Ray, first: Option<Packet>, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
+        let mut colour = [0; 3];
+        branches.clear();
+        let weight = 1 << self.constants.formats.weight;
+        branches.push(Branch { ray, packet: first, weight, inside: false, level: 0 });
+        while let Some(branch) = branches.pop() {
+            let Some(surface) = self.contribution(&branch, &mut colour)? else { continue };
+            if self.features.has_tree() && branch.level < self.features.bounces {
+                self.grow(&branch, &surface, branches);
+            }
+        }
+        Ok(colour)
+    }
+
+    /// Follows the ray of a node and adds what it sees, times the weight of the path, to the pixel. The surface that it meets.
+    fn contribution(&self, branch: &Branch, colour: &mut Vector) -> Result<Option<Surface>, Stuck> {
+        let mut search = Search { t: self.constants.never, triangle: None, takes_any: false };
+        if let Some(packet) = &branch.packet {
+            self.trace(&branch.ray, packet.clone(), &mut search)?;
+        }
+        let surface = search.triangle.map(|index| self.surface(&branch.ray, search.t, index));
+        let local = match &surface {
+            Some(surface) => self.shade(surface)?,
+            None => self.background,
+        };
+        let weighted = self.arithmetic.scaled(local, branch.weight, self.constants.formats.weight);
+        *colour = self.arithmetic.sum(*colour, weighted);
+        Ok(surface)
+    }
+
+    /// Adds the children of a node; the reflected one, which is visited first, as the last.
+    fn grow(&self, branch: &Branch, surface: &Surface, branches: &mut Vec<Branch>) {
+        let (arithmetic, constants) = (&self.arithmetic, &self.constants);
+        let mut child = |weight: i32, origin: Vector, inside: bool, direction: &dyn Fn() -> Vector| {
+            if weight > self.features.cutoff {
+                let ray = Ray::new(arithmetic, origin, direction());
+                let packet = Some(own_packet(arithmetic, &self.stage, &ray));
+                branches.push(Branch { ray, packet, weight, inside, level: branch.level + 1 });
+            }
+        };
+        let mut total = 0;
+        match refracts(arithmetic, constants, surface, branch.weight, branch.inside) {
+            Refraction::Opaque => {}
+            Refraction::Total(weight) => total = weight,
+            Refraction::Through { weight, k, eta } => {
+                let direction = || refract(arithmetic, constants, surface, k, eta);
+                child(weight, surface.behind, !branch.inside, &direction);
+            }
+        }
+        let weight = reflects(arithmetic, constants, surface, branch.weight, total);
+        child(weight, surface.point, branch.inside, &|| reflect(arithmetic, constants, surface));
+    }
+}

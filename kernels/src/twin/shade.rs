@@ -1,0 +1,47 @@
+//! Whitted's local term (report 4.3): the light that a surface sends out by itself.
+
+use isa::number::{Arithmetic, Vector};
+
+use super::Twin;
+use super::descend::own_packet;
+use super::lanes::Lanes;
+use super::ray::{Ray, Search, Stuck};
+use super::stage::Light;
+use super::surface::Surface;
+use super::unit::unit;
+
+impl<A: Arithmetic> Twin<A> {
+    /// colour (ambient + kd sum over visible lights of (N . L) light colour), in the colour format.
+    ///
+    /// # Errors
+    /// A shadow ray that visits more packets than there are.
+    pub fn shade(&self, surface: &Surface) -> Result<Vector, Stuck> {
+        let (arithmetic, formats) = (&self.arithmetic, &self.constants.formats);
+        let mut light = [0; 3];
+        for lamp in &self.stage.lights {
+            if let Some(cosine) = self.visible(surface, lamp)? {
+                light = arithmetic.sum(light, arithmetic.scaled(lamp.colour, cosine, formats.direction));
+            }
+        }
+        let diffuse = arithmetic.scaled(light, surface.material.intensity, formats.weight);
+        let all = arithmetic.sum(diffuse, [self.ambient; 3]);
+        Ok(arithmetic.products(surface.material.colour, all, formats.weight))
+    }
+
+    /// The cosine of the angle between the normal and a light that the surface sees.
+    fn visible(&self, surface: &Surface, light: &Light) -> Result<Option<i32>, Stuck> {
+        let (arithmetic, constants) = (&self.arithmetic, &self.constants);
+        let way = arithmetic.difference(light.position, surface.point);
+        if arithmetic.wide_dot(surface.facing, way) <= 0 {
+            return Ok(None);
+        }
+        let bits = constants.formats.direction;
+        let direction = unit(arithmetic, bits, arithmetic.normalized(way.map(i64::from)));
+        let cosine = arithmetic.dot(surface.facing, direction, bits);
+        let ray = Ray::new(arithmetic, surface.point, direction);
+        let distance = arithmetic.dot(direction, way, constants.across());
+        let mut search = Search { t: distance, triangle: None, takes_any: true };
+        self.trace(&ray, own_packet(arithmetic, &self.stage, &ray), &mut search)?;
+        Ok(search.triangle.is_none().then_some(cosine))
+    }
+}

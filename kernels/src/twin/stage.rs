@@ -1,0 +1,108 @@
+//! The scene as the twins read it: what the octets of a memory image hold, in arrays that a search runs through quickly.
+
+use std::ops::Range;
+
+use isa::number::Vector;
+use scenes::image::{Image, StoredTriangle};
+use scenes::kdtree::{Bounds, Content};
+
+/// A node of the kd tree.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Node {
+    /// Divided at the plane `axis = at`; the right child follows the left one.
+    Inner {
+        /// Axis of the plane.
+        axis: usize,
+        /// Coordinate of the plane, raw.
+        at: i32,
+        /// Number of the left child.
+        left: u32,
+    },
+    /// A packet: a range of references.
+    Leaf(Range<u32>),
+}
+
+/// A surface: raw coefficients in the weight format, indices of refraction in theirs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Material {
+    /// Diffuse colour.
+    pub colour: Vector,
+    /// Specular coefficient ks.
+    pub reflection: i32,
+    /// Diffuse coefficient kd.
+    pub intensity: i32,
+    /// Transmission coefficient kt, 0 for an opaque material.
+    pub transmission: i32,
+    /// Index of refraction: the ratio for a ray that leaves a body.
+    pub index: i32,
+    /// Its reciprocal: the ratio for a ray that enters.
+    pub inverse_index: i32,
+}
+
+/// A point light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Light {
+    /// Where it stands, raw.
+    pub position: Vector,
+    /// Its colour in the colour format.
+    pub colour: Vector,
+}
+
+/// A scene in arrays.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stage {
+    /// Box of the tree's root, raw.
+    pub bounds: Bounds,
+    /// The tree's nodes; the first is the root.
+    pub nodes: Vec<Node>,
+    /// Triangles by index, packet by packet.
+    pub references: Vec<u32>,
+    /// Triangles, by index.
+    pub triangles: Vec<StoredTriangle>,
+    /// Materials, by number.
+    pub materials: Vec<Material>,
+    /// Lights, by number.
+    pub lights: Vec<Light>,
+}
+
+impl Stage {
+    /// The scene of an image; `None` when its octets hold none.
+    pub fn new(image: &Image) -> Option<Stage> {
+        let contents = image.decode()?;
+        let mut references = Vec::new();
+        let mut node = |content: &Content| match *content {
+            Content::Inner { axis, at, left } => Node::Inner { axis, at, left },
+            Content::Leaf { ref triangles } => {
+                let first = references.len() as u32;
+                references.extend_from_slice(triangles);
+                Node::Leaf(first..references.len() as u32)
+            }
+        };
+        Some(Stage {
+            bounds: image.bounds,
+            nodes: contents.tree.nodes.iter().map(|n| node(&n.content)).collect(),
+            references,
+            triangles: contents.triangles,
+            materials: contents.materials.iter().map(|fields| Material::new(fields)).collect::<Option<_>>()?,
+            lights: contents.lights.iter().map(|fields| Light::new(fields)).collect::<Option<_>>()?,
+        })
+    }
+}
+
+impl Material {
+    fn new(fields: &[i64]) -> Option<Material> {
+        let &[r, g, b, reflection, intensity, transmission, index, inverse_index] = words(fields).first_chunk()?;
+        Some(Material { colour: [r, g, b], reflection, intensity, transmission, index, inverse_index })
+    }
+}
+
+impl Light {
+    fn new(fields: &[i64]) -> Option<Light> {
+        let &[x, y, z, r, g, b] = words(fields).first_chunk()?;
+        Some(Light { position: [x, y, z], colour: [r, g, b] })
+    }
+}
+
+fn words(fields: &[i64]) -> Vec<i32> {
+    fields.iter().map(|&field| field as i32).collect()
+}

@@ -1,0 +1,60 @@
+//! From packet to packet along a ray, to its nearest hit or to any hit (report, pseudo codes 2 and 3).
+
+use isa::number::Arithmetic;
+
+use super::Twin;
+use super::descend::descend;
+use super::exit_face::exit_face;
+use super::ray::{Packet, Ray, Search, Stuck};
+use super::triangle::triangle;
+
+impl<A: Arithmetic> Twin<A> {
+    /// Follows a ray from its first packet until the search is over.
+    ///
+    /// # Errors
+    /// A ray that visits more packets than there are.
+    pub fn trace(&self, ray: &Ray, first: Packet, search: &mut Search) -> Result<(), Stuck> {
+        let mut packet = first;
+        for _ in 0..self.constants.most_steps {
+            self.packet(ray, &packet, search);
+            match self.next_packet(ray, &packet, search) {
+                Some(next) => packet = next,
+                None => return Ok(()),
+            }
+        }
+        Err(Stuck)
+    }
+
+    /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index.
+    pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
+        for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
+            let vertices = &self.stage.triangles[index as usize].vertices;
+            let t = triangle(&self.arithmetic, &self.constants, ray, vertices);
+            if t < search.t || t == search.t && search.triangle.is_some_and(|nearest| index < nearest) {
+                (search.t, search.triangle) = (t, Some(index));
+                if search.takes_any {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The packet after the current one; `None` when the search is over: the ray leaves the scene, any hit will do and there is one, or
+    /// the nearest hit is surely nearer than the exit, (t + 1 ulp) |D_k| < run_k.
+    pub fn next_packet(&self, ray: &Ray, packet: &Packet, search: &Search) -> Option<Packet> {
+        if search.takes_any && search.triangle.is_some() {
+            return None;
+        }
+        let exit = exit_face(&self.arithmetic, ray, &packet.bounds);
+        if search.takes_any || search.triangle.is_some() {
+            let slope = i128::from(exit.slope);
+            let reached = self.arithmetic.widen(slope + i128::from(search.t) * slope, 0);
+            let end = self.arithmetic.widen(i128::from(exit.run) << self.constants.along(), 0);
+            if reached < end {
+                return None;
+            }
+        }
+        let outer = if ray.is_backwards(exit.axis) { &self.stage.bounds.low } else { &self.stage.bounds.high };
+        (outer[exit.axis] != exit.plane).then(|| descend(&self.arithmetic, &self.stage, ray, &exit))
+    }
+}

@@ -53,7 +53,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
         "{picture:<22}  the picture\n\
          {heat:<22}  elementary operations of each pixel, from dark to bright, logarithmic:\n\
          {:<22}  {}\n\
-         {error:<22}  difference from double precision: black none, dark {LEAST_ERROR:e}, bright 1, logarithmic\n",
+         {error:<22}  difference from double precision: black 0, dark {LEAST_ERROR:e}, bright 1, logarithmic\n",
         "",
         summary::spread(&drawing.operations()),
     );

@@ -1,0 +1,51 @@
+//! Files: whole or not at all, and where they cannot be, a message before any work.
+
+use crate::session::Session;
+
+const TINY: &str = "render triangle --size 6x4";
+
+#[test]
+fn a_missing_folder_is_an_error_with_a_hint_before_any_work() {
+    let session = Session::new();
+    // The mere kd tree of this scene would take minutes.
+    session.fail("render terrain --size 2000x2000 -o no/such/a.png", 1, "mkdir -p no/such");
+    session.fail(&format!("{TINY} -o a.png --heat no/b.png"), 1, "there is no folder no for no/b.png");
+    session.fail("scene generate triangle -o no", 1, "mkdir -p no");
+    assert!(session.names().is_empty());
+}
+
+#[test]
+fn names_of_results_are_checked_first() {
+    let session = Session::new();
+    session.fail(&format!("{TINY} -o a.jpg"), 2, ".png, .ppm, .pfm");
+    session.fail(&format!("{TINY} -o a"), 2, ".png, .ppm, .pfm");
+    session.fail(&format!("{TINY} -o a.png --heat a.png"), 2, "a.png would be written twice");
+    session.fail(&format!("{TINY} --error e.png --no-error"), 2, "cannot be used with");
+    std::fs::create_dir(session.path("b.png")).unwrap();
+    session.fail(&format!("{TINY} -o b.png"), 1, "b.png is a folder");
+    assert_eq!(session.names(), ["b.png"]);
+}
+
+#[test]
+fn an_old_file_survives_a_command_that_fails() {
+    let session = Session::new();
+    session.write("a.png", "old");
+    session.write("trap.s", ".func triangle\n    trap 1\n.endfunc\n");
+    session.fail(&format!("{TINY} -o a.png --kernel triangle=trap.s"), 3, "trap 1");
+    assert_eq!(session.read("a.png"), b"old");
+    session.succeed(&format!("{TINY} -o a.png"));
+    assert!(session.read("a.png").starts_with(b"\x89PNG"));
+    assert_eq!(session.names(), ["a.png", "trap.s"], "nothing is left beside it");
+}
+
+#[test]
+fn inputs_that_are_not_there_are_named() {
+    let session = Session::new();
+    session.fail("render no/such.dsc", 1, "there is no file no/such.dsc");
+    session.fail("render cornel", 1, "did you mean `cornell`?");
+    session.fail("run none.s", 1, "there is no file none.s");
+    session.fail("disassemble .", 1, "is a folder");
+    session.fail(&format!("{TINY} --kernel triangle=none.s"), 1, "there is no file none.s");
+    session.fail(&format!("{TINY} --machine none.toml"), 1, "there is no file none.toml");
+    session.fail(&format!("{TINY} --machine raport"), 1, "did you mean `report`?");
+}

@@ -1,0 +1,45 @@
+//! Help texts and messages, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test --test cli` renews them.
+
+use crate::session::Session;
+
+#[test]
+fn help_and_messages_say_what_they_said() {
+    trycmd::TestCases::new().case("tests/cmd/*.trycmd");
+}
+
+/// A command and all commands below it, from what their help lists.
+fn commands(session: &Session, above: &str) -> Vec<String> {
+    let help = session.succeed(&format!("{above} --help"));
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = listed.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help");
+    let below = names.flat_map(|name| commands(session, &format!("{above} {name}")));
+    std::iter::once(above.to_owned()).chain(below).collect()
+}
+
+#[test]
+fn every_command_has_examples_and_every_option_a_sentence() {
+    let session = Session::new();
+    let commands = commands(&session, "");
+    assert!(commands.len() > 8 && commands.contains(&" scene info".to_owned()), "{commands:?}");
+    for command in commands {
+        let help = session.succeed(&format!("{command} --help"));
+        assert!(help.contains("Examples:\n  lancer"), "{command} has no examples");
+        let lines: Vec<&str> = help.lines().collect();
+        for (number, line) in lines.iter().enumerate().filter(|(_, line)| line.trim_start().starts_with("--")) {
+            let is_beside = line.trim_start().contains("  ");
+            let is_below = lines.get(number + 1).is_some_and(|next| !next.trim().is_empty());
+            assert!(is_beside || is_below, "{command}: nothing is said on {line}");
+        }
+        let name = format!("tests/cmd/help{}.trycmd", command.replace(' ', "-"));
+        assert!(std::path::Path::new(&name).exists(), "{name} is missing");
+    }
+}
+
+#[test]
+fn every_shell_has_its_completions() {
+    let session = Session::new();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = session.succeed(&format!("completions {shell}"));
+        assert!(script.contains("disassemble") && script.contains("weight-cutoff"), "{shell}");
+    }
+}

@@ -1,0 +1,10 @@
+//! The command line as a user meets it: the built program, its streams, its exit codes and the files that it leaves.
+
+mod demo;
+mod files;
+mod help;
+mod programs;
+mod render;
+mod scene;
+mod session;
+mod streams;

@@ -1,0 +1,125 @@
+//! `lancer assemble`, `disassemble` and `run`.
+
+use crate::session::Session;
+
+/// Sums 10 + 9 + ... + 1 and squares the sum.
+const SUM: &str = "\
+    movi s1, 10
+    mov  s2, s0
+1:  iadd s2, s2, s1
+    isubi s1, s1, 1
+    bnez s1, 1b
+    call s31, square
+    halt
+.func square
+    imul s3, s2, s2
+    ret  s31
+.endfunc
+";
+
+#[test]
+fn words_survive_the_way_through_text() {
+    let session = Session::new();
+    session.write("sum.s", SUM);
+    assert_eq!(session.succeed("assemble sum.s"), "sum.s: 9 words, 0 octets of data\n");
+    session.succeed("assemble sum.s -o sum.bin");
+    session.succeed("assemble sum.s -o sum.hex");
+    session.succeed("disassemble sum.bin -o again.s");
+    assert_eq!(session.succeed("disassemble sum.hex"), String::from_utf8(session.read("again.s")).unwrap());
+    session.succeed("assemble again.s -o again.bin");
+    assert_eq!(session.read("again.bin"), session.read("sum.bin"));
+    assert_eq!(session.read("sum.bin").len(), 36);
+}
+
+#[test]
+fn a_listing_shows_words_beside_lines() {
+    let session = Session::new();
+    session.write("sum.s", SUM);
+    let listing = session.succeed("assemble sum.s --list");
+    let line = listing.lines().find(|line| line.contains("iadd")).unwrap();
+    assert!(line.starts_with(" 00002  ") && line.ends_with("3  1:  iadd s2, s2, s1"), "{line}");
+    assert!(listing.contains("square"), "{listing}");
+}
+
+#[test]
+fn all_errors_of_a_source_come_in_one_run() {
+    let session = Session::new();
+    session.write(
+        "wrong.s",
+        "    vdto s4, v1, v2\n    movi s1, 99999999\n    jump nowhere\n    iadd s1\n    iadd s1, s2, v3\n",
+    );
+    let run = session.run("assemble wrong.s -o wrong.bin");
+    assert_eq!((run.code, run.out.as_str()), (1, ""));
+    for line in 1..=5 {
+        assert!(run.messages.contains(&format!("wrong.s:{line}:")), "line {line} in\n{}", run.messages);
+    }
+    assert!(run.messages.contains("did you mean `vdot`?") && run.messages.contains("5 errors"), "{}", run.messages);
+    assert_eq!(session.names(), ["wrong.s"]);
+}
+
+#[test]
+fn includes_definitions_and_data() {
+    let session = Session::new();
+    std::fs::create_dir_all(session.path("parts/inner")).unwrap();
+    session.write("main.s", ".include \"one.inc\"\n.include \"inner/two.inc\"\n    movi s1, SIZE + ONE + TWO\n    halt\n.buffer\n.word 1, 2, 3\n");
+    session.write("one.inc", ".equ ONE, 1\n");
+    session.write("parts/inner/two.inc", ".equ TWO, 2\n");
+    session.fail("assemble main.s -D SIZE=0x10", 1, "inner/two.inc");
+    let run = session.run("assemble main.s -D SIZE=0x10 -I parts -o main.bin");
+    assert!(run.code == 0 && run.messages.contains("12 octets of data"), "{}", run.messages);
+    session.succeed("assemble main.s -D SIZE=0x10 -I parts -o main.bin --data main.dat");
+    assert_eq!(session.read("main.dat"), [1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]);
+    assert_eq!(session.json("run main.s -D SIZE=0x10 -I parts")["registers"]["s1"], 19);
+    session.fail("assemble main.s -o main.s.bin --data main.s", 2, "written twice");
+}
+
+#[test]
+fn a_program_runs_with_registers_and_memory_of_the_user() {
+    let session = Session::new();
+    session.write("sum.s", SUM);
+    let result = session.json("run sum.s --reg v2=1:0x10:-3,w1=-7");
+    assert_eq!(result["registers"], serde_json::json!({ "s2": 55, "s3": 3025, "s31": 6, "v2": [1, 16, -3], "w1": -7 }));
+    assert_eq!((&result["instructions"], &result["counts"]["mul"]), (&36.into(), &1.into()));
+    assert_eq!((&result["functions"][0]["name"], &result["functions"][0]["calls"]), (&"square".into(), &1.into()));
+    assert!(result["trap"].is_null());
+    session.write("copy.s", "    load s0, s1, s2\n    movi s3, 0x200\n    store s3, s0, s2\n    halt\n");
+    session.write("in.dat", "abcdefgh");
+    let copied = session.json("run copy.s --reg s1=0x100,s2=8 --mem 0x100=in.dat --dump 0x200:8 --dump buffer:0:4");
+    assert_eq!(copied["dumps"][0]["octets"], "6162636465666768");
+    assert_eq!((&copied["dumps"][1]["space"], &copied["dumps"][1]["octets"]), (&"buffer".into(), &"61626364".into()));
+    assert_eq!((&copied["counts"]["octet"], &copied["waiting"]), (&16.into(), &32.into()));
+    let text = session.succeed("run sum.s --dump regs");
+    assert!(text.contains("3025") && text.contains("00000bd1") && text.contains(" w7 "), "{text}");
+    assert!(text.contains("halted after 36 instructions, 31 clocks"), "{text}");
+}
+
+#[test]
+fn traps_and_step_limits_have_codes_and_places() {
+    let session = Session::new();
+    session.write("trap.s", "    nop\n.func f\n    movi s1, 3\n    trap 7\n.endfunc\n");
+    session.write("loop.s", "1:  jump 1b\n");
+    session.write("far.s", "    movi s1, -4\n    lw s3, (s1)\n    halt\n");
+    for (arguments, code, place) in
+        [("run trap.s", 3, "trap.s:4"), ("run loop.s --max-steps 100", 5, "loop.s:1"), ("run far.s", 3, "far.s:2")]
+    {
+        let run = session.run(arguments);
+        assert_eq!(run.code, code, "{arguments}: {}", run.messages);
+        assert!(run.messages.contains(place), "{arguments}: {}", run.messages);
+        assert!(run.out.contains("stopped after"), "the registers are shown all the same: {}", run.out);
+    }
+    let run = session.run("run trap.s --json");
+    let result: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!((&result["trap"]["function"], &result["trap"]["pc"]), (&"f".into(), &2.into()));
+    assert!(run.messages.contains("trap 7"), "{}", run.messages);
+}
+
+#[test]
+fn files_of_other_kinds_are_refused() {
+    let session = Session::new();
+    session.write("odd.bin", "12345");
+    session.write("wrong.hex", "12345678\nxyz\n");
+    session.fail("disassemble odd.bin", 1, "no whole words");
+    session.fail("disassemble wrong.hex", 1, "wrong.hex:2:1");
+    session.write("a.bin", "");
+    session.fail("disassemble a.bin -o a.bin", 2, "written twice");
+}

@@ -1,0 +1,218 @@
+//! `lancer render`: results are a contract.
+
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::session::Session;
+
+const TINY: &str = "render cornell --size 12x9 --shift 0.137,0.071";
+
+fn number(value: &Value) -> u64 {
+    value.as_u64().unwrap_or_else(|| panic!("{value} is a whole number"))
+}
+
+#[test]
+fn the_keys_of_the_results_have_their_types() {
+    let result = Session::new().json(TINY);
+    let classes = ["add", "sub", "mul", "div", "cmp", "mem", "octet", "move", "logic", "jump", "local", "address"];
+    for key in ["schema", "scene", "profile", "machine", "image_hash", "run_hash"] {
+        assert!(result[key].is_string(), "{key}");
+    }
+    for key in ["width", "height", "triangles", "instructions", "octets", "clocks"] {
+        assert!(result[key].is_u64(), "{key}");
+    }
+    for key in ["camera", "reflected", "refracted", "shadow"] {
+        assert!(result["rays"][key].is_u64(), "{key}");
+    }
+    let has_classes = |counts: &Value| {
+        let keys: Vec<&String> = counts.as_object().unwrap().keys().collect();
+        keys.len() == classes.len() && classes.iter().all(|class| counts[class].is_u64())
+    };
+    assert!(has_classes(&result["counts"]));
+    for core in result["cores"].as_array().unwrap() {
+        assert!(["busy", "waiting", "idle"].iter().all(|key| core[key].is_u64()), "{core}");
+    }
+    for function in result["functions"].as_array().unwrap() {
+        assert!(function["name"].is_string() && function["calls"].is_u64(), "{function}");
+        assert!(has_classes(&function["inclusive"]) && has_classes(&function["exclusive"]), "{function}");
+    }
+    for key in ["rmse", "psnr_db", "max", "off_per_million", "psnr_others_db"] {
+        assert!(result["error"][key].is_f64(), "{key}");
+    }
+    assert!(result["error"]["off_pixels"].is_u64());
+    assert_eq!(result["image_hash"].as_str().unwrap().len(), 64);
+    assert!(result.get("host").is_none(), "host times only when asked for");
+}
+
+#[test]
+fn figures_add_up() {
+    let result = Session::new().json(TINY);
+    assert_eq!((&result["scene"], &result["width"], &result["height"]), (&"cornell".into(), &12.into(), &9.into()));
+    assert_eq!(result["cores"].as_array().unwrap().len(), 4);
+    let clocks = number(&result["clocks"]);
+    let processors = result["cores"].as_array().unwrap().iter().chain([&result["main"]]);
+    for used in processors {
+        assert_eq!(["busy", "waiting", "idle"].map(|key| number(&used[key])).iter().sum::<u64>(), clocks, "{used}");
+    }
+    let sum = |key: &str| result["cores"].as_array().unwrap().iter().map(|core| number(&core[key])).sum::<u64>();
+    assert_eq!((sum("items"), sum("octets")), (108, number(&result["octets"])));
+    assert_eq!(result["octets"], result["counts"]["octet"]);
+    assert_eq!(result["bus"]["asked"], result["bus"]["moved"]);
+    for (class, count) in result["counts"].as_object().unwrap() {
+        let functions = result["functions"].as_array().unwrap().iter().chain(result["regions"].as_array().unwrap());
+        assert_eq!(functions.map(|f| number(&f["exclusive"][class])).sum::<u64>(), number(count), "{class}");
+    }
+    let pixel = result["functions"].as_array().unwrap().iter().find(|f| f["name"] == "pixel").unwrap();
+    assert_eq!((&pixel["inclusive"], number(&pixel["calls"])), (&result["counts"], 108));
+    let rays = &result["rays"];
+    assert_eq!(number(&rays["camera"]), 108);
+    assert!(["reflected", "refracted", "shadow"].iter().all(|kind| number(&rays[kind]) > 0), "{rays}");
+    assert!(result["error"]["psnr_db"].as_f64().unwrap() > 90.0);
+}
+
+#[test]
+fn equal_runs_print_equal_octets_in_any_folder() {
+    let run = || {
+        let session = Session::new();
+        let text = session.succeed(&format!("{TINY} --json -o a.png --heat b.png --error c.ppm"));
+        (text, session.read("a.png"), session.read("b.png"), session.read("c.ppm"), session.names())
+    };
+    let first = run();
+    assert_eq!(first, run());
+    assert_eq!(first.4, ["a.png", "b.png", "c.ppm"]);
+    assert!(first.1.starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn the_number_of_cores_changes_clocks_and_nothing_else() {
+    let session = Session::new();
+    let results = [1, 2, 8].map(|cores| session.json(&format!("{TINY} --no-error --cores {cores}")));
+    for result in &results {
+        for key in ["image_hash", "counts", "rays", "instructions", "octets", "functions"] {
+            assert_eq!(result[key], results[0][key], "{key}");
+        }
+        assert!(result["error"].is_null());
+    }
+    assert!(number(&results[2]["clocks"]) < number(&results[0]["clocks"]));
+    assert_eq!(results[2]["cores"].as_array().unwrap().len(), 8);
+}
+
+#[test]
+fn the_hash_is_that_of_the_colour_words() {
+    // With 16 fraction bits a colour word is exact in the 24 bits of a PFM's numbers.
+    let session = Session::new();
+    let result = session.json(&format!("{TINY} --format colour=16 -o a.pfm"));
+    let pfm = session.read("a.pfm");
+    let rows = pfm.strip_prefix(b"PF\n12 9\n-1.0\n").expect("the header of a PFM");
+    let mut hash = Sha256::new();
+    hash.update([12, 0, 0, 0, 9, 0, 0, 0]);
+    for row in rows.chunks(12 * 12).rev() {
+        for component in row.chunks(4) {
+            let value = f32::from_le_bytes(component.try_into().unwrap()) * 65_536.0;
+            assert_eq!(value.fract(), 0.0);
+            hash.update((value as i32).to_le_bytes());
+        }
+    }
+    let digits: String = hash.finalize().iter().map(|octet| format!("{octet:02x}")).collect();
+    assert_eq!(result["image_hash"], digits);
+}
+
+#[test]
+fn a_part_is_that_part_of_the_whole() {
+    let session = Session::new();
+    let pixels = |name: &str, header: &str| session.read(name).strip_prefix(header.as_bytes()).unwrap().to_vec();
+    session.succeed(&format!("{TINY} -o whole.ppm"));
+    session.succeed(&format!("{TINY} -o part.ppm --crop 5,2,4,3"));
+    let (whole, part) = (pixels("whole.ppm", "P6\n12 9\n255\n"), pixels("part.ppm", "P6\n4 3\n255\n"));
+    for row in 0..3 {
+        let start = 3 * (12 * (2 + row) + 5);
+        assert_eq!(whole[start..start + 12], part[12 * row..12 * row + 12], "row {row}");
+    }
+    let pixel = session.json(&format!("{TINY} --pixel 11,8 -o pixel.ppm"));
+    assert_eq!((number(&pixel["width"]), &pixel["crop"]), (1, &serde_json::json!([11, 8, 1, 1])));
+    assert_eq!(pixels("pixel.ppm", "P6\n1 1\n255\n"), whole[3 * 107..]);
+    let text = session.succeed(&format!("{TINY} --pixel 11,8 -o pixel.ppm"));
+    assert!(text.contains("pixel 11,8: ") && text.contains("double precision: "), "{text}");
+}
+
+#[test]
+fn a_picture_without_options_is_named_after_its_scene() {
+    let session = Session::new();
+    let run = session.run(TINY);
+    assert_eq!((run.code, run.messages.as_str()), (0, "picture: cornell.png\n"));
+    assert_eq!(session.names(), ["cornell.png"]);
+    for part in ["cornell: 676 triangles, 12 x 9 pixels", "ray_tree", "core 3", "PSNR", "image hash"] {
+        assert!(run.out.contains(part), "{part} is missing in\n{}", run.out);
+    }
+    let widest = run.out.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(100), "a line has {widest:?} columns");
+}
+
+#[test]
+fn numbers_may_be_negative_and_cameras_perspective() {
+    let session = Session::new();
+    let eye = "render triangle --size 6x4 --shift -0.1,0.2 --eye 0,-1,3 --look -0.1,0,-0.2 --fov 50";
+    let given = session.json(eye);
+    assert_eq!(given["image_hash"], session.json(&format!("{eye} --camera perspective"))["image_hash"]);
+    assert_ne!(given["image_hash"], session.json("render triangle --size 6x4")["image_hash"]);
+    let blue = session.json("render empty --size 2x2 --background 0,0,1 --ambient 0");
+    assert_eq!(blue["error"]["off_pixels"], 0);
+    assert!(blue["error"]["psnr_db"].is_null(), "an equal picture has no ratio");
+}
+
+#[test]
+fn arithmetic_layout_and_effort_reach_the_machine() {
+    let session = Session::new();
+    let plain = session.json(TINY);
+    for options in [
+        "--word 20",
+        "--rounding TRN",
+        "--rounding trn_zero",
+        "--format dir=16",
+        "--bounces 1",
+        "--weight-cutoff 0.5",
+        "--ambient 0.3",
+    ] {
+        let other = session.json(&format!("{TINY} {options}"));
+        assert_ne!(other["image_hash"], plain["image_hash"], "{options}");
+    }
+    assert_eq!(session.json(&format!("{TINY} --word 20"))["formats"]["word"], 20);
+    let shallow = session.json(&format!("{TINY} --kd-depth 2"));
+    assert_eq!(shallow["image_hash"], plain["image_hash"]);
+    assert_ne!(shallow["counts"], plain["counts"]);
+    assert!(session.json(&format!("{TINY} --timing"))["host"]["run_seconds"].is_f64());
+}
+
+#[test]
+fn a_kernel_of_the_users_own_takes_the_place_of_one() {
+    let session = Session::new();
+    session.write("same.s", include_str!("../../kernels/asm/vector/triangle.s"));
+    session.write("trap.s", ".func triangle\n    trap 9\n.endfunc\n");
+    session.write("wrong.s", ".func triangle\n    vdto s4, v1, v2\n    nosuch s1\n.endfunc\n");
+    session.write("loop.s", ".func triangle\n1:  jump 1b\n.endfunc\n");
+    let same = session.json(&format!("{TINY} --kernel triangle=same.s"));
+    assert_eq!(same["run_hash"], session.json(TINY)["run_hash"]);
+    let before = session.names();
+    session.fail(&format!("{TINY} -o a.png --kernel triangle=trap.s"), 3, "trap.s:2");
+    session.fail(&format!("{TINY} -o a.png --kernel triangle=wrong.s"), 1, "wrong.s:2:5");
+    session.fail(&format!("{TINY} -o a.png --kernel triangle=wrong.s"), 1, "2 errors");
+    session.write("short.toml", "step_limit = 5000\n");
+    session.fail(&format!("{TINY} -o a.png --machine short.toml --kernel triangle=loop.s"), 5, "5000 instructions");
+    assert_eq!(session.names().len(), before.len() + 1, "no picture was left");
+}
+
+#[test]
+fn a_machine_file_is_a_machine() {
+    let session = Session::new();
+    session.write("mine.toml", &session.succeed("machine"));
+    let (mine, report) = (session.json(&format!("{TINY} --machine mine.toml")), session.json(TINY));
+    assert_eq!((&mine["run_hash"], &mine["machine"]), (&report["run_hash"], &"mine".into()));
+    session.write("fast.toml", "cores = 2\n[bus]\nclocks_per_beat = 1\n");
+    let fast = session.json(&format!("{TINY} --machine fast.toml"));
+    assert_eq!((fast["cores"].as_array().unwrap().len(), &fast["image_hash"]), (2, &report["image_hash"]));
+    session.write("wrong.toml", "coers = 2\n");
+    session.fail("machine wrong.toml", 1, "wrong.toml:1:1");
+    session.fail("machine wrong.toml", 1, "did you mean `cores`?");
+    session.write("none.toml", "cores = 0\n");
+    session.fail(&format!("{TINY} --machine none.toml"), 1, "`cores` is 0");
+}

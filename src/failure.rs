@@ -36,7 +36,7 @@ pub enum Failure {
 
 impl Failure {
     /// A wrong command line that the parser could not see.
-    pub fn usage(message: Diagnostic) -> Failure {
+    pub fn usage(message: impl Into<Report>) -> Failure {
         Failure::Message { report: message.into(), exit: Exit::Usage }
     }
 }

@@ -14,7 +14,11 @@ use crate::arguments::{
     CameraKind, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments, overrides,
 };
 use crate::failure::Failure;
+use crate::table::grouped;
 use crate::{files, input, machine};
+
+/// Pixels of the largest picture.
+const MOST_PIXELS: u64 = 1 << 24;
 
 /// Everything that decides a picture and what it costs.
 #[derive(Clone, Debug)]
@@ -92,6 +96,7 @@ impl Job {
             background: arguments.view.background,
             bounces: arguments.effort.bounces,
         };
+        check_size(job.view.size)?;
         (job.machine_name, job.machine) = machine::find(&arguments.machine.machine)?;
         job.adjust_machine(&arguments.machine, &arguments.numbers);
         job.memory = MemoryOptions {
@@ -123,6 +128,15 @@ impl Job {
         let (width, height) = self.view.size;
         self.kernels.crop.unwrap_or(Crop { column: 0, row: 0, width, height })
     }
+}
+
+/// Refuses pictures that would fill the host's memory.
+fn check_size((width, height): (u32, u32)) -> Result<(), Failure> {
+    if u64::from(width) * u64::from(height) <= MOST_PIXELS {
+        return Ok(());
+    }
+    let message = format!("a picture of {width} x {height} pixels has more than {}", grouped(MOST_PIXELS));
+    Err(Diagnostic::error(message).hint("choose a smaller one with `--size WxH`").into())
 }
 
 /// The camera; options that only a perspective one has imply it.

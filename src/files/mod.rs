@@ -120,11 +120,11 @@ fn folder_of(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// The path that is named twice.
-pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Diagnostic> {
+pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Report> {
     let mut seen: Vec<&Path> = Vec::new();
     for path in paths {
         if seen.contains(&path) {
-            return Err(Diagnostic::error(format!("{} would be written twice", path.display())));
+            return Err(Diagnostic::error(format!("{} would be written twice", path.display())).into());
         }
         seen.push(path);
     }

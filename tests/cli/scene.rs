@@ -37,6 +37,7 @@ fn errors_in_scene_files_show_their_place() {
     session.write("big.off", "OFF\n1000000000 1000000000 0\n0 0 0\n");
     session.fail("scene info big.off", 1, "big.off:");
     assert_eq!(session.names(), ["big.off", "t.off"]);
+    session.fail("render triangle --size 5000x5000", 1, "has more than 16,777,216");
 }
 
 #[test]

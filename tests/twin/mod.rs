@@ -1,0 +1,44 @@
+//! A scene as the tests use it; what is compared stands in the modules.
+
+mod accuracy;
+mod bench;
+mod functions;
+mod operands;
+mod pictures;
+mod surfaces;
+
+use isa::diagnostic::Report;
+use isa::number::Modes;
+use kernels::build::Features;
+use kernels::twin::Twin;
+use scenes::image::{self, Image};
+use scenes::model::{Scene, View};
+
+/// A scene on a machine with certain modes.
+struct Subject {
+    scene: Scene,
+    view: View,
+    image: Image,
+    features: Features,
+    modes: Modes,
+}
+
+impl Subject {
+    fn new(scene: Scene, view: View, modes: Modes, options: image::Options) -> Result<Subject, Report> {
+        let image = image::build(&scene, &view, &image::Options { word: modes.word, ..options })?;
+        let features = Features::new(&scene, &view, 0);
+        Ok(Subject { scene, view, image, features, modes })
+    }
+
+    fn twin(&self) -> Twin<Modes> {
+        Twin::new(&self.image, &self.features, self.modes).expect("an image that was built can be read")
+    }
+
+    fn machine(&self) -> emu::machine::Config {
+        let mut config = emu::machine::Config::default();
+        config.arithmetic.word = self.modes.word;
+        config.arithmetic.quantization = self.modes.quantization;
+        config.arithmetic.overflow = self.modes.overflow;
+        config
+    }
+}

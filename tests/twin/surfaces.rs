@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use super::bench::{Experiment, Place};
 use super::functions::{MODES, agree, subject, triangle_and_ray};
-use super::operands::{direction, number, point, vector, words};
+use super::operands::{direction, point, vector, words};
 
 #[test]
 fn surfaces() {

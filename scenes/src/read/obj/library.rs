@@ -1,7 +1,7 @@
 //! Finding the materials that the faces of an OBJ file name, in the libraries that it names.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use isa::diagnostic::{Diagnostic, Report};
 
@@ -19,7 +19,8 @@ pub(super) fn find(
 ) -> Vec<Option<Material>> {
     let mut defined = HashMap::new();
     let mut is_missing = false;
-    for &library in &contents.libraries {
+    let mut names = HashSet::new();
+    for &library in contents.libraries.iter().filter(|library| names.insert(library.text)) {
         for opened in open(library.text, libraries) {
             match opened {
                 Ok((name, bytes)) => {

@@ -230,7 +230,7 @@ fn a_mesh_of_88_000_triangles_is_read_within_a_second() {
     assert!(taken < Duration::from_secs(1), "{taken:?}");
 }
 
-/// Measured: less than 0.1 s of processor time. STL as text takes 0.3 s, since its library copies every word; the limit
+/// Measured: 0.03 to 0.05 s. STL as text takes 0.45 s, since its library copies every word; the limit
 /// for that one only shows whether the time is out of proportion.
 #[test]
 fn meshes_of_88_000_triangles_are_read_in_time_in_every_format() {

@@ -1,5 +1,5 @@
-//! How far the twins, and so the kernels, are from exact results: decisions and distances of the triangle test against exact integers,
-//! unit vectors and secondary rays against double precision. Errors count units in the last place (ulp) of the result's format.
+//! How far the twins, and so the kernels, are from exact integers: decisions and distances of the triangle test, and searches through the
+//! tree. Errors count units in the last place (ulp) of the result's format.
 
 use std::fmt::Write;
 
@@ -7,14 +7,8 @@ use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use kernels::constants::Constants;
 use kernels::twin::descend::own_packet;
 use kernels::twin::first_packet::first_packet;
-use kernels::twin::lanes::Lanes;
 use kernels::twin::ray::{Ray, Search};
-use kernels::twin::reflect::reflect;
-use kernels::twin::refract::{Refraction, refract, refracts};
-use kernels::twin::stage::Material;
-use kernels::twin::surface::{Surface, normal};
 use kernels::twin::triangle::triangle;
-use kernels::twin::unit::unit;
 use kernels::twin::{Twin, report};
 use scenes::cadrage::{Formats, Overrides};
 use scenes::generate;
@@ -25,14 +19,14 @@ use super::Subject;
 use super::operands::Series;
 
 /// Words that errors are quoted for.
-const WORDS: [u32; 4] = [32, 24, 20, 16];
+pub const WORDS: [u32; 4] = [32, 24, 20, 16];
 
-const fn modes(word: u32) -> Modes {
+pub const fn modes(word: u32) -> Modes {
     Modes { word, quantization: Quantization::Rnd, overflow: Overflow::Sat }
 }
 
 /// Constants of a scene that fills the word: coordinates up to 2^(word-2), distances in steps of two.
-fn full(word: u32) -> Constants {
+pub fn full(word: u32) -> Constants {
     let (direction, largest) = (word - 2, i32::MAX >> (32 - word));
     let formats = Formats {
         word,
@@ -61,9 +55,9 @@ fn narrow() -> Constants {
     Constants { formats, edge_shift: 0, t_shift: 0, ..full(32) }
 }
 
-type Exact = [i128; 3];
+pub type Exact = [i128; 3];
 
-fn exact_cross(a: Exact, b: Exact) -> Exact {
+pub fn exact_cross(a: Exact, b: Exact) -> Exact {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
@@ -97,7 +91,7 @@ fn rounded_unit(lanes: [f64; 3], bits: u32) -> Vector {
 
 impl Series {
     /// Three corners of a triangle with coordinates below 2^bits: of all sizes from 1/2 of that to 1/2^`range` of it.
-    fn triangle(&mut self, bits: u32, range: u32) -> [Vector; 3] {
+    pub fn triangle(&mut self, bits: u32, range: u32) -> [Vector; 3] {
         let (at, shift) = (self.point(1 << bits), self.bits() % u64::from(range));
         [0; 3].map(|_| {
             let corner = self.point(1 << bits);
@@ -120,7 +114,7 @@ impl Series {
     }
 
     /// A direction of unit length, uniform enough.
-    fn direction(&mut self, bits: u32) -> Vector {
+    pub fn direction(&mut self, bits: u32) -> Vector {
         loop {
             let lanes = [self.unit(), self.unit(), self.unit()];
             if (0.01..1.0).contains(&lanes.iter().map(|x| x * x).sum::<f64>()) {
@@ -132,11 +126,11 @@ impl Series {
 
 /// Errors of a series, sorted.
 #[derive(Default)]
-struct Errors(Vec<f64>);
+pub struct Errors(pub Vec<f64>);
 
 impl Errors {
     /// Median, 99th percentile and largest, in three significant digits.
-    fn figures(mut self) -> String {
+    pub fn figures(mut self) -> String {
         self.0.sort_by(f64::total_cmp);
         let at = |share: f64| self.0.get((share * (self.0.len() as f64 - 1.0)) as usize).copied().unwrap_or(0.0);
         format!("median {:.3}, p99 {:.3}, most {:.3}", at(0.5), at(0.99), at(1.0))
@@ -307,101 +301,4 @@ fn searches_through_the_tree_miss_nothing() {
         }
     }
     assert!(hits > 5000, "{hits} hits");
-}
-
-fn ulps(found: Vector, exact: [f64; 3], bits: u32) -> f64 {
-    let one = f64::from(1u32 << bits);
-    (0..3).map(|k| (f64::from(found[k]) - exact[k] * one).abs()).fold(0.0, f64::max)
-}
-
-fn double(vector: Vector, bits: u32) -> [f64; 3] {
-    vector.map(|lane| f64::from(lane) / f64::from(1u32 << bits))
-}
-
-fn double_dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-#[test]
-fn unit_vectors_against_double_precision() {
-    let mut text = format!("{RAYS} vectors each, largest error of a lane in ulp\n");
-    for word in WORDS {
-        let (modes, bits) = (modes(word), word - 2);
-        let mut series = Series(23);
-        let (mut normals, mut units) = (Errors::default(), Errors::default());
-        for _ in 0..RAYS {
-            let vertices = series.triangle(bits, bits - 2);
-            let [a, b, c] = vertices.map(|vertex| vertex.map(i128::from));
-            let edge = |p: Exact, q: Exact| [0, 1, 2].map(|k| p[k] - q[k]);
-            let exact = exact_cross(edge(b, a), edge(c, a)).map(|lane| lane as f64);
-            let length = double_dot(exact, exact).sqrt();
-            if length > 0.0 {
-                let direction = [0, 0, 1 << bits];
-                let (facing, _) = normal(&modes, bits, direction, &vertices);
-                let turn = if exact[2] > 0.0 { -1.0 } else { 1.0 };
-                // A normal that is almost at right angles to the ray may be turned either way.
-                let error = |turn: f64| ulps(facing, exact.map(|lane| turn * lane / length), bits);
-                normals.0.push(error(turn).min(error(-turn)));
-            }
-            let way = series.point(1 << bits).map(|lane| lane >> (series.bits() % u64::from(bits)));
-            let length = double_dot(way.map(f64::from), way.map(f64::from)).sqrt();
-            if length > 0.0 {
-                let found = unit(&modes, bits, modes.normalized(way.map(i64::from)));
-                units.0.push(ulps(found, way.map(|lane| f64::from(lane) / length), bits));
-            }
-        }
-        let _ = writeln!(text, "{word} bits, normals: {}", normals.figures());
-        let _ = writeln!(text, "{word} bits, unit vectors: {}", units.figures());
-    }
-    insta::assert_snapshot!(text);
-}
-
-/// A surface that is met in a certain way, of glass with a ratio of indices.
-fn met(modes: &Modes, bits: u32, facing: Vector, incident: Vector, eta: i32) -> Option<Surface> {
-    let cosine = modes.dot(facing, incident, bits);
-    let facing = if cosine > 0 { facing.map(|lane| -lane) } else { facing };
-    let material =
-        Material { colour: [0; 3], reflection: 0, intensity: 0, transmission: 1, index: eta, inverse_index: 1 };
-    let cosine = cosine.abs();
-    (cosine > 0).then_some(Surface { point: [0; 3], behind: [0; 3], facing, incident, cosine, material })
-}
-
-#[test]
-fn secondary_rays_against_double_precision() {
-    let mut text = format!("{RAYS} rays each, largest error of a lane in ulp\n");
-    for word in WORDS {
-        let (modes, constants, bits) = (modes(word), full(word), word - 2);
-        let mut series = Series(24);
-        let (mut reflected, mut refracted) = (Errors::default(), Errors::default());
-        let (mut total, mut wrong) = (0, 0);
-        for _ in 0..RAYS {
-            // Ratios from 1/7.5 to 7.5.
-            let ratio = (series.unit() * 2.0).exp();
-            let eta = (ratio * f64::from(1u32 << constants.formats.index)).round() as i32;
-            let (facing, incident) = (series.direction(bits), series.direction(bits));
-            let Some(surface) = met(&modes, bits, facing, incident, eta) else { continue };
-            let (n, d) = (double(surface.facing, bits), double(incident, bits));
-            let eta = f64::from(eta) / f64::from(1u32 << constants.formats.index);
-            let c = -double_dot(n, d);
-            let exact = [0, 1, 2].map(|k| d[k] + 2.0 * c * n[k]);
-            reflected.0.push(ulps(reflect(&modes, &constants, &surface), exact, bits));
-            let k = 1.0 - eta * eta * (1.0 - c * c);
-            match refracts(&modes, &constants, &surface, 1 << constants.formats.weight, true) {
-                Refraction::Opaque => panic!("the material lets light through"),
-                Refraction::Total(_) => {
-                    total += 1;
-                    wrong += usize::from(k >= 0.0);
-                }
-                Refraction::Through { .. } if k < 0.0 => wrong += 1,
-                Refraction::Through { k: raw, eta: ratio, .. } => {
-                    let exact = [0, 1, 2].map(|j| eta * (d[j] + c * n[j]) - k.sqrt() * n[j]);
-                    refracted.0.push(ulps(refract(&modes, &constants, &surface, raw, ratio), exact, bits));
-                }
-            }
-        }
-        let _ = writeln!(text, "{word} bits, reflected: {}", reflected.figures());
-        let _ = writeln!(text, "{word} bits, refracted: {}", refracted.figures());
-        let _ = writeln!(text, "{word} bits, total reflection: {total}, {wrong} wrong");
-    }
-    insta::assert_snapshot!(text);
 }

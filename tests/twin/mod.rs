@@ -6,6 +6,7 @@ mod functions;
 mod operands;
 mod pictures;
 mod surfaces;
+mod vectors;
 
 use isa::diagnostic::Report;
 use isa::number::Modes;

@@ -78,14 +78,26 @@ impl Stage {
                 Node::Leaf(first..references.len() as u32)
             }
         };
-        Some(Stage {
+        let stage = Stage {
             bounds: image.bounds,
             nodes: contents.tree.nodes.iter().map(|n| node(&n.content)).collect(),
             references,
             triangles: contents.triangles,
             materials: contents.materials.iter().map(|fields| Material::new(fields)).collect::<Option<_>>()?,
             lights: contents.lights.iter().map(|fields| Light::new(fields)).collect::<Option<_>>()?,
-        })
+        };
+        stage.is_sound().then_some(stage)
+    }
+
+    /// Whether every search ends and finds what it looks for: there is a root, children come after their parents, materials exist.
+    fn is_sound(&self) -> bool {
+        let has_children = |(number, node): (usize, &Node)| match node {
+            Node::Inner { left, .. } => number < *left as usize && (*left as usize) < self.nodes.len() - 1,
+            Node::Leaf(_) => true,
+        };
+        !self.nodes.is_empty()
+            && self.nodes.iter().enumerate().all(has_children)
+            && self.triangles.iter().all(|triangle| (triangle.material as usize) < self.materials.len())
     }
 }
 

@@ -95,7 +95,10 @@ impl Assembler<'_> {
     /// A number for `width` octets.
     pub(crate) fn data_value(&self, width: usize, expression: &Expression) -> Result<i64, Failure> {
         let value = self.evaluate(expression)?;
-        let (least, most) = range(width);
+        let (least, mut most) = range(width);
+        if expression.is_fixed() {
+            most = -(least + 1);
+        }
         if value < least || value > most {
             let message = format!("{value} does not fit {width} octet{}", if width == 1 { "" } else { "s" });
             let label = format!("must be {least} to {most}");

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use crate::assembler::Assembler;
 use crate::explain;
-use crate::expression::{Expression, Step};
+use crate::expression::{Expression, Step, has_fixed};
 use crate::function::Function;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::operator::{Checked, OVERFLOW};
@@ -88,6 +88,11 @@ impl Assembler<'_> {
                 Step::Function(name) => {
                     let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
                     let a = pop();
+                    let is_half = matches!(name, Function::Low | Function::High);
+                    if is_half && a > i32::MAX.into() && has_fixed(steps) {
+                        let fits = Err((explain::RANGE, "the number does not fit 32 bits with its sign"));
+                        checked(fits, &|| format!("of {a}"))?;
+                    }
                     checked(name.apply(a, b), &|| format!("of {a}"))?
                 }
             };

@@ -49,12 +49,22 @@ impl Expression {
         }
     }
 
+    /// Whether a fixed-point literal is part of it: such a number has a sign, and is never meant as an unsigned one.
+    pub fn is_fixed(&self) -> bool {
+        has_fixed(&self.steps)
+    }
+
     /// A function of this expression.
     pub fn under(&self, function: Function) -> Expression {
         let mut steps = self.steps.clone();
         steps.push((Step::Function(function), self.at));
         Expression { steps, at: self.at }
     }
+}
+
+/// Whether a fixed-point literal is among the steps.
+pub(crate) fn has_fixed(steps: &[(Step, At)]) -> bool {
+    steps.iter().any(|(step, _)| matches!(step, Step::Fixed(..)))
 }
 
 enum Infix {

@@ -7,8 +7,8 @@ use isa::table::Ending;
 
 use crate::code::Code;
 use crate::exec::{
-    BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, ScalarRoom, VectorRoom, Watch,
-    WideRoom, split_operands,
+    BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom,
+    Watch, WideRoom, split_operands,
 };
 use crate::octets::Buffer;
 use crate::profile::Observer;
@@ -229,7 +229,7 @@ pub fn run<T: Watch, O: Observer>(
         clocks += u64::from(pass.cost.clocks);
         elementary += u64::from(pass.cost.elementary);
         pass.units += u64::from(units);
-        if pass.cost.has_busy_units {
+        if units != 0 && pass.cost.has_busy_units {
             let (more_clocks, more_elementary) = code.unit_cost(pc, exit, units);
             clocks += more_clocks.0;
             elementary += more_elementary;

@@ -176,6 +176,18 @@ impl Memory {
         Ok(i32::from_le_bytes(std::array::from_fn(|at| slice[at])))
     }
 
+    /// Reads words of 32 bits from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the memory.
+    pub fn read_words(&self, address: u32, words: &mut [i32]) -> Result<(), Fault> {
+        let (octets, _) = self.slice(address, 4 * words.len() as u32)?.as_chunks::<4>();
+        for (word, &octets) in words.iter_mut().zip(octets) {
+            *word = i32::from_le_bytes(octets);
+        }
+        Ok(())
+    }
+
     /// Writes words of 32 bits from `address` on.
     ///
     /// # Errors

@@ -3,7 +3,8 @@
 //!
 //! In a body the operands have the names of the row's letters; `i` is a number. Scratch registers are s8 and up, v8 and
 //! up, w0, w1, w2, w5 to w7. A line `; range: a 30 bits` or `; range: i 31..63` limits the operands to those that the
-//! elementary rows can say, a line `; arithmetic: default` the machines.
+//! elementary rows can say, a line `; arithmetic: default` the machines. `; range: b planes 20 bits` says that wide operands are
+//! planes, as the rows of the ray unit take them. Bodies may include files of the folder.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -43,16 +44,19 @@ fn is_composite(row: &Row) -> bool {
     row.exits.iter().any(|exit| exit.cost.elementary() > 1)
 }
 
-/// Where an operand lives.
-fn register(operand: &Operand) -> Option<(char, u8)> {
-    let number = match operand.letter {
+/// Where an operand lives: by its letter, behind the further vectors of the operands before it.
+fn register(row: &Row, operand: &Operand) -> Option<(char, u8)> {
+    let place = |letter: u8| match letter {
         b'a' => 1,
         b'b' => 2,
         b'c' => 3,
         b'd' | b'x' => 4,
         _ => 5,
     };
-    Some((operand.kind.register_file()?, number))
+    let file = operand.kind.register_file()?;
+    let is_before = |other: &&Operand| file == 'v' && place(other.letter) < place(operand.letter);
+    let vectors = row.operands.iter().filter(|other| other.kind.register_file() == Some('v')).filter(is_before);
+    Some((file, place(operand.letter) + vectors.map(|other| other.kind.registers() - 1).sum::<u8>()))
 }
 
 /// A row and the body that it is compared with.
@@ -96,12 +100,16 @@ impl Oracle<'_> {
     fn program(&self, isa: &Isa, body: &str, shift: i64) -> Program {
         let mut text = String::new();
         for operand in self.row.operands.iter() {
-            if let Some((file, number)) = register(operand) {
+            if let Some((file, number)) = register(self.row, operand) {
                 text += &format!(".reg {}, {file}{number}\n", operand.letter as char);
             }
         }
         text += &format!("{body}\nhalt\n");
-        let options = asm::Options { defines: vec![("i".into(), shift)], ..asm::Options::default() };
+        let include = |name: &str, _: &str| {
+            let text = std::fs::read_to_string(folder().join(name)).map_err(|error| error.to_string())?;
+            Ok(Source::new(name, text))
+        };
+        let options = asm::Options { include: &include, defines: vec![("i".into(), shift)], ..asm::Options::default() };
         match asm::assemble(&Source::new(format!("{}.s", self.row.name), text), isa, &options) {
             Ok(assembled) => assembled.program,
             Err(report) => panic!("{}", report.render(false)),
@@ -118,12 +126,19 @@ impl Oracle<'_> {
     fn operands(&self, word: u32, random: &mut Random) -> Registers {
         let mut registers = Registers::default();
         for operand in self.row.operands.iter() {
-            let Some((_, number)) = register(operand) else { continue };
-            let limit = self.range(operand.letter).map(|range| range.trim_end_matches(" bits").parse().unwrap());
-            let mut next = |bits: u32| random.signed(limit.unwrap_or(bits - 1));
+            let Some((_, number)) = register(self.row, operand) else { continue };
+            let range = self.range(operand.letter).map(|range| range.trim_end_matches(" bits"));
+            let is_plane = range.is_some_and(|range| range.starts_with("planes"));
+            let limit = range.map(|range| range.trim_start_matches("planes ").parse().unwrap());
+            let mut next = |bits: u32| {
+                let number = random.signed(limit.unwrap_or(bits - 1));
+                // The axis is in two bits above the coordinate, anything in those above.
+                if is_plane { i64::from(number as u32) | (random.next() >> 20 << 32) as i64 } else { number }
+            };
             match operand.kind {
                 Kind::S | Kind::A => registers.set_scalar(number, next(word) as i32),
-                Kind::V => registers.set_vector(number, [0; 3].map(|_: i32| next(word) as i32)),
+                _ if operand.kind.register_file() == Some('v') => (0..operand.kind.registers())
+                    .for_each(|at| registers.set_vector(number + at, [0; 3].map(|_: i32| next(word) as i32))),
                 _ => (0..operand.kind.registers()).for_each(|at| registers.set_wide(number + at, next(2 * word))),
             }
         }
@@ -136,7 +151,7 @@ impl Oracle<'_> {
         let written = self.row.operands.iter().filter(|operand| operand.is_written());
         written
             .flat_map(|operand| {
-                let (file, number) = register(operand).unwrap();
+                let (file, number) = register(self.row, operand).unwrap();
                 (0..operand.kind.registers()).flat_map(move |at| match file {
                     's' => vec![registers.scalar(number + at).into()],
                     'v' => registers.vector(number + at).map(i64::from).to_vec(),
@@ -163,9 +178,9 @@ fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (Si
 
 #[test]
 fn every_composite_row_has_a_body_and_every_body_a_row() {
-    let names = |path: PathBuf| path.file_stem().unwrap().to_string_lossy().into_owned();
+    let names = |path: PathBuf| path.file_name()?.to_str()?.strip_suffix(".s").map(String::from);
     let bodies: BTreeSet<String> =
-        std::fs::read_dir(folder()).unwrap().map(|entry| names(entry.unwrap().path())).collect();
+        std::fs::read_dir(folder()).unwrap().filter_map(|entry| names(entry.unwrap().path())).collect();
     let rows: BTreeSet<String> =
         isa::ROWS.iter().filter(|row| is_composite(row)).map(|row| row.name.to_string()).collect();
     assert_eq!(bodies, rows);

@@ -61,11 +61,11 @@ pub trait Link {
     /// A range that leaves buffer or memory, or not yet.
     fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
 
-    /// The 32 bits of global memory at `address`.
+    /// Reads words of 32 bits from global memory from `address` on, in one transfer.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn read(&mut self, address: u32) -> Result<i32, Stop>;
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop>;
 
     /// Writes words of 32 bits to global memory from `address` on, in one transfer.
     ///
@@ -106,6 +106,15 @@ pub struct Port<'a> {
     pub link: &'a mut dyn Link,
 }
 
+impl Port<'_> {
+    /// Words from global memory, in one transfer.
+    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
+        let mut words = [0; N];
+        self.link.read(address, &mut words)?;
+        Ok(words)
+    }
+}
+
 impl BusRoom for Port<'_> {
     fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
         self.link.load(self.buffer, a, b, c as u32)?;
@@ -118,7 +127,18 @@ impl BusRoom for Port<'_> {
     }
 
     fn ldw(&mut self, a: u32, i: i32) -> Result<(i32, Done), Stop> {
-        Ok((self.link.read(a.wrapping_add_signed(i))?, Done))
+        let [word] = self.words(a.wrapping_add_signed(i))?;
+        Ok((word, Done))
+    }
+
+    fn ldwide(&mut self, a: u32, i: i32) -> Result<(i64, Done), Stop> {
+        let [low, high] = self.words(a.wrapping_add_signed(i))?;
+        Ok((i64::from(high) << 32 | i64::from(low as u32), Done))
+    }
+
+    fn ldv3(&mut self, a: u32, i: i32) -> Result<([Vector; 3], Done), Stop> {
+        let words: [i32; 9] = self.words(a.wrapping_add_signed(i))?;
+        Ok((std::array::from_fn(|at| std::array::from_fn(|lane| words[3 * at + lane])), Done))
     }
 
     fn stw(&mut self, b: i32, a: u32, i: i32) -> Result<Done, Stop> {

@@ -5,6 +5,7 @@ mod bus;
 mod control;
 mod integer;
 mod local;
+mod ray;
 mod scalar;
 mod split;
 #[cfg(test)]

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, TestRunner};
 
-use super::{IntegerRoom, ScalarRoom, VectorRoom, Watching, WideRoom, split_operands};
+use super::{IntegerRoom, RayRoom, ScalarRoom, VectorRoom, Watching, WideRoom, split_operands};
 
 /// Numbers of every size, the ends of the range among them.
 fn scalar() -> impl Strategy<Value = i32> {
@@ -35,6 +35,12 @@ macro_rules! any_operand {
     };
     ($runner:ident V) => {
         one($runner, vector())
+    };
+    ($runner:ident V2) => {
+        one($runner, prop::array::uniform2(vector()))
+    };
+    ($runner:ident V3) => {
+        one($runner, prop::array::uniform3(vector()))
     };
     ($runner:ident W) => {
         one($runner, wide())

@@ -90,10 +90,11 @@ impl Link for Station<'_> {
         Ok(())
     }
 
-    fn read(&mut self, address: u32) -> Result<i32, Stop> {
-        self.shared.memory.slice(address, 4)?;
-        self.enter(transfer(address, 4))?;
-        Ok(self.shared.memory.word(address)?)
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        let octets = 4 * words.len() as u32;
+        self.shared.memory.slice(address, octets)?;
+        self.enter(transfer(address, octets))?;
+        Ok(self.shared.memory.read_words(address, words)?)
     }
 
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {

@@ -7,4 +7,5 @@ mod machine;
 mod meanings;
 mod messages;
 mod profile;
+mod ray;
 mod traps;

@@ -44,6 +44,10 @@ macro_rules! memory_rows {
             store (a: A, b: A, c: S)          "100110 aaaaa bbbbb ccccc ----- 000001"  [Done(mem 1; each octet 1)];
             /// Loads 32 bits from global memory at `a + i`.
             ldw (d: S, a: A, i: Off)          "100111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
+            /// Loads a wide number of 64 bits from global memory at `a + i`.
+            ldwide (d: W, a: A, i: Off)       "100010 ddd10 aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 8)];
+            /// Loads three vectors, nine words of 32 bits, from global memory at `a + i`.
+            ldv3 (d: V3, a: A, i: Off)        "010111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 36)];
             /// Stores 32 bits to global memory at `a + i`.
             stw (b: S, a: A, i: Off)          "101000 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
             /// Stores three words of 32 bits to global memory at `a + i`.

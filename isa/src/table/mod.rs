@@ -4,6 +4,7 @@
 mod control;
 mod integer;
 mod memory;
+mod ray;
 mod scalar;
 mod vector;
 mod wide;
@@ -21,7 +22,7 @@ use crate::row::{Exit, Kind, Operand, Room, Row};
 #[macro_export]
 macro_rules! rows {
     ($callback:ident) => {
-        $crate::scalar_rows! { [] integer_rows vector_rows wide_rows memory_rows control_rows rows_end $callback }
+        $crate::scalar_rows! { [] integer_rows vector_rows wide_rows ray_rows memory_rows control_rows rows_end $callback }
     };
 }
 
@@ -90,6 +91,28 @@ macro_rules! exit_type {
             impl crate::table::Ending for Exit {
                 fn index(self) -> usize { self as usize }
                 fn units(self) -> u32 { 0 }
+            }
+        }
+    };
+    ($name:ident [$($exit:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+]) => {
+        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        pub mod $name {
+            #[doc = concat!("The ways in which `", stringify!($name), "` ends.")]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub enum Way {
+                $(#[doc = concat!("Exit `", stringify!($exit), "`.")] $exit,)+
+            }
+            #[doc = concat!("How `", stringify!($name), "` ends, with the number of units.")]
+            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+            pub struct Exit {
+                /// Which exit.
+                pub way: Way,
+                /// Units of its cost for each; 0 where it has none.
+                pub units: u32,
+            }
+            impl crate::table::Ending for Exit {
+                fn index(self) -> usize { self.way as usize }
+                fn units(self) -> u32 { self.units }
             }
         }
     };

@@ -1,0 +1,72 @@
+//! Meanings of the rows of the ray unit. The decisions are those of [`isa::number::ray`]; here they meet registers.
+
+use isa::number::ray::{
+    BoxEnd, Plane, Ray, Step, TriangleEnd, across_box, exit_face, is_surely_before, ratio, step, triangle,
+};
+use isa::number::{Arithmetic, Vector};
+use isa::table::{Done, exit};
+
+use super::RayRoom;
+
+impl<T: Arithmetic> RayRoom for T {
+    #[inline]
+    fn rtri(&self, a: [Vector; 2], b: [Vector; 3], i: i32) -> (i32, Vector, exit::rtri::Exit) {
+        use exit::rtri::{Exit, Way};
+        let met = triangle(&Ray::from(a), &b);
+        let way = match met.end {
+            TriangleEnd::Parallel => Way::Parallel,
+            TriangleEnd::OutsideU => Way::OutsideU,
+            TriangleEnd::OutsideV => Way::OutsideV,
+            TriangleEnd::OutsideW => Way::OutsideW,
+            TriangleEnd::Behind => Way::Behind,
+            TriangleEnd::Hit => Way::Hit,
+        };
+        let exit = Exit { way, units: met.ties };
+        if way != Way::Hit {
+            return (i32::MAX >> (32 - self.word()), [0; 3], exit);
+        }
+        let weight = |part: i128| ratio(self, part, met.determinant, self.word() - 2);
+        (ratio(self, met.t, met.determinant, i as u32), [weight(met.u), weight(met.v), 0], exit)
+    }
+
+    #[inline]
+    fn rbox(&self, a: [Vector; 2], b: [Vector; 2]) -> (i64, i64, exit::rbox::Exit) {
+        use exit::rbox::Exit;
+        let (enter, leave, end) = across_box(&Ray::from(a), b[0], b[1]);
+        let exit = match end {
+            BoxEnd::Beside => Exit::Beside,
+            BoxEnd::Inside => Exit::Inside,
+            BoxEnd::Missed => Exit::Missed,
+            BoxEnd::Entered => Exit::Entered,
+        };
+        (enter.pattern(), leave.pattern(), exit)
+    }
+
+    #[inline]
+    fn rexit(&self, a: [Vector; 2], b: [Vector; 2]) -> (i64, Done) {
+        (exit_face(&Ray::from(a), b[0], b[1]).pattern(), Done)
+    }
+
+    #[inline]
+    fn rstep(&self, a: [Vector; 2], b: [i64; 3], i: i32) -> (i32, i32, exit::rstep::Exit) {
+        use exit::rstep::Exit;
+        let ray = Ray::from(a);
+        let [split, entry, leave] = b.map(Plane::from_pattern);
+        let left = (b[0] >> 32) as i32 & !3;
+        let right = left.wrapping_add(i);
+        let found = step(&ray, split, entry, leave);
+        let (first, second) = if found.is_right_first(&ray, split.axis) { (right, left) } else { (left, right) };
+        match found {
+            Step::Leaf => (left, -1, Exit::Leaf),
+            Step::Behind => (first, 0, Exit::Behind),
+            Step::Passed => (first, 0, Exit::Passed),
+            Step::Near => (first, 0, Exit::Near),
+            Step::Both => (first, second, Exit::Both),
+        }
+    }
+
+    #[inline]
+    fn rbefore(&self, a: [Vector; 2], b: i64, c: i32, i: i32) -> (i32, Done) {
+        (is_surely_before(&Ray::from(a), Plane::from_pattern(b), c, i as u32).into(), Done)
+    }
+}

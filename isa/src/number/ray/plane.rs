@@ -1,0 +1,187 @@
+//! Planes perpendicular to an axis and the order in which a ray meets them: the faces of boxes and the splits of a kd tree.
+
+use std::cmp::Ordering;
+
+use super::Ray;
+use crate::number::Vector;
+
+/// The number that stands for time among the axes: there the origin is 0 and the direction 1.
+const TIME: usize = 3;
+
+/// A plane perpendicular to an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane {
+    /// 0, 1, 2; 3 for the moment t = `at` (in raw coordinates over raw directions), which is no plane in space.
+    pub axis: usize,
+    /// Where it cuts its axis, raw.
+    pub at: i32,
+}
+
+impl Plane {
+    /// The start of a ray, t = 0.
+    pub const START: Plane = Plane { axis: TIME, at: 0 };
+
+    /// What stands for no plane at all: the pattern with all bits set.
+    pub const NOWHERE: Plane = Plane { axis: TIME, at: -1 };
+
+    /// The plane in a pattern of 64 bits: the axis in the two lowest bits of the high half, the coordinate in the low half.
+    #[inline]
+    pub const fn from_pattern(pattern: i64) -> Plane {
+        Plane { axis: (pattern >> 32 & 3) as usize, at: pattern as i32 }
+    }
+
+    /// The pattern with 0 in the other bits; all bits set for [`Plane::NOWHERE`].
+    #[inline]
+    pub const fn pattern(self) -> i64 {
+        match self {
+            Plane { axis: TIME, at: -1 } => -1,
+            Plane { axis, at } => (axis as i64) << 32 | at as u32 as i64,
+        }
+    }
+
+    /// Whether the ray meets the plane after its start. A plane through the origin is met at t = 0: it has been crossed.
+    #[inline]
+    fn is_ahead(self, ray: &Ray) -> bool {
+        let origin = if self.axis == TIME { 0 } else { ray.origin[self.axis] };
+        if is_backwards(ray, self.axis) { self.at < origin } else { self.at > origin }
+    }
+
+    /// The plane is met at t = run / slope.
+    #[inline]
+    fn run_and_slope(self, ray: &Ray) -> (i64, i64) {
+        match self.axis {
+            TIME => (self.at.into(), 1),
+            axis => (i64::from(self.at) - i64::from(ray.origin[axis]), ray.direction[axis].into()),
+        }
+    }
+
+    /// Whether the ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
+    ///
+    /// Of planes of axes j < k that the ray itself meets at the same t > 0, that of j comes first exactly when D_j >= 0: its t changes by
+    /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Products have 65 bits with their sign.
+    #[inline]
+    fn is_before(self, other: Plane, ray: &Ray) -> bool {
+        let ((run, slope), (other_run, other_slope)) = (self.run_and_slope(ray), other.run_and_slope(ray));
+        let here = i128::from(run) * i128::from(other_slope);
+        let there = i128::from(other_run) * i128::from(slope);
+        let is_same_way = (slope < 0) == (other_slope < 0);
+        match if is_same_way { here.cmp(&there) } else { there.cmp(&here) } {
+            Ordering::Less => true,
+            Ordering::Greater => false,
+            Ordering::Equal => match self.axis.cmp(&other.axis) {
+                Ordering::Less => slope >= 0,
+                Ordering::Equal => false,
+                Ordering::Greater => other_slope < 0,
+            },
+        }
+    }
+}
+
+/// Whether the ray goes towards smaller coordinates; a direction of 0 counts as positive.
+#[inline]
+fn is_backwards(ray: &Ray, axis: usize) -> bool {
+    axis != TIME && ray.direction[axis] < 0
+}
+
+/// The three planes by which a ray enters a box, and those by which it leaves.
+fn faces(ray: &Ray, low: Vector, high: Vector) -> [(Plane, Plane); 3] {
+    std::array::from_fn(|axis| {
+        let [low, high] = [low, high].map(|corner| Plane { axis, at: corner[axis] });
+        if is_backwards(ray, axis) { (high, low) } else { (low, high) }
+    })
+}
+
+fn first_to_leave(ray: &Ray, faces: &[(Plane, Plane); 3]) -> Plane {
+    let [x, y, z] = faces.map(|(_, leave)| leave);
+    let first = if x.is_before(y, ray) { x } else { y };
+    if first.is_before(z, ray) { first } else { z }
+}
+
+/// The plane through which a ray leaves a box that it is in.
+pub fn exit_face(ray: &Ray, low: Vector, high: Vector) -> Plane {
+    first_to_leave(ray, &faces(ray, low, high))
+}
+
+/// How a ray and a box lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxEnd {
+    /// The origin is beyond a plane by which the ray would leave.
+    Beside,
+    /// The ray starts in the box.
+    Inside,
+    /// It leaves the slab between two faces before it enters another one.
+    Missed,
+    /// It enters the box ahead.
+    Entered,
+}
+
+/// Where a ray enters a box and where it leaves it: [`Plane::START`] for a ray that starts inside, [`Plane::NOWHERE`] twice for one that
+/// misses the box.
+pub fn across_box(ray: &Ray, low: Vector, high: Vector) -> (Plane, Plane, BoxEnd) {
+    let faces = faces(ray, low, high);
+    if faces.iter().any(|(_, leave)| !leave.is_ahead(ray)) {
+        return (Plane::NOWHERE, Plane::NOWHERE, BoxEnd::Beside);
+    }
+    let exit = first_to_leave(ray, &faces);
+    let entries = faces.into_iter().map(|(enter, _)| enter).filter(|enter| enter.is_ahead(ray));
+    let entry = entries.fold(Plane::START, |last, next| if last.is_before(next, ray) { next } else { last });
+    if entry == Plane::START {
+        (entry, exit, BoxEnd::Inside)
+    } else if entry.is_before(exit, ray) {
+        (entry, exit, BoxEnd::Entered)
+    } else {
+        (Plane::NOWHERE, Plane::NOWHERE, BoxEnd::Missed)
+    }
+}
+
+/// Which sides of a split a ray visits between two planes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The node is a leaf: its plane has axis 3.
+    Leaf,
+    /// Only the far side, the one that the ray goes to: the split is met before the ray starts, or at its origin.
+    Behind,
+    /// Only the far side: the split is met before the ray enters, or where it does.
+    Passed,
+    /// Only the near side: the ray leaves before it meets the split, or where it does.
+    Near,
+    /// The near side, then the far one.
+    Both,
+}
+
+/// How a ray that is between `entry` and `exit` meets a split.
+#[inline]
+pub fn step(ray: &Ray, split: Plane, entry: Plane, exit: Plane) -> Step {
+    if split.axis == TIME {
+        Step::Leaf
+    } else if !split.is_ahead(ray) {
+        Step::Behind
+    } else if !entry.is_before(split, ray) {
+        Step::Passed
+    } else if !split.is_before(exit, ray) {
+        Step::Near
+    } else {
+        Step::Both
+    }
+}
+
+impl Step {
+    /// Whether the first side to visit is the one of larger coordinates; of a leaf it is none.
+    #[inline]
+    pub fn is_right_first(self, ray: &Ray, axis: usize) -> bool {
+        match self {
+            Step::Leaf => false,
+            Step::Behind | Step::Passed => !is_backwards(ray, axis),
+            Step::Near | Step::Both => is_backwards(ray, axis),
+        }
+    }
+}
+
+/// Whether the point at t is nearer than a plane even if t is one unit too small: (t + 1) slope < run 2^shift, with run and slope counted in
+/// the ray's direction. Of a hit for which this holds no other one behind the plane can be nearer.
+#[inline]
+pub fn is_surely_before(ray: &Ray, plane: Plane, t: i32, shift: u32) -> bool {
+    let (run, slope) = plane.run_and_slope(ray);
+    let run = if slope < 0 { -run } else { run };
+    (i128::from(t) + 1) * i128::from(slope.abs()) < i128::from(run) << shift
+}

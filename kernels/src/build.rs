@@ -8,7 +8,7 @@ use scenes::image::Image;
 use scenes::model::{Scene, View};
 
 use crate::function::{Function, Profile};
-use crate::prelude;
+use crate::prelude::{self, Walk};
 
 /// What of a scene decides which code its programs contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,17 +118,17 @@ fn assemble(
     options: &Options,
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
-    let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, is_main))];
+    let replaced: Vec<Function> = options.replaced.iter().map(|&(function, _)| function).collect();
+    let walk = if options.profile.walks_with_planes(&replaced) { Walk::Planes } else { Walk::Boxes };
+    let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, walk, is_main))];
     files.extend(prelude::included(image.layout));
     for function in Function::of_program(is_main, features.has_tree(), features.has_glass()) {
-        let replaced = options.replaced.iter().rev().find(|(other, _)| *other == function);
-        files.push(match replaced {
-            Some((_, source)) => source.clone(),
-            None => {
-                let (path, text) = function.file(options.profile);
-                Source::new(format!("kernels/asm/{path}"), text)
-            }
-        });
+        let own = options.replaced.iter().rev().find(|(other, _)| *other == function).map(|(_, source)| source.clone());
+        let ours = || {
+            let (path, text) = function.file(options.profile, &replaced)?;
+            Some(Source::new(format!("kernels/asm/{path}"), text))
+        };
+        files.extend(own.or_else(ours));
     }
     prelude::assemble(if is_main { "<main>" } else { "<core>" }, &files, isa)
 }

@@ -11,17 +11,25 @@ pub enum Profile {
     /// Vector and wide rows: decisions on exact products, one rounding at the end.
     #[default]
     Vector,
+    /// The rows of the ray unit where they serve, else as `Vector`: exact at any word length, and few instructions.
+    Ray,
 }
 
 impl Profile {
     /// All profiles.
-    pub const ALL: [Profile; 1] = [Profile::Vector];
+    pub const ALL: [Profile; 2] = [Profile::Vector, Profile::Ray];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Profile::Vector => "vector",
+            Profile::Ray => "ray",
         }
+    }
+
+    /// Whether the walk through the tree is the one that needs no boxes, when the user has replaced some functions.
+    pub fn walks_with_planes(self, replaced: &[Function]) -> bool {
+        Team::of(Function::Descend, self, replaced).is_some()
     }
 }
 
@@ -60,6 +68,53 @@ enum Need {
     Glass,
 }
 
+/// Path (below the folder of the kernels) and text of a file.
+pub type File = (&'static str, &'static str);
+
+macro_rules! file {
+    ($file:literal) => {
+        ($file, include_str!(concat!("../asm/", $file)))
+    };
+}
+
+/// Functions that a profile serves by files made for each other: between them they agree on more registers than `registers.inc` says.
+///
+/// A file of the user's own knows nothing of that, so when it replaces one function the others are served each by itself.
+struct Team {
+    profile: Profile,
+    /// The functions that it serves, with their files; `None` where another one's file does their work.
+    members: &'static [(Function, Option<File>)],
+}
+
+/// The teams of all profiles.
+const TEAMS: &[Team] = &[
+    Team {
+        profile: Profile::Ray,
+        members: &[(Function::Packet, Some(file!("ray/packet.s"))), (Function::Triangle, None)],
+    },
+    Team {
+        profile: Profile::Ray,
+        members: &[
+            (Function::Trace, Some(file!("ray/trace.s"))),
+            (Function::NextPacket, Some(file!("ray/next_packet.s"))),
+            (Function::ExitFace, None),
+            (Function::Descend, Some(file!("ray/descend.s"))),
+            (Function::OwnPacket, Some(file!("ray/own_packet.s"))),
+            (Function::FirstPacket, Some(file!("ray/first_packet.s"))),
+        ],
+    },
+];
+
+impl Team {
+    /// The team that serves a function, when it is complete.
+    fn of(function: Function, profile: Profile, replaced: &[Function]) -> Option<&'static Team> {
+        let has = |team: &Team, function| team.members.iter().any(|&(member, _)| member == function);
+        TEAMS.iter().find(|team| {
+            team.profile == profile && has(team, function) && !replaced.iter().any(|&other| has(team, other))
+        })
+    }
+}
+
 macro_rules! functions {
     ($($(#[doc = $doc:literal])* $variant:ident $name:literal $place:ident $need:ident { $($profile:ident $file:literal)* })*) => {
         /// A function of the kernels, in one file a profile.
@@ -83,10 +138,11 @@ macro_rules! functions {
                 match self { $(Function::$variant => Need::$need,)* }
             }
 
-            /// Path (below the folder of the kernels) and text of the file that serves the function.
-            pub const fn file(self, profile: Profile) -> (&'static str, &'static str) {
+            /// The file that serves the function by itself, with the registers that `registers.inc` gives it.
+            const fn own_file(self, profile: Profile) -> File {
                 match (self, profile) {
-                    $($((Function::$variant, Profile::$profile) => ($file, include_str!(concat!("../asm/", $file))),)*)*
+                    $($((Function::$variant, Profile::$profile) => file!($file),)*)*
+                    _ => self.own_file(Profile::Vector),
                 }
             }
         }
@@ -105,11 +161,11 @@ functions! {
     /// Tests the triangles of a packet.
     Packet "packet" Core Always { Vector "vector/packet.s" }
     /// Ray against triangle.
-    Triangle "triangle" Core Always { Vector "vector/triangle.s" }
+    Triangle "triangle" Core Always { Vector "vector/triangle.s" Ray "ray/triangle.s" }
     /// The packet after the current one.
     NextPacket "next_packet" Core Always { Vector "vector/next_packet.s" }
     /// The plane through which the ray leaves a packet.
-    ExitFace "exit_face" Core Always { Vector "vector/exit_face.s" }
+    ExitFace "exit_face" Core Always { Vector "vector/exit_face.s" Ray "ray/exit_face.s" }
     /// Down the tree to a packet.
     Descend "descend" Both Always { Vector "vector/descend.s" }
     /// The packet in which a secondary ray starts.
@@ -139,6 +195,15 @@ functions! {
 }
 
 impl Function {
+    /// The file that serves the function in a profile, given which functions the user has replaced; `None` when another function's file does
+    /// its work.
+    pub fn file(self, profile: Profile, replaced: &[Function]) -> Option<File> {
+        match Team::of(self, profile, replaced) {
+            Some(team) => team.members.iter().find(|&&(member, _)| member == self).and_then(|&(_, file)| file),
+            None => Some(self.own_file(profile)),
+        }
+    }
+
     /// The functions of the program of a core, or of the main processor, for a scene with or without secondary rays and glass.
     pub fn of_program(is_main: bool, has_tree: bool, has_glass: bool) -> impl Iterator<Item = Function> {
         Function::ALL.iter().copied().filter(move |function| {

@@ -8,6 +8,7 @@ use isa::Isa;
 use isa::diagnostic::{Report, Source};
 use scenes::camera::RawCamera;
 use scenes::image::{Image, Kind};
+use scenes::kdtree::Content;
 use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
@@ -31,8 +32,17 @@ pub(crate) fn structure(text: &mut String, structure: &Structure) {
     let _ = writeln!(text, ".endstruct");
 }
 
+/// How a program remembers the far sides of its walks through the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Walk {
+    /// Nodes with boxes, the last one by axis.
+    Boxes,
+    /// Planes, the last one first.
+    Planes,
+}
+
 /// The prelude of a core's program, or of the main processor's.
-pub fn text(image: &Image, features: &Features, crop: &Crop, is_main: bool) -> String {
+pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main: bool) -> String {
     let mut text = String::from("; Written by the loader for one scene and one machine.\n");
     for (name, bits) in image.formats.entries() {
         let _ = writeln!(text, ".format {name}, {bits}");
@@ -45,9 +55,12 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, is_main: bool) -> S
     for part in image.layout.structures() {
         structure(&mut text, part);
     }
-    text.push_str(NOTES);
+    text.push_str(STRUCTURES);
     text.push_str(".buffer\n");
-    text.push_str(TRAVERSAL);
+    text.push_str(match walk {
+        Walk::Boxes => BOXES,
+        Walk::Planes => PLANES,
+    });
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
     if is_main {
@@ -64,6 +77,15 @@ fn is_local(image: &Image, kind: Kind) -> bool {
     image.region(kind).len() as u32 <= TABLES / 2
 }
 
+/// Triangles of the packet that has most.
+fn largest_packet(image: &Image) -> usize {
+    let triangles = |content: &Content| match content {
+        Content::Leaf { triangles } => triangles.len(),
+        Content::Inner { .. } => 0,
+    };
+    image.tree.nodes.iter().map(|node| triangles(&node.content)).max().unwrap_or(0)
+}
+
 fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
     let Constants { formats, edge_shift, t_shift, offset, never, missed, most_steps } = Constants::new(image);
     vec![
@@ -76,6 +98,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("NEVER", never.into()),
         ("MISSED", missed.into()),
         ("MOST_STEPS", most_steps.into()),
+        ("LARGEST_PACKET", largest_packet(image) as i64),
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.statistics().depth.into()),
         ("ROOT", image.root.into()),
@@ -100,11 +123,20 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
     ]
 }
 
-/// What descend needs in any buffer.
-const TRAVERSAL: &str = "\
+/// What a walk with boxes needs in any buffer.
+const BOXES: &str = "\
 NODE: .space 2 * sizeof(node)
 RUNS: .space 24                 ; run x direction, a wide number an axis
 FARS: .space DEPTH * sizeof(far)
+";
+
+/// What a walk with planes needs. The first note is the root's face by which the ray leaves the scene; it begins as no plane at all.
+const PLANES: &str = "\
+NOTES: .wide -1
+    .space (DEPTH + 1) * sizeof(note) - 8
+.if LAYOUT_REPORT
+NODE: .space 2 * sizeof(node)
+.endif
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
@@ -133,7 +165,11 @@ fn core(text: &mut String, image: &Image, features: &Features) {
 
 /// Structures of the buffer alone: the far side of a split of the kd tree, and a node of the ray tree with what its refracted child
 /// will need when the walk is back (report, table 2).
-const NOTES: &str = "\
+const STRUCTURES: &str = "\
+.struct note
+    .field plane, 8         ; a split of the kd tree, as a pattern
+    .field far, 4           ; address of its far child
+.endstruct
 .struct far
     .field node, 4          ; address of the far child
     .field low, 12          ; box of its parent, where nodes have none

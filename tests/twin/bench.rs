@@ -7,9 +7,9 @@ use emu::machine::single::{Single, run};
 use emu::octets::Memory;
 use isa::diagnostic::Source;
 use isa::{Isa, Program};
+use kernels::Function;
 use kernels::build::Crop;
-use kernels::prelude;
-use kernels::{Function, Profile};
+use kernels::prelude::{self, Walk};
 
 use super::Subject;
 
@@ -62,7 +62,7 @@ impl Place {
 
 /// What is done with a case.
 pub struct Experiment {
-    /// Functions of the `vector` profile that take part.
+    /// Functions of the subject's profile that take part.
     pub functions: &'static [Function],
     /// Files that serve others: name and text.
     pub files: &'static [(&'static str, &'static str)],
@@ -86,10 +86,11 @@ impl<'a> Bench<'a> {
     pub fn new(subject: &'a Subject, experiment: &Experiment) -> Bench<'a> {
         let cases_at = (subject.image.bytes.len() as u32).next_multiple_of(16);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
-        let scene = prelude::text(&subject.image, &subject.features, &crop, false);
+        let walk = if subject.profile.walks_with_planes(&[]) { Walk::Planes } else { Walk::Boxes };
+        let scene = prelude::text(&subject.image, &subject.features, &crop, walk, false);
         let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", scene)];
         files.extend(prelude::included(subject.image.layout));
-        let own = experiment.functions.iter().map(|function| function.file(Profile::Vector));
+        let own = experiment.functions.iter().filter_map(|function| function.file(subject.profile, &[]));
         files.extend(own.chain(experiment.files.iter().copied()).map(|(name, text)| Source::new(name, text)));
         files.push(Source::new("<driver>", driver(experiment, cases_at)));
         let assembled = prelude::assemble("<bench>", &files, &Isa::base())

@@ -10,6 +10,7 @@ mod vectors;
 
 use isa::diagnostic::Report;
 use isa::number::Modes;
+use kernels::Profile;
 use kernels::build::Features;
 use kernels::twin::Twin;
 use scenes::image::{self, Image};
@@ -22,17 +23,23 @@ struct Subject {
     image: Image,
     features: Features,
     modes: Modes,
+    profile: Profile,
 }
 
 impl Subject {
     fn new(scene: Scene, view: View, modes: Modes, options: image::Options) -> Result<Subject, Report> {
         let image = image::build(&scene, &view, &image::Options { word: modes.word, ..options })?;
         let features = Features::new(&scene, &view, 0);
-        Ok(Subject { scene, view, image, features, modes })
+        Ok(Subject { scene, view, image, features, modes, profile: Profile::Vector })
+    }
+
+    /// The same with other kernels.
+    fn with(self, profile: Profile) -> Subject {
+        Subject { profile, ..self }
     }
 
     fn twin(&self) -> Twin<Modes> {
-        Twin::new(&self.image, &self.features, self.modes).expect("an image that was built can be read")
+        Twin::new(&self.image, &self.features, self.profile, self.modes).expect("an image that was built can be read")
     }
 
     fn machine(&self) -> emu::machine::Config {

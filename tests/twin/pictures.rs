@@ -5,6 +5,7 @@ use emu::octets::Memory;
 use emu::trap::Fault;
 use isa::Isa;
 use isa::number::{Modes, Overflow, Quantization, Vector};
+use kernels::Profile;
 use kernels::build::Crop;
 use kernels::twin;
 use scenes::generate;
@@ -21,7 +22,7 @@ impl Subject {
     /// The pixels that the machine draws, `None` when a ray is stuck.
     fn drawn(&self, crop: Crop) -> Option<Vec<Vector>> {
         let isa = Isa::base();
-        let options = kernels::Options { crop: Some(crop), ..kernels::Options::default() };
+        let options = kernels::Options { crop: Some(crop), profile: self.profile, ..kernels::Options::default() };
         let build = kernels::build(&self.scene, &self.view, &self.image, &isa, &options)
             .unwrap_or_else(|report| panic!("{}", report.render(false)));
         let config = self.machine();
@@ -47,7 +48,7 @@ impl Subject {
 
     /// The pixels that the twin draws, `None` when a ray is stuck.
     fn drawn_by_twin(&self, crop: Crop) -> Option<Vec<Vector>> {
-        match twin::render(&self.image, &self.features, &crop, self.modes) {
+        match twin::render(&self.image, &self.features, &crop, self.profile, self.modes) {
             Ok(pixels) => Some(pixels),
             Err(twin::Failure::Stuck { .. }) => None,
             Err(failure) => panic!("{failure}"),
@@ -79,6 +80,7 @@ struct Setting {
     background: f64,
     layout: Layout,
     shift: f64,
+    profile: Profile,
 }
 
 const PLAIN: Setting = Setting {
@@ -88,6 +90,7 @@ const PLAIN: Setting = Setting {
     background: 0.0,
     layout: Layout::Wide,
     shift: 0.137,
+    profile: Profile::Vector,
 };
 
 const fn word(word: u32) -> Modes {
@@ -128,6 +131,7 @@ fn check_all(setting: &Setting) -> usize {
     for generator in generate::SCENES {
         match Subject::new(small(generator.name), view.clone(), setting.modes, options) {
             Ok(subject) => {
+                let subject = subject.with(setting.profile);
                 let what = format!("{} with {setting:?}", generator.name);
                 assert!(subject.check(ALL, &what), "a ray is stuck: {what}");
             }
@@ -168,6 +172,24 @@ fn pictures_that_are_rounded_down_and_wrap() {
     assert_eq!(check_all(&Setting { modes, is_perspective: true, background: 0.2, ..PLAIN }), 0);
     let modes = Modes { word: 18, quantization: Quantization::RndConv, overflow: Overflow::SatSym };
     assert_eq!(check_all(&Setting { modes, bounces: 2, ..PLAIN }), 0);
+}
+
+#[test]
+fn pictures_of_the_ray_unit() {
+    let ray = Setting { profile: Profile::Ray, ..PLAIN };
+    assert_eq!(check_all(&ray), 0);
+    assert_eq!(check_all(&Setting { is_perspective: true, background: 0.3, bounces: 2, ..ray }), 0);
+    assert_eq!(check_all(&Setting { layout: Layout::Report, shift: 0.0, ..ray }), 0);
+}
+
+#[test]
+fn pictures_of_the_ray_unit_in_fewer_bits() {
+    let ray = Setting { profile: Profile::Ray, ..PLAIN };
+    assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, ..ray }), 0);
+    assert_eq!(check_all(&Setting { modes: word(16), shift: 0.0, bounces: 2, ..ray }), 0);
+    assert_eq!(check_all(&Setting { modes: word(8), background: 1.0, ..ray }), 0);
+    let modes = Modes { word: 21, quantization: Quantization::Trn, overflow: Overflow::Wrap };
+    assert_eq!(check_all(&Setting { modes, is_perspective: true, layout: Layout::Report, ..ray }), 0);
 }
 
 #[test]

@@ -5,9 +5,11 @@
 
 pub mod camera;
 pub mod descend;
+pub mod exact_triangle;
 pub mod exit_face;
 pub mod first_packet;
 pub mod lanes;
+pub mod planes;
 pub mod ray;
 pub mod ray_tree;
 pub mod reflect;
@@ -29,12 +31,15 @@ use scenes::image::Image;
 
 use crate::build::{Crop, Features};
 use crate::constants::Constants;
+use crate::function::Profile;
 use ray::Stuck;
 use stage::Stage;
 
 /// All that the twins of a scene's kernels share.
 #[derive(Clone, Debug)]
 pub struct Twin<A> {
+    /// Which kernels it is the twin of.
+    pub profile: Profile,
     /// Word and modes.
     pub arithmetic: A,
     /// Shifts and limits.
@@ -78,18 +83,25 @@ impl std::error::Error for Failure {}
 ///
 /// # Errors
 /// An image that holds no scene, or a ray for which the machine traps.
-pub fn render(image: &Image, features: &Features, crop: &Crop, modes: Modes) -> Result<Vec<Vector>, Failure> {
+pub fn render(
+    image: &Image,
+    features: &Features,
+    crop: &Crop,
+    profile: Profile,
+    modes: Modes,
+) -> Result<Vec<Vector>, Failure> {
     if modes == Modes::default() {
-        Twin::new(image, features, Nearest32).ok_or(Failure::NoScene)?.render(crop)
+        Twin::new(image, features, profile, Nearest32).ok_or(Failure::NoScene)?.render(crop)
     } else {
-        Twin::new(image, features, modes).ok_or(Failure::NoScene)?.render(crop)
+        Twin::new(image, features, profile, modes).ok_or(Failure::NoScene)?.render(crop)
     }
 }
 
 impl<A: Arithmetic> Twin<A> {
     /// The twin of the kernels for an image, whose word the arithmetic has to have; `None` when its octets hold no scene.
-    pub fn new(image: &Image, features: &Features, arithmetic: A) -> Option<Twin<A>> {
+    pub fn new(image: &Image, features: &Features, profile: Profile, arithmetic: A) -> Option<Twin<A>> {
         Some(Twin {
+            profile,
             arithmetic,
             constants: Constants::new(image),
             features: *features,

@@ -3,7 +3,6 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::descend::own_packet;
 use super::lanes::Lanes;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::reflect::{reflect, reflects};
@@ -63,7 +62,7 @@ impl<A: Arithmetic> Twin<A> {
         let mut child = |weight: i32, origin: Vector, inside: bool, direction: &dyn Fn() -> Vector| {
             if weight > self.features.cutoff {
                 let ray = Ray::new(arithmetic, origin, direction());
-                let packet = Some(own_packet(arithmetic, &self.stage, &ray));
+                let packet = self.own_packet(&ray);
                 branches.push(Branch { ray, packet, weight, inside, level: branch.level + 1 });
             }
         };

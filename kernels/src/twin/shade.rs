@@ -3,7 +3,6 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::descend::own_packet;
 use super::lanes::Lanes;
 use super::ray::{Ray, Search, Stuck};
 use super::stage::Light;
@@ -41,7 +40,9 @@ impl<A: Arithmetic> Twin<A> {
         let ray = Ray::new(arithmetic, surface.point, direction);
         let distance = arithmetic.dot(direction, way, constants.across());
         let mut search = Search { t: distance, triangle: None, takes_any: true };
-        self.trace(&ray, own_packet(arithmetic, &self.stage, &ray), &mut search)?;
+        if let Some(packet) = self.own_packet(&ray) {
+            self.trace(&ray, packet, &mut search)?;
+        }
         Ok(search.triangle.is_none().then_some(cosine))
     }
 }

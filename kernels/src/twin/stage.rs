@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use isa::number::Vector;
 use scenes::image::{Image, StoredTriangle};
-use scenes::kdtree::{Bounds, Content};
+use scenes::kdtree::{Bounds, Content, KdTree};
 
 /// A node of the kd tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,18 +69,10 @@ impl Stage {
     /// The scene of an image; `None` when its octets hold none.
     pub fn new(image: &Image) -> Option<Stage> {
         let contents = image.decode()?;
-        let mut references = Vec::new();
-        let mut node = |content: &Content| match *content {
-            Content::Inner { axis, at, left } => Node::Inner { axis, at, left },
-            Content::Leaf { ref triangles } => {
-                let first = references.len() as u32;
-                references.extend_from_slice(triangles);
-                Node::Leaf(first..references.len() as u32)
-            }
-        };
+        let (nodes, references) = tree(&contents.tree);
         let stage = Stage {
             bounds: image.bounds,
-            nodes: contents.tree.nodes.iter().map(|n| node(&n.content)).collect(),
+            nodes,
             references,
             triangles: contents.triangles,
             materials: contents.materials.iter().map(|fields| Material::new(fields)).collect::<Option<_>>()?,
@@ -99,6 +91,21 @@ impl Stage {
             && self.nodes.iter().enumerate().all(has_children)
             && self.triangles.iter().all(|triangle| (triangle.material as usize) < self.materials.len())
     }
+}
+
+/// A tree as nodes and references: triangles by index, packet by packet.
+pub fn tree(tree: &KdTree) -> (Vec<Node>, Vec<u32>) {
+    let mut references = Vec::new();
+    let node = |content: &Content| match *content {
+        Content::Inner { axis, at, left } => Node::Inner { axis, at, left },
+        Content::Leaf { ref triangles } => {
+            let first = references.len() as u32;
+            references.extend_from_slice(triangles);
+            Node::Leaf(first..references.len() as u32)
+        }
+    };
+    let nodes = tree.nodes.iter().map(|node| &node.content).map(node).collect();
+    (nodes, references)
 }
 
 impl Material {

@@ -1,12 +1,15 @@
 //! From packet to packet along a ray, to its nearest hit or to any hit (report, pseudo codes 2 and 3).
 
-use isa::number::Arithmetic;
+use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::descend::descend;
+use super::descend::{descend, own_packet};
+use super::exact_triangle::exact_triangle;
 use super::exit_face::exit_face;
+use super::first_packet::first_packet;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::triangle::triangle;
+use crate::function::Profile;
 
 impl<A: Arithmetic> Twin<A> {
     /// Follows a ray from its first packet until the search is over.
@@ -25,11 +28,28 @@ impl<A: Arithmetic> Twin<A> {
         Err(Stuck)
     }
 
+    /// The packet in which a secondary ray starts. Its origin is moved off a surface, so it may lie outside the scene's box: only the
+    /// profile `ray` looks.
+    pub fn own_packet(&self, ray: &Ray) -> Option<Packet> {
+        match self.profile {
+            Profile::Vector => Some(own_packet(&self.arithmetic, &self.stage, ray)),
+            Profile::Ray => first_packet(&self.arithmetic, &self.stage, ray),
+        }
+    }
+
+    /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
+    pub fn triangle(&self, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+        match self.profile {
+            Profile::Vector => triangle(&self.arithmetic, &self.constants, ray, vertices),
+            Profile::Ray => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
+        }
+    }
+
     /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index.
     pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
         for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
             let vertices = &self.stage.triangles[index as usize].vertices;
-            let t = triangle(&self.arithmetic, &self.constants, ray, vertices);
+            let t = self.triangle(ray, vertices);
             if t < search.t || t == search.t && search.triangle.is_some_and(|nearest| index < nearest) {
                 (search.t, search.triangle) = (t, Some(index));
                 if search.takes_any {

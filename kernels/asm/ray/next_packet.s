@@ -1,0 +1,32 @@
+; The packet after the current one, or packet_count = -1 when the search is over: the ray leaves the scene, any hit will do and there
+; is one, or the nearest hit is surely nearer than the plane by which the ray leaves the packet.
+; In: the ray, the walk's notes, near, near_t, any_hit. Out: the packet and the notes. Returns by link_packet. Report, pseudo codes 2
+; and 3. Scratch: s12 to s15, v6, v7, w0 to w2.
+.func next_packet
+    lwide came_by, NOTES + note.plane(last_note)
+    beqz  any_hit, 1f
+    bnez  near, 4f
+1:  rbefore s12, origin, came_by, near_t, dir + t - pos
+    bnez  s12, 4f
+    beqz  last_note, 3f
+    lw    packet_refs, NOTES + note.far(last_note)
+    lea   last_note, -sizeof(note)(last_note)
+    lwide leaves_by, NOTES + note.plane(last_note)
+2:  call  link_step, descend
+    ret   link_packet
+3:  bwgez came_by, 4f                       ; the root's face: the ray leaves the scene
+    ; The main processor has found the first packet: the walk of this core begins where the ray leaves it.
+    lv    v6, ROOT_LOW(s0)
+    lv    v7, ROOT_HIGH(s0)
+    rexit leaves_by, origin, v6
+    swide leaves_by, NOTES + note.plane(s0)
+    vget  s12, box_low, 1
+    vget  s13, box_low, 0
+    wjoin came_by, s12, s13
+    bweq  came_by, leaves_by, 4f
+    li    packet_refs, ROOT
+    rbefore s12, origin, came_by, near_t, dir + t - pos
+    beqz  s12, 2b
+4:  movi  packet_count, -1
+    ret   link_packet
+.endfunc

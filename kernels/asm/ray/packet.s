@@ -1,0 +1,68 @@
+; Tests every triangle of the packet. The nearest hit has the smallest t, then the lowest index.
+; In: packet_count, packet_refs, near, near_t, any_hit. Out: near, near_t, near_slot. Returns by link_packet.
+;
+; The test is part of the loop: a triangle's vertices go from global memory to registers, its other octets are read with a hit that is
+; the nearest so far (of the report's layout it goes to the buffer whole, beside the nearest one).
+; Scratch: s12 to s15, v6 to v9; packet_count and packet_refs are used up.
+.func packet
+    blez  packet_count, packet_end
+.if LAYOUT_REPORT
+    mov   s14, packet_count
+packet_next:
+    next_reference
+    movi  s12, sizeof(triangle)
+    load  slot, s15, s12
+    load_triangle slot
+.else
+  .if LARGEST_PACKET > REFERENCES_AT_ONCE
+packet_block:
+    movi  s12, REFERENCES_AT_ONCE
+    blt   s12, packet_count, 1f
+    mov   s12, packet_count
+1:  isub  packet_count, packet_count, s12
+    slli  s14, s12, 2
+    movi  s13, REFERENCES
+    load  s13, packet_refs, s14
+    addr  packet_refs, packet_refs, s14
+  .else
+    slli  s14, packet_count, 2
+    movi  s13, REFERENCES
+    load  s13, packet_refs, s14
+  .endif
+    addr  s14, s13, s14
+packet_next:
+    lwp   s15, 4(s13)
+    ldv3  v6, triangle.v0(s15)
+.endif
+.region triangle
+    rtri  s12, v9, origin, v6, dir + t - pos
+.endregion
+    bge   near_t, s12, packet_nearer
+packet_rest:
+.if LAYOUT_REPORT
+    isubi s14, s14, 1
+    bnez  s14, packet_next
+.else
+    bltu  s13, s14, packet_next
+  .if LARGEST_PACKET > REFERENCES_AT_ONCE
+    bgtz  packet_count, packet_block
+  .endif
+.endif
+packet_end:
+    ret   link_packet
+packet_nearer:
+    bne   near_t, s12, 1f
+    bgeu  s15, near, packet_rest
+1:  mov   near_t, s12
+    mov   near, s15
+    bnez  any_hit, packet_end
+.if LAYOUT_REPORT
+    mov   s12, slot
+    mov   slot, near_slot
+    mov   near_slot, s12
+.else
+    movi  s12, sizeof(triangle)
+    load  near_slot, s15, s12
+.endif
+    jump  packet_rest
+.endfunc

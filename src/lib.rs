@@ -9,7 +9,6 @@ pub mod failure;
 pub mod files;
 pub mod input;
 pub mod job;
-pub mod listing;
 pub mod machine;
 pub mod manual;
 pub mod result;

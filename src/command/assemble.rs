@@ -3,47 +3,54 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use asm::Attempt;
 use clap::Args;
 use isa::diagnostic::{Diagnostic, Report, Source};
 use isa::{Isa, Program};
 
 use crate::arguments;
 use crate::failure::{Exit, Failure};
-use crate::files::{self, words::WordFile};
-use crate::listing;
+use crate::files::{self, program::ProgramFile};
 use crate::table::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
   lancer assemble first.s                       # all errors of the file, or its size
-  lancer assemble first.s -o first.bin          # words, little-endian
+  lancer assemble first.s -o first.o            # everything, for lancer run and lancer disassemble
   lancer assemble first.s -o first.hex --list   # text for $readmemh, and a listing
+  lancer assemble first.s -o first.bin --data first.dat --list=first.lst --map=first.map
   lancer assemble triangle.s -D WIDTH=320 --format dir=30 -I kernels";
+
+/// In the place of a file's name, standard output.
+const PRINTED: &str = "-";
 
 /// Assembles a program and shows all errors of it in one run.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct AssembleArguments {
-    #[command(flatten)]
-    source: SourceArguments,
-    /// Words of the program: .bin (32 bits, little-endian) or .hex (text for $readmemh).
-    #[arg(short, long, value_name = "FILE", value_parser = WordFile::check)]
-    output: Option<PathBuf>,
-    /// Octets of the program's initial data.
-    #[arg(long, value_name = "FILE")]
-    data: Option<PathBuf>,
-    /// Prints a listing: words beside their source lines, data, symbols.
-    #[arg(long)]
-    list: bool,
-}
-
-/// A source and what it cannot say for itself.
-#[derive(Args, Clone, Debug)]
-pub(super) struct SourceArguments {
     /// Assembly file.
     #[arg(value_name = "FILE.s")]
-    pub(super) file: PathBuf,
+    file: PathBuf,
+    #[command(flatten)]
+    source: SourceArguments,
+    /// Program: .o (object file), or its words alone: .bin (32 bits, little-endian), .hex (text for $readmemh).
+    #[arg(short, long, value_name = "FILE", value_parser = ProgramFile::check)]
+    output: Option<PathBuf>,
+    /// Octets of the program's initial data; text for $readmemh where the name ends in .hex.
+    #[arg(long, value_name = "FILE")]
+    data: Option<PathBuf>,
+    /// Listing: what each line became, also when there are errors [default: standard output].
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = PRINTED)]
+    list: Option<PathBuf>,
+    /// Map of the names, functions and regions, with their places [default: standard output].
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = PRINTED)]
+    map: Option<PathBuf>,
+}
+
+/// What a source cannot say for itself.
+#[derive(Args, Clone, Debug)]
+pub(super) struct SourceArguments {
     /// Constant that is known before the first line; may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     defines: Vec<(String, i64)>,
@@ -60,14 +67,31 @@ fn definition(text: &str) -> Result<(String, i64), String> {
     Ok((name, arguments::numbered(&value)?))
 }
 
+impl SourceArguments {
+    /// Whether it has options that only an assembler can follow.
+    pub(super) fn has_options(&self) -> bool {
+        !(self.defines.is_empty() && self.formats.is_empty() && self.folders.is_empty())
+    }
+}
+
 /// Assembles a file and shows its warnings.
-pub(super) fn assembled(arguments: &SourceArguments, isa: &Isa, terminal: &Terminal) -> Result<Program, Failure> {
-    let source = files::source(&arguments.file)?;
-    let include = |wanted: &str, from: &str| included(wanted, from, &arguments.folders);
-    let (defines, formats) = (arguments.defines.clone(), arguments.formats.clone());
-    let assembled = asm::assemble(&source, isa, &asm::Options { include: &include, defines, formats })?;
+pub(super) fn assembled(
+    file: &Path,
+    arguments: &SourceArguments,
+    isa: &Isa,
+    terminal: &Terminal,
+) -> Result<Program, Failure> {
+    let assembled = attempted(file, arguments, isa)?.finish()?;
     terminal.show(&assembled.warnings);
     Ok(assembled.program)
+}
+
+/// Assembles a file as far as that is possible.
+fn attempted(file: &Path, arguments: &SourceArguments, isa: &Isa) -> Result<Attempt, Report> {
+    let source = files::source(file)?;
+    let include = |wanted: &str, from: &str| included(wanted, from, &arguments.folders);
+    let (defines, formats) = (arguments.defines.clone(), arguments.formats.clone());
+    Ok(asm::attempt(&source, isa, &asm::Options { include: &include, defines, formats }))
 }
 
 /// The file that `.include` means: beside the including one, else in the folders in their order.
@@ -84,34 +108,59 @@ fn included(wanted: &str, from: &str, folders: &[PathBuf]) -> Result<Arc<Source>
 
 /// Assembles, writes and prints.
 pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let outputs = [arguments.output.as_deref(), arguments.data.as_deref()];
-    let all = outputs.into_iter().flatten();
-    files::check_distinct(all.clone().chain([arguments.source.file.as_path()])).map_err(Failure::usage)?;
+    let outputs = [&arguments.output, &arguments.data, &arguments.list, &arguments.map];
+    let all = outputs.into_iter().flatten().map(PathBuf::as_path).filter(|path| *path != Path::new(PRINTED));
+    files::check_distinct(all.clone().chain([arguments.file.as_path()])).map_err(Failure::usage)?;
     for output in all {
         files::check_target(output)?;
     }
-    let program = assembled(&arguments.source, &Isa::base(), terminal)?;
-    if let Some(path) = &arguments.data {
-        files::write(path, &program.buffer)?;
+    let attempt = attempted(&arguments.file, &arguments.source, &Isa::base())?;
+    if let Some(path) = &arguments.list {
+        write_or_print(path, &asm::listing(&attempt), terminal)?;
     }
-    if let Some(path) = &arguments.output {
-        files::write(path, &WordFile::of(path).map_err(usage)?.encode(&program.words))?;
-        if arguments.data.is_none() && !program.buffer.is_empty() {
-            let data = count(program.buffer.len() as u64, "octet", "octets");
-            let message = format!("{} holds the words alone; the program has {data} of data", path.display());
-            terminal.show(&Report::from(Diagnostic::warning(message).hint("write them with `--data FILE`")));
-        }
+    let assembled = attempt.finish()?;
+    terminal.show(&assembled.warnings);
+    if let Some(path) = &arguments.map {
+        let gap = if arguments.list.as_deref() == Some(Path::new(PRINTED)) { "\n" } else { "" };
+        let text = asm::symbol_map(&assembled);
+        write_or_print(path, &if path == Path::new(PRINTED) { gap.to_owned() + &text } else { text }, terminal)?;
     }
-    if arguments.list {
-        terminal.print(&listing::text(&program))?;
-    } else if arguments.output.is_none() {
+    let program = &assembled.program;
+    write_program(arguments, program, terminal)?;
+    if outputs.iter().all(|output| output.is_none()) {
         let words = count(program.words.len() as u64, "word", "words");
         let data = count(program.buffer.len() as u64, "octet", "octets");
-        terminal.print(&format!("{}: {words}, {data} of data\n", arguments.source.file.display()))?;
+        terminal.print(&format!("{}: {words}, {data} of data\n", arguments.file.display()))?;
     }
     Ok(Exit::Done)
 }
 
-fn usage(message: String) -> Failure {
-    Failure::usage(Diagnostic::error(message))
+/// Writes the program and its data where they are asked for.
+fn write_program(arguments: &AssembleArguments, program: &Program, terminal: &Terminal) -> Result<(), Failure> {
+    let mut results = Vec::new();
+    if let Some(path) = &arguments.data {
+        let is_text = ProgramFile::of(path) == Ok(ProgramFile::Hexadecimal);
+        results.push((
+            path,
+            if is_text { asm::hex::octets(&program.buffer).into_bytes() } else { program.buffer.clone() },
+        ));
+    }
+    if let Some(path) = &arguments.output {
+        let format = ProgramFile::of(path).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+        results.push((path, format.encode(program)));
+        if format != ProgramFile::Object && arguments.data.is_none() && !program.buffer.is_empty() {
+            let data = count(program.buffer.len() as u64, "octet", "octets");
+            let message = format!("{} holds the words alone; the program has {data} of data", path.display());
+            let hint = "write them with `--data FILE`, or everything into a file that ends in .o";
+            terminal.show(&Report::from(Diagnostic::warning(message).hint(hint)));
+        }
+    }
+    Ok(files::write_all(&results)?)
+}
+
+fn write_or_print(path: &Path, text: &str, terminal: &mut Terminal) -> Result<(), Failure> {
+    match path == Path::new(PRINTED) {
+        true => terminal.print(text),
+        false => Ok(files::write(path, text.as_bytes())?),
+    }
 }

@@ -6,20 +6,21 @@ use clap::Args;
 use isa::Isa;
 
 use crate::failure::{Exit, Failure};
-use crate::files::{self, words::WordFile};
+use crate::files;
+use crate::files::program::{ProgramFile, load_any};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  lancer disassemble first.bin
+  lancer disassemble first.o
   lancer disassemble first.hex -o again.s
   lancer assemble first.s -o first.bin && lancer disassemble first.bin";
 
-/// Shows the instructions of a file of words. The text assembles to the same words.
+/// Shows the instructions of a program's file. The text assembles to the same words.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct DisassembleArguments {
-    /// File of words: .hex (text for $readmemh), anything else is binary, 32 bits, little-endian.
+    /// Program: an object file (.o), text for $readmemh (.hex); anything else is words of 32 bits, little-endian.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Assembly file [default: standard output].
@@ -29,10 +30,13 @@ pub struct DisassembleArguments {
 
 /// Reads, disassembles and prints.
 pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let format = WordFile::of(&arguments.file).unwrap_or(WordFile::Binary);
     let both = [Some(arguments.file.as_path()), arguments.output.as_deref()];
     files::check_distinct(both.into_iter().flatten()).map_err(Failure::usage)?;
-    let text = asm::disassemble(&format.load(&arguments.file)?, &Isa::base());
+    let program = match load_any(&arguments.file)? {
+        Some(program) => program,
+        None => ProgramFile::Binary.load(&arguments.file)?,
+    };
+    let text = asm::disassemble(&program.words, &Isa::base());
     match &arguments.output {
         Some(path) => files::write(path, text.as_bytes())?,
         None => terminal.print(&text)?,

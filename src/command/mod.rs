@@ -22,7 +22,7 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   lancer                                  the demo: a picture, maps, counts, clocks and errors
-  lancer render cornell --size 160x120    a generated scene, or a .dsc or .off file
+  lancer render cornell --size 160x120    a generated scene, a .dsc, or a mesh (.off, .obj, .ply, .stl)
   lancer run first.s --reg s1=5           a program of your own on one core
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 3 trap in the guest, 4 a comparison out of

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
-use isa::Isa;
 use isa::diagnostic::{Diagnostic, Report};
+use isa::{Isa, Program};
 
 use super::assemble::{self, SourceArguments};
 use super::run_arguments::{Dump, RegisterValue, memory_file};
@@ -21,16 +21,20 @@ Examples:
   lancer run first.s --reg s1=5,v2=1:2:3 --max-steps 1000
   lancer run copy.s --mem 0x100=data.bin --dump 0x100:64 --dump regs
   lancer run sqrt.s --reg s3=0x10000 --json
+  lancer run first.o                            # as lancer assemble -o first.o has written it
 
 Registers hold raw integers: s0 to s31 one word, v0 to v31 three lanes, w0 to w7 64 bits.
 Exit codes: 0 the program halted, 1 errors in the source, 2 usage, 3 it trapped, 5 step limit.";
 
-/// Assembles a program and runs it on one core of the machine.
+/// Assembles a program, or takes an assembled one, and runs it on one core of the machine.
 ///
 /// Prints the registers that are not zero at the end, and what the program took, by class and by function.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct RunArguments {
+    /// Assembly file, or an assembled program: .o, or its words alone (.bin, .hex), which start at word 0 without data.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
     #[command(flatten)]
     source: SourceArguments,
     /// Registers at the start, such as s1=5,v2=1:2:3,w0=-7; may be repeated [default: 0].
@@ -62,7 +66,7 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
     let (machine_name, config) = machine::find(&arguments.machine)?;
     let isa = Isa::base();
     let memory = memory(arguments)?;
-    let program = assemble::assembled(&arguments.source, &isa, terminal)?;
+    let program = program(arguments, &isa, terminal)?;
     let mut registers = emu::registers::Registers::default();
     for value in &arguments.registers {
         value.set(&mut registers);
@@ -76,7 +80,7 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         has_profile: true,
     };
     let run = single::run(&single, Memory::new(memory))?;
-    let file = arguments.source.file.display().to_string();
+    let file = arguments.file.display().to_string();
     let shown = RunResult::new(file, machine_name, &run, &arguments.dumps)?;
     match arguments.json {
         true => terminal.print(&result::json(&shown))?,
@@ -94,6 +98,19 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
             Err(Failure::Message { report, exit })
         }
     }
+}
+
+/// The program: assembled now, or some time before.
+fn program(arguments: &RunArguments, isa: &Isa, terminal: &Terminal) -> Result<Program, Failure> {
+    let RunArguments { file, source, .. } = arguments;
+    let Some(program) = files::program::load_any(file)? else {
+        return assemble::assembled(file, source, isa, terminal);
+    };
+    if source.has_options() {
+        let message = format!("{} is assembled already: -D, --format and -I come too late", file.display());
+        return Err(Failure::usage(Diagnostic::error(message).hint("give them to `lancer assemble`")));
+    }
+    Ok(program)
 }
 
 /// Global memory at the start.

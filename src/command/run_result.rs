@@ -1,5 +1,7 @@
 //! What `lancer run` found: as JSON and as tables.
 
+use std::fmt::Write;
+
 use emu::machine::single::SingleRun;
 use emu::profile::Profile;
 use emu::registers::Registers;
@@ -9,7 +11,6 @@ use serde::{Serialize, Serializer};
 
 use super::run_arguments::Dump;
 use crate::failure::Failure;
-use crate::listing;
 use crate::result::{ByClass, Region, hexadecimal, regions};
 use crate::summary;
 use crate::table::{count, grouped, row, table};
@@ -141,7 +142,7 @@ impl RunResult {
             parts.push(summary::function_table(&[(&self.functions, ""), (&self.regions, "  ")]));
         }
         for dump in &self.dumps {
-            parts.push(format!("{}\n{}", dump.space, listing::octets(&dump.raw, dump.address)));
+            parts.push(format!("{}\n{}", dump.space, octet_rows(&dump.raw, dump.address)));
         }
         let ended = if self.trap.is_some() { "stopped" } else { "halted" };
         parts.push(format!(
@@ -193,4 +194,14 @@ fn dumped(run: &SingleRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> 
     };
     let dumped = |octets: &[u8]| DumpedOctets { space, address, octets: hexadecimal(octets), raw: octets.to_vec() };
     Some(octets.map(dumped).map_err(|fault| Diagnostic::error(format!("there is nothing to dump: {fault}")).into()))
+}
+
+/// Octets, sixteen a line, with their addresses.
+fn octet_rows(octets: &[u8], address: u32) -> String {
+    let mut text = String::new();
+    for (number, row) in octets.chunks(16).enumerate() {
+        let digits: Vec<String> = row.chunks(4).map(hexadecimal).collect();
+        let _ = writeln!(text, " {:08x}  {}", u64::from(address) + 16 * number as u64, digits.join(" "));
+    }
+    text
 }

@@ -3,7 +3,7 @@
 
 pub mod map;
 pub mod picture;
-pub mod words;
+pub mod program;
 
 use std::fs::{self, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use isa::diagnostic::{Diagnostic, Report, Source};
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
 /// Octets of the largest text that is read.
 const LARGEST: u64 = 64 << 20;
@@ -70,21 +70,44 @@ pub fn check_target(path: &Path) -> Result<(), Report> {
 /// # Errors
 /// What [`check_target`] refuses, and a disk or folder that cannot be written.
 pub fn write(path: &Path, octets: &[u8]) -> Result<(), Report> {
-    check_target(path)?;
-    // A link keeps leading to the file.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let is_special = fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file());
-    let written = if is_special { fs::write(&path, octets) } else { replace(&path, octets) };
-    written.map_err(|error| {
-        let reason = match error.kind() {
-            ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
-            _ => error.to_string(),
-        };
-        Diagnostic::error(format!("{} cannot be written: {reason}", path.display())).into()
-    })
+    write_all(&[(path, octets)])
 }
 
-fn replace(path: &Path, octets: &[u8]) -> io::Result<()> {
+/// Writes files that belong together: the first one takes its place when the last one has been written as a whole.
+///
+/// # Errors
+/// See [`write()`].
+pub fn write_all(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Result<(), Report> {
+    let mut ready = Vec::new();
+    for (path, octets) in files {
+        let path = path.as_ref();
+        check_target(path)?;
+        // A link keeps leading to the file.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let octets = octets.as_ref();
+        let written = match fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file()) {
+            true => fs::write(&path, octets).map(|()| None),
+            false => written_beside(&path, octets).map(Some),
+        };
+        ready.push((written.map_err(|error| refusal(&path, &error))?, path));
+    }
+    for (file, path) in ready {
+        if let Some(file) = file {
+            file.persist(&path).map_err(|error| refusal(&path, &error.error))?;
+        }
+    }
+    Ok(())
+}
+
+fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
+    let reason = match error.kind() {
+        ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
+        _ => error.to_string(),
+    };
+    Diagnostic::error(format!("{} cannot be written: {reason}", path.display()))
+}
+
+fn written_beside(path: &Path, octets: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".lancer-");
     let permissions = fresh_permissions();
@@ -93,8 +116,7 @@ fn replace(path: &Path, octets: &[u8]) -> io::Result<()> {
     }
     let mut file = builder.tempfile_in(folder_of(path))?;
     file.write_all(octets)?;
-    file.persist(path)?;
-    Ok(())
+    Ok(file)
 }
 
 /// What a new file would have, before the user's mask; temporary files are private otherwise.
@@ -131,6 +153,18 @@ pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(
     Ok(())
 }
 
+/// Refuses results in the place of files that were read.
+///
+/// # Errors
+/// The first such path.
+pub fn check_spared(results: &[PathBuf], read: &[PathBuf]) -> Result<(), Report> {
+    let inputs: Vec<PathBuf> = read.iter().filter_map(|path| fs::canonicalize(path).ok()).collect();
+    let is_input = |path: &&PathBuf| fs::canonicalize(path).is_ok_and(|path| inputs.contains(&path));
+    let Some(path) = results.iter().find(is_input) else { return Ok(()) };
+    let message = Diagnostic::error(format!("{} is read, and would be overwritten", path.display()));
+    Err(message.hint("choose another name for the result").into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,6 +177,16 @@ mod tests {
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn files_that_belong_together_come_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let (good, bad) = (folder.path().join("a.mtl"), folder.path().join("no/such/a.obj"));
+        assert!(write_all(&[(&good, b"1"), (&bad, b"2")]).is_err());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        write_all(&[(&good, b"1"), (&folder.path().join("a.obj"), b"2")]).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
     #[test]

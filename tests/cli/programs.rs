@@ -37,8 +37,97 @@ fn a_listing_shows_words_beside_lines() {
     session.write("sum.s", SUM);
     let listing = session.succeed("assemble sum.s --list");
     let line = listing.lines().find(|line| line.contains("iadd")).unwrap();
-    assert!(line.starts_with(" 00002  ") && line.ends_with("3  1:  iadd s2, s2, s1"), "{line}");
+    assert!(line.starts_with("  000002  ") && line.ends_with("3    1:  iadd s2, s2, s1"), "{line}");
     assert!(listing.contains("square"), "{listing}");
+    assert_eq!(session.succeed("assemble sum.s --list=sum.lst --map=sum.map"), "");
+    assert_eq!(session.read("sum.lst"), listing.as_bytes());
+    let map = session.succeed("assemble sum.s --map");
+    assert_eq!(session.read("sum.map"), map.as_bytes());
+    assert!(map.contains("000007  square  sum.s:8") && map.contains("square (function, 2 words of its own)"), "{map}");
+    assert_eq!(session.succeed("assemble sum.s --list --map"), format!("{listing}\n{map}"));
+}
+
+#[test]
+fn a_source_with_errors_has_a_listing_and_nothing_else() {
+    let session = Session::new();
+    session.write("wrong.s", "    nop\n    vdto s4, v1, v2\n    halt\n");
+    let run = session.run("assemble wrong.s --list --map -o wrong.o");
+    assert_eq!(run.code, 1);
+    let lines: Vec<&str> = run.out.lines().collect();
+    assert!(lines[2].ends_with("2    \u{20}   vdto s4, v1, v2"), "{}", run.out);
+    assert_eq!(lines[3], "**** error[E001]: `vdto` is not an instruction");
+    assert!(lines[4].starts_with("  000002  "), "the addresses go on: {}", run.out);
+    session.fail("assemble wrong.s --list=wrong.lst --map=wrong.map -o wrong.o --data wrong.dat", 1, "wrong.s:2:5");
+    assert_eq!(session.read("wrong.lst"), run.out.as_bytes());
+    assert_eq!(session.names(), ["wrong.lst", "wrong.s"]);
+}
+
+#[test]
+fn an_object_file_is_the_whole_program() {
+    let session = Session::new();
+    session.write(
+        "data.s",
+        "    movi s1, table\n    lw s2, 4(s1)\n.func f\n    trap 7\n.endfunc\n.buffer\ntable: .word 1, 2\n",
+    );
+    session.succeed("assemble data.s -o data.o");
+    let traps = |file: &str| {
+        let run = session.run(&format!("run {file} --json"));
+        let mut result: serde_json::Value = serde_json::from_str(&run.out).unwrap();
+        result["program"] = serde_json::Value::Null;
+        (run.code, result, run.messages)
+    };
+    let object = traps("data.o");
+    assert_eq!(object, traps("data.s"));
+    assert_eq!((&object.1["registers"]["s2"], &object.1["trap"]["place"]), (&2.into(), &"data.s:4".into()));
+    // The line itself is in the message although the source is gone.
+    std::fs::remove_file(session.path("data.s")).unwrap();
+    let run = session.run("run data.o");
+    assert!(run.code == 3 && run.messages.contains("    trap 7"), "{}", run.messages);
+    std::fs::copy(session.path("data.o"), session.path("named")).unwrap();
+    assert_eq!(session.run("run named").code, 3, "an object file is known by its first octets");
+    assert!(session.succeed("disassemble named").contains("trap"));
+    session.fail("run data.o -D X=1", 2, "is assembled already");
+}
+
+#[test]
+fn words_alone_run_from_their_first() {
+    let session = Session::new();
+    session.write("sum.s", SUM);
+    session.succeed("assemble sum.s -o sum.hex");
+    session.succeed("assemble sum.s -o sum.bin");
+    for file in ["sum.hex", "sum.bin"] {
+        let result = session.json(&format!("run {file}"));
+        assert_eq!((&result["registers"]["s3"], &result["instructions"]), (&3025.into(), &36.into()), "{file}");
+        assert!(result["functions"].as_array().unwrap().is_empty());
+    }
+    assert!(session.read("sum.hex").starts_with(b"// 9 words of 32 bits\n"));
+    session.write("data.s", "    halt\n.buffer\n.byte 1, 255\n");
+    session.succeed("assemble data.s -o a.hex --data data.hex");
+    assert_eq!(session.read("data.hex"), b"// 2 octets\n01 ff\n");
+}
+
+#[test]
+fn damaged_object_files_are_refused() {
+    let session = Session::new();
+    session.write("sum.s", SUM);
+    session.succeed("assemble sum.s -o sum.o");
+    let whole = session.read("sum.o");
+    let write = |octets: &[u8]| std::fs::write(session.path("bad.o"), octets).unwrap();
+    let mut other = whole.clone();
+    other[30] ^= 1;
+    write(&other);
+    session.fail("run bad.o", 1, "bad.o: the object file is damaged: its checksum does not hold");
+    other = whole.clone();
+    other[8] = 9;
+    write(&other);
+    session.fail("run bad.o", 1, "version 9 of the format, but only 1 is known");
+    for end in [0, 5, 9, 12, 20, 60, whole.len() - 1] {
+        write(&whole[..end]);
+        session.fail("run bad.o", 1, "bad.o: ");
+        session.fail("disassemble bad.o", 1, "bad.o: ");
+    }
+    write(SUM.as_bytes());
+    session.fail("run bad.o", 1, "bad.o: this is not an object file of lancer");
 }
 
 #[test]

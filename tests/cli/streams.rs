@@ -68,7 +68,7 @@ fn wrong_command_lines_end_with_2() {
         ("run a.s --max-steps 0", "1.."),
         ("assemble a.s -D X", "a name, `=` and a value"),
         ("assemble a.s -D X=1.5", "no whole number"),
-        ("assemble a.s -o a.elf", "neither .bin nor .hex"),
+        ("assemble a.s -o a.elf", "none of .o, .bin and .hex"),
         ("scene generate house", "possible values"),
         ("scene", "Usage"),
         ("completions klingon", "possible values"),

@@ -1,71 +1,101 @@
-//! Files of instruction words: binary, and the text that `$readmemh` of Verilog reads.
+//! Files of assembled programs: words alone, as octets or as the text that `$readmemh` of Verilog reads, and the object
+//! file, which holds the whole program. Its format is described in [`asm::object`].
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use asm::limits::WORDS;
+use asm::object;
+use isa::Program;
 use isa::diagnostic::{Diagnostic, Place, Report, Source};
 
 use super::read;
+use crate::table::grouped;
 
-/// A file format for words.
+/// A file format for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WordFile {
-    /// 32 bits each, little-endian.
+pub enum ProgramFile {
+    /// Words, 32 bits each, little-endian.
     Binary,
-    /// Eight hexadecimal digits a line.
+    /// Words, eight hexadecimal digits a line.
     Hexadecimal,
+    /// Everything: words, data, symbols, lines, regions.
+    Object,
 }
 
-/// Most words of a file, which keeps an address such as `@ffffffff` from filling the memory.
-const MOST_WORDS: usize = 1 << 24;
-
-impl WordFile {
+impl ProgramFile {
     /// The format that a file's name asks for.
     ///
     /// # Errors
     /// Another extension, or none.
-    pub fn of(path: &Path) -> Result<WordFile, String> {
+    pub fn of(path: &Path) -> Result<ProgramFile, String> {
         let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
-            Some("bin") => Ok(WordFile::Binary),
-            Some("hex") => Ok(WordFile::Hexadecimal),
-            _ => Err(format!("`{}` ends in neither .bin nor .hex", path.display())),
+            Some("bin") => Ok(ProgramFile::Binary),
+            Some("hex") => Ok(ProgramFile::Hexadecimal),
+            Some("o") => Ok(ProgramFile::Object),
+            _ => Err(format!("`{}` ends in none of .o, .bin and .hex", path.display())),
         }
     }
 
     /// A path with such a name, for the command line.
     ///
     /// # Errors
-    /// See [`WordFile::of`].
+    /// See [`ProgramFile::of`].
     pub fn check(text: &str) -> Result<PathBuf, String> {
         let path = PathBuf::from(text);
-        WordFile::of(&path).map(|_| path)
+        ProgramFile::of(&path).map(|_| path)
     }
 
-    /// The octets of a file with these words.
-    pub fn encode(self, words: &[u32]) -> Vec<u8> {
+    /// The octets of a program's file.
+    pub fn encode(self, program: &Program) -> Vec<u8> {
         match self {
-            WordFile::Binary => words.iter().flat_map(|word| word.to_le_bytes()).collect(),
-            WordFile::Hexadecimal => words.iter().map(|word| format!("{word:08x}\n")).collect::<String>().into_bytes(),
+            ProgramFile::Binary => program.words.iter().flat_map(|word| word.to_le_bytes()).collect(),
+            ProgramFile::Hexadecimal => asm::hex::words(&program.words).into_bytes(),
+            ProgramFile::Object => object::write(program),
         }
     }
 
-    /// The words of a file.
+    /// The program of a file. Words alone come without data, lines, symbols and functions; they start at word 0.
     ///
     /// # Errors
-    /// A file that cannot be read, or holds anything but words.
-    pub fn load(self, path: &Path) -> Result<Vec<u32>, Report> {
-        let octets = read(path)?;
-        match self {
-            WordFile::Binary => binary(&octets).ok_or_else(|| {
-                let message = format!("{} has {} octets, which are no whole words", path.display(), octets.len());
-                Diagnostic::error(message).hint("a word has 4 octets").into()
-            }),
-            WordFile::Hexadecimal => {
-                hexadecimal(&Source::new(path.display().to_string(), String::from_utf8_lossy(&octets)))
-            }
-        }
+    /// A file that cannot be read, or holds anything else.
+    pub fn load(self, path: &Path) -> Result<Program, Report> {
+        self.decode(path, &read(path)?)
     }
+
+    fn decode(self, path: &Path, octets: &[u8]) -> Result<Program, Report> {
+        let shown = path.display();
+        let words = match self {
+            ProgramFile::Object => {
+                return object::read(octets).map_err(|error| Diagnostic::error(format!("{shown}: {error}")).into());
+            }
+            ProgramFile::Binary => binary(octets).ok_or_else(|| {
+                let message = format!("{shown} has {} octets, which are no whole words", octets.len());
+                Diagnostic::error(message).hint("a word has 4 octets")
+            })?,
+            ProgramFile::Hexadecimal => hexadecimal(&Source::new(shown.to_string(), String::from_utf8_lossy(octets)))?,
+        };
+        if words.len() > WORDS {
+            let message = format!("{shown} has {} words", grouped(words.len() as u64));
+            let hint = format!("a program has at most {}", grouped(WORDS as u64));
+            return Err(Diagnostic::error(message).hint(hint).into());
+        }
+        Ok(Program { words, ..Program::default() })
+    }
+}
+
+/// The program of a file that is named or begins like one; `None` for any other, such as a source.
+///
+/// # Errors
+/// See [`ProgramFile::load`].
+pub fn load_any(path: &Path) -> Result<Option<Program>, Report> {
+    if let Ok(format) = ProgramFile::of(path) {
+        return format.load(path).map(Some);
+    }
+    let octets = read(path)?;
+    let is_object = octets.starts_with(object::MAGIC);
+    is_object.then(|| ProgramFile::Object.decode(path, &octets)).transpose()
 }
 
 fn binary(octets: &[u8]) -> Option<Vec<u32>> {
@@ -110,7 +140,7 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
             digits.chars().all(|digit| digit.is_ascii_hexdigit()).then(|| u32::from_str_radix(&digits, 16).ok());
         match number.flatten() {
             Some(address) if token.starts_with('@') => match address as usize {
-                address if address < words.len() || address > MOST_WORDS => {
+                address if address < words.len() || address > WORDS => {
                     refuse(
                         first..end,
                         format!("the address {address:#x} is not possible here"),
@@ -135,13 +165,24 @@ mod tests {
     }
 
     #[test]
-    fn both_formats_hold_words() {
-        let words = [0, 0x1234_5678, u32::MAX];
-        assert_eq!(WordFile::Binary.encode(&words), [0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12, 255, 255, 255, 255]);
-        assert_eq!(binary(&WordFile::Binary.encode(&words)), Some(words.to_vec()));
-        assert_eq!(WordFile::Hexadecimal.encode(&words), b"00000000\n12345678\nffffffff\n");
-        assert_eq!(parsed("00000000\n12345678\nffffffff\n"), Ok(words.to_vec()));
+    fn all_formats_hold_words() {
+        let words = vec![0, 0x1234_5678, u32::MAX];
+        let empty = Program { words: words.clone(), ..Program::default() };
+        assert_eq!(ProgramFile::Binary.encode(&empty), [0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12, 255, 255, 255, 255]);
+        for format in [ProgramFile::Binary, ProgramFile::Hexadecimal] {
+            let back = format.decode(Path::new("a"), &format.encode(&empty)).unwrap();
+            assert_eq!(back, empty, "{format:?}");
+        }
+        assert_eq!(parsed("00000000\n12345678\nffffffff\n"), Ok(words));
         assert_eq!((binary(&[1, 2, 3]), binary(&[])), (None, Some(vec![])));
+    }
+
+    #[test]
+    fn more_words_than_a_program_may_have_are_refused() {
+        let octets = vec![0; 4 * (WORDS + 1)];
+        let error = ProgramFile::Binary.decode(Path::new("a.bin"), &octets).unwrap_err().render(false);
+        assert!(error.contains("1,048,577 words"), "{error}");
+        assert!(ProgramFile::Binary.decode(Path::new("a.bin"), &octets[4..]).is_ok());
     }
 
     #[test]

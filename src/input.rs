@@ -21,7 +21,7 @@ pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Resul
     if SCENES.iter().any(|generator| generator.name == name) {
         let defaults = generate::Options::default();
         let scene = generate::scene(name, &generate::Options { size: size.unwrap_or(defaults.size), ..defaults })?;
-        return Ok(Loaded { scene, warnings: Report::default() });
+        return Ok(Loaded { scene, warnings: Report::default(), files: Vec::new() });
     }
     let names = || SCENES.iter().map(|generator| generator.name);
     let near = read::load(path, None).err().and_then(|report| report.0.into_iter().next()?.hint);

@@ -12,7 +12,6 @@ pub mod job;
 pub mod machine;
 pub mod manual;
 pub mod result;
-pub mod scene_facts;
 pub mod summary;
 pub mod table;
 pub mod terminal;

@@ -162,7 +162,8 @@ fn every_generated_scene_comes_back_in_every_format() {
                 let (own, wanted) =
                     (&alone.materials[own.material as usize], &scene.materials[wanted.material as usize]);
                 match format {
-                    MeshFormat::Off | MeshFormat::Stl => assert_eq!(own.colour, [0.8; 3]),
+                    MeshFormat::Stl => assert_eq!(own.colour, [0.8; 3]),
+                    MeshFormat::Off => assert_eq!(own.colour, wanted.colour),
                     MeshFormat::Ply => assert_eq!(own.colour, wanted.colour.map(|c| (c * 255.0).round() / 255.0)),
                     MeshFormat::Obj => {
                         let close = effect(own).iter().zip(effect(wanted)).all(|(a, b)| (a - b).abs() < 1e-12);
@@ -193,6 +194,17 @@ proptest! {
         let single: fn(f64) -> f64 = if format == MeshFormat::Stl { |x| f64::from(x as f32) } else { |x| x };
         prop_assert_eq!(corners(&alone.scene, |x| x), corners(&scene, single));
         prop_assert!(!alone.scene.check().has_errors());
+        // What has been through a format once goes through it again as it is.
+        let lost = write::losses(&alone.scene, format);
+        prop_assert!(lost.0.is_empty(), "{}", lost);
+        let (again, _) = mesh_there_and_back(folder.path(), &alone.scene, format);
+        prop_assert_eq!((again.scene.size, &again.scene.lights), (alone.scene.size, &alone.scene.lights));
+        let effects = |scene: &Scene| -> Vec<[f64; 6]> {
+            scene.triangles.iter().map(|t| effect(&scene.materials[t.material as usize])).collect()
+        };
+        for (one, other) in effects(&again.scene).iter().zip(effects(&alone.scene)) {
+            prop_assert!(one.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-12), "{:?} {:?}", one, other);
+        }
     }
 }
 
@@ -202,7 +214,8 @@ fn what_a_format_does_not_hold_is_said() {
     for name in ["cornell", "triangle", "empty"] {
         let scene = generate::scene(name, &Options::default()).unwrap();
         for format in MeshFormat::ALL {
-            writeln!(text, "{name}\n{}\n", write::losses(&scene, format)).unwrap();
+            writeln!(text, "{name}\n{}", write::losses(&scene, format)).unwrap();
+            writeln!(text, "beside a .dsc: {}\n", write::losses_beside_description(&scene, format)).unwrap();
         }
     }
     insta::assert_snapshot!(text);

@@ -1,19 +1,24 @@
 //! `lancer scene`: scenes as files and as figures.
 
+mod convert;
 mod generate;
 mod info;
 
 use clap::{Args, Subcommand};
 
+use scenes::model::Scene;
+
 use crate::failure::{Exit, Failure};
+use crate::table::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
   lancer scene generate cornell -o scenes
-  lancer scene info scenes/cornell.dsc";
+  lancer scene info scenes/cornell.dsc
+  lancer scene convert scenes/cornell.dsc room.obj";
 
-/// Generates scenes and says what is in them.
+/// Generates scenes, says what is in them, and converts them.
 #[derive(Args, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct SceneArguments {
@@ -25,6 +30,7 @@ pub struct SceneArguments {
 enum SceneCommand {
     Generate(generate::GenerateArguments),
     Info(Box<info::InfoArguments>),
+    Convert(convert::ConvertArguments),
 }
 
 /// Executes one of the commands.
@@ -32,5 +38,16 @@ pub(super) fn execute(arguments: &SceneArguments, terminal: &mut Terminal) -> Re
     match &arguments.command {
         SceneCommand::Generate(arguments) => generate::execute(arguments, terminal),
         SceneCommand::Info(arguments) => info::execute(arguments, terminal),
+        SceneCommand::Convert(arguments) => convert::execute(arguments, terminal),
     }
+}
+
+/// How much a scene holds, in short.
+fn parts(scene: &Scene) -> String {
+    format!(
+        "{}, {}, {}",
+        count(scene.triangles.len() as u64, "triangle", "triangles"),
+        count(scene.materials.len() as u64, "material", "materials"),
+        count(scene.lights.len() as u64, "light", "lights"),
+    )
 }

@@ -35,14 +35,17 @@ pub(super) fn described(name: String, description: Description, mesh: Mesh) -> R
         triangles: triangles(&mesh.triangles, &description.surfaces),
         vertices: mesh.vertices,
     };
-    Ok(Loaded { scene, warnings })
+    Ok(Loaded { scene, warnings, files: Vec::new() })
 }
+
+/// Width and height of the picture of a mesh without description, in pixels.
+pub(crate) const SIZE: (u32, u32) = (320, 240);
 
 /// The scene of a mesh without description: its own colours or grey, one light above the camera, 320 x 240 pixels.
 pub(super) fn alone(name: String, mesh: Mesh) -> Loaded {
     let mut scene = Scene {
         name,
-        size: (320, 240),
+        size: SIZE,
         materials: mesh.materials,
         lights: Vec::new(),
         triangles: triangles(&mesh.triangles, &mesh.surfaces),
@@ -51,12 +54,18 @@ pub(super) fn alone(name: String, mesh: Mesh) -> Loaded {
     if scene.materials.is_empty() {
         scene.materials.push(GREY);
     }
+    scene.lights.push(light(&scene));
+    Loaded { scene, warnings: mesh.warnings, files: Vec::new() }
+}
+
+/// The light of a mesh without description: white, above and in front of the middle of its box by the larger of the
+/// box's width and height.
+pub(crate) fn light(scene: &Scene) -> Light {
     let (low, high) = scene.bounds().unwrap_or(([0.0; 3], [0.0; 3]));
     let size = (high[0] - low[0]).max(high[1] - low[1]);
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
     let centre = [0, 1].map(|k| low[k] / 2.0 + high[k] / 2.0);
-    scene.lights.push(Light { position: [centre[0], centre[1] + size, high[2] + size], colour: [1.0; 3] });
-    Loaded { scene, warnings: mesh.warnings }
+    Light { position: [centre[0], centre[1] + size, high[2] + size], colour: [1.0; 3] }
 }
 
 fn triangles(corners: &[[u32; 3]], surfaces: &[u32]) -> Vec<Triangle> {

@@ -25,7 +25,7 @@ pub struct Mesh {
 }
 
 /// The surface of triangles that their file says nothing about.
-pub(super) const GREY: Material = Material { colour: [0.8; 3], reflection: 0.0, intensity: 0.9, index: 0.0 };
+pub(crate) const GREY: Material = Material { colour: [0.8; 3], reflection: 0.0, intensity: 0.9, index: 0.0 };
 
 /// Warnings about triangles that cannot be seen or are there twice; `name` is the file's.
 pub(super) fn census(name: &str, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Diagnostic> {

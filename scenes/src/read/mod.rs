@@ -6,7 +6,7 @@ pub mod dsc;
 mod faces;
 mod file;
 mod format;
-mod join;
+pub(crate) mod join;
 pub mod mesh;
 pub mod obj;
 pub mod off;
@@ -30,6 +30,8 @@ pub struct Loaded {
     pub scene: Scene,
     /// Warnings, in the order of the files' texts; never errors.
     pub warnings: Report,
+    /// All files that were read, as their paths were found.
+    pub files: Vec<PathBuf>,
 }
 
 /// Reads the scene `path`: a `.dsc` with the mesh `mesh`, or with the `.off`, `.obj`, `.ply` or `.stl` of the same name
@@ -38,6 +40,13 @@ pub struct Loaded {
 ///
 /// Errors: everything that is wrong in both files, each with its place.
 pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
+    let mut files = vec![path.to_owned()];
+    let loaded = load_listing(path, mesh, &mut files)?;
+    Ok(Loaded { files, ..loaded })
+}
+
+/// The same, with all files but the first put on a list.
+fn load_listing(path: &Path, mesh: Option<&Path>, files: &mut Vec<PathBuf>) -> Result<Loaded, Report> {
     let bytes = file::read(path)?;
     let name = path.file_stem().map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
     let format = Format::of(path, &bytes)?;
@@ -47,14 +56,14 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
                 let message = format!("{} and {} are both meshes", path.display(), mesh.display());
                 Err(Diagnostic::error(message).hint("a mesh belongs to a .dsc, or stands alone").into())
             }
-            None => Ok(join::alone(name, parse_mesh(format, bytes, path, Materials::Wanted)?)),
+            None => Ok(join::alone(name, parse_mesh(format, bytes, path, Some(files))?)),
         };
     }
     let source = words::source(&path.display().to_string(), bytes.into());
     let description = dsc::parse(&source);
     let mesh = match mesh {
-        Some(mesh) => load_mesh(mesh),
-        None => beside(path).and_then(|mesh| load_mesh(&mesh)),
+        Some(mesh) => load_mesh(mesh, files),
+        None => beside(path).and_then(|mesh| load_mesh(&mesh, files)),
     };
     match (description, mesh) {
         (Ok(description), Ok(mesh)) => join::described(name, description, mesh),
@@ -67,25 +76,20 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
 }
 
 /// The mesh of a `.dsc`.
-fn load_mesh(path: &Path) -> Result<Mesh, Report> {
+fn load_mesh(path: &Path, files: &mut Vec<PathBuf>) -> Result<Mesh, Report> {
+    files.push(path.to_owned());
     let bytes = file::read(path)?;
     let format = Format::of(path, &bytes)?;
     if format == Format::Dsc {
         let error = Diagnostic::error(format!("{} is a scene description, not a mesh", path.display()));
         return Err(error.hint("the mesh of a .dsc is a file such as an .off").into());
     }
-    parse_mesh(format, bytes, path, Materials::Unwanted)
+    parse_mesh(format, bytes, path, None)
 }
 
-/// Whether a mesh's own materials are of use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Materials {
-    Wanted,
-    /// A `.dsc` has its own.
-    Unwanted,
-}
-
-fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, materials: Materials) -> Result<Mesh, Report> {
+/// Reads a mesh. Its material libraries are opened, and put on the list, where there is one: a `.dsc` has materials of
+/// its own.
+fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Vec<PathBuf>>) -> Result<Mesh, Report> {
     let name = path.display().to_string();
     match format {
         Format::Dsc => Err(Diagnostic::error(format!("{name} is not a mesh")).into()),
@@ -93,6 +97,7 @@ fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, materials: Materials)
         Format::Stl => stl::parse(bytes, &name),
         Format::Ply => ply::parse(bytes, &name),
         Format::Obj => {
+            let Some(files) = files else { return obj::parse(bytes, &name, None) };
             let mut open = |library: &str| {
                 // Some programs write the names as they are on their own system.
                 let library = library.replace('\\', "/");
@@ -104,12 +109,10 @@ fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, materials: Materials)
                         None => missing.into(),
                     });
                 }
+                files.push(path.clone());
                 Ok((path.display().to_string(), file::read(&path)?))
             };
-            match materials {
-                Materials::Wanted => obj::parse(bytes, &name, Some(&mut open)),
-                Materials::Unwanted => obj::parse(bytes, &name, None),
-            }
+            obj::parse(bytes, &name, Some(&mut open))
         }
     }
 }

@@ -2,6 +2,7 @@
 //! other programs. What a format cannot say is told by [`losses`].
 
 mod format;
+mod losses;
 mod obj;
 mod ply;
 mod stl;
@@ -9,23 +10,50 @@ mod stl;
 use std::fmt;
 use std::io::{self, Error, ErrorKind, Write};
 
-pub use self::format::{MeshFormat, losses, mesh};
+pub use self::format::{MeshFormat, mesh};
+pub use self::losses::{losses, losses_beside_description};
 pub use self::obj::{mtl, obj};
 pub use self::ply::ply;
 pub use self::stl::stl;
-use crate::model::{Scene, Vec3};
+use crate::model::{Scene, Triangle, Vec3};
+use crate::read::mesh::GREY;
 
 /// Writes the mesh of a scene as an ASCII `.off` file: header, counts, vertices, triangles.
 ///
 /// Errors: what the writer says, and a coordinate that is not finite.
 pub fn off(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+    off_with(scene, |_| Ok(String::new()), out)
+}
+
+/// The same with the colour of each triangle's material behind it, for a mesh without a `.dsc`; without colours where
+/// all are the grey that such a mesh has anyway.
+///
+/// Errors: see [`off`].
+pub fn off_coloured(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+    let colour = |triangle: &Triangle| scene.materials[triangle.material as usize].colour;
+    if scene.triangles.iter().all(|triangle| colour(triangle) == GREY.colour) {
+        return off(scene, out);
+    }
+    let component = |x: f64| {
+        let text = Number::new(x)?.to_string();
+        // A whole number would be one of 0 to 255.
+        Ok(if text.contains(['.', 'e']) { text } else { text + ".0" })
+    };
+    let suffix = |triangle: &Triangle| {
+        let components: io::Result<Vec<String>> = colour(triangle).into_iter().map(component).collect();
+        Ok(format!(" {}", components?.join(" ")))
+    };
+    off_with(scene, suffix, out)
+}
+
+fn off_with(scene: &Scene, suffix: impl Fn(&Triangle) -> io::Result<String>, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "OFF\n{} {} 0", scene.vertices.len(), scene.triangles.len())?;
     for &vertex in &scene.vertices {
         writeln!(out, "{}", triple(vertex)?)?;
     }
     for triangle in &scene.triangles {
         let [a, b, c] = triangle.vertices;
-        writeln!(out, "3 {a} {b} {c}")?;
+        writeln!(out, "3 {a} {b} {c}{}", suffix(triangle)?)?;
     }
     Ok(())
 }

@@ -8,10 +8,10 @@ use isa::diagnostic::Diagnostic;
 use scenes::generate::{self, Options, SCENES};
 use scenes::write;
 
+use super::parts;
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
 use crate::files;
-use crate::table::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -77,15 +77,7 @@ pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) ->
     written.map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
     let [description_path, mesh_path] = &paths;
     // The mesh first: a .dsc without its mesh would be no scene.
-    files::write(mesh_path, &mesh)?;
-    files::write(description_path, &description)?;
-    terminal.print(&format!(
-        "{} and {}: {}, {}, {}\n",
-        description_path.display(),
-        mesh_path.display(),
-        count(scene.triangles.len() as u64, "triangle", "triangles"),
-        count(scene.materials.len() as u64, "material", "materials"),
-        count(scene.lights.len() as u64, "light", "lights"),
-    ))?;
+    files::write_all(&[(mesh_path, &mesh), (description_path, &description)])?;
+    terminal.print(&format!("{} and {}: {}\n", description_path.display(), mesh_path.display(), parts(&scene)))?;
     Ok(Exit::Done)
 }

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use scenes::image::Options;
+use scenes::info::SceneInfo;
 use scenes::layout::Layout;
 
 use crate::arguments::overrides;
 use crate::failure::{Exit, Failure};
-use crate::scene_facts::SceneFacts;
 use crate::table::{count, grouped, row, table};
 use crate::terminal::Terminal;
 use crate::{input, result};
@@ -64,12 +64,12 @@ pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Res
         kd_depth: arguments.kd_depth,
         formats: overrides::collect(&arguments.formats),
     };
-    let facts = SceneFacts::new(&loaded.scene, &options)?;
+    let facts = SceneInfo::new(&loaded.scene, &options)?;
     terminal.print(&if arguments.json { result::json(&facts) } else { text(&facts) })?;
     Ok(Exit::Done)
 }
 
-fn text(facts: &SceneFacts) -> String {
+fn text(facts: &SceneInfo) -> String {
     let mut text = format!(
         "{}: {}, {}, {}, {}; {} x {} pixels\n",
         facts.scene,
@@ -82,6 +82,9 @@ fn text(facts: &SceneFacts) -> String {
     );
     if facts.unused_vertices != 0 {
         text += &format!("{} in no triangle\n", count(facts.unused_vertices as u64, "vertex is", "vertices are"));
+    }
+    if facts.repeated != 0 {
+        text += &format!("{} one before\n", count(facts.repeated as u64, "triangle repeats", "triangles repeat"));
     }
     text += &match facts.bounds {
         Some([low, high]) => format!("box {} to {}\n", point(low), point(high)),
@@ -107,13 +110,15 @@ fn text(facts: &SceneFacts) -> String {
     let precision = &facts.precision;
     text + &format!(
         "grid: steps of 2^{} = {:.3e}, the box's longest side is {} steps;\n\
-         corners move by up to {:.3e} (rms {:.3e})\n\
+         corners move by up to {:.3e}, {:.3e} of that side (rms {:.3e}, {:.3e} of it)\n\
          {} without area, and {} that lose it on the grid\n",
         precision.step.log2(),
         precision.step,
         grouped(precision.steps),
         precision.largest_move,
+        precision.largest_share,
         precision.rms_move,
+        precision.rms_share,
         count(precision.degenerate as u64, "triangle", "triangles"),
         count(precision.collapsed as u64, "triangle", "triangles"),
     )
@@ -124,7 +129,7 @@ fn point(point: [f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
-fn materials(facts: &SceneFacts) -> String {
+fn materials(facts: &SceneInfo) -> String {
     if facts.materials.is_empty() {
         return String::new();
     }
@@ -142,10 +147,10 @@ fn materials(facts: &SceneFacts) -> String {
     table(rows) + &rest + "\n"
 }
 
-fn memory(facts: &SceneFacts) -> String {
+fn memory(facts: &SceneInfo) -> String {
     let memory = &facts.memory;
     let mut rows = vec![row(["memory", "octets"])];
-    rows.extend(memory.octets.0.iter().map(|(name, octets)| vec![name.clone(), grouped(*octets)]));
+    rows.extend(memory.octets.0.iter().map(|(name, octets)| vec![(*name).to_owned(), grouped(*octets)]));
     rows.push(vec![format!("all ({})", memory.layout), grouped(memory.total as u64)]);
     table(rows)
 }

@@ -1,0 +1,155 @@
+//! `lancer scene convert`: a scene from one file format to another.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use isa::diagnostic::{Diagnostic, Report};
+use scenes::model::Scene;
+use scenes::write::{self, MeshFormat};
+
+use super::parts;
+use crate::failure::{Exit, Failure};
+use crate::terminal::Terminal;
+use crate::{files, input};
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer scene convert house.dsc house.obj           # with house.mtl; the lights are lost, which is said
+  lancer scene convert house.dsc new.obj --dsc       # with new.mtl and new.dsc: nothing is lost
+  lancer scene convert bunny.ply bunny.dsc           # with bunny.off, so that materials and lights can be edited
+  lancer scene convert bunny.stl bunny.off
+  lancer scene convert cornell room --to ply         # a generated scene; the name does not say the format
+
+Nothing is written unless all files are whole. A file that is read is never overwritten.
+Exit codes: 0 done, 1 errors in the input, 2 usage.";
+
+/// Writes a scene in another file format, and says what that cannot hold.
+///
+/// Triangles and their order stay the same in all formats. docs/formats.md has what each format holds.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct ConvertArguments {
+    /// Scene: a .dsc with its mesh beside it, a mesh, or the name of a generated scene such as cornell.
+    #[arg(value_name = "IN")]
+    scene: String,
+    /// File to write; a .dsc gets an .off of the same name beside it, an .obj a .mtl.
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    /// Mesh that belongs to the .dsc IN [default: the file of the same name beside it].
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// Format of OUT [default: by its extension].
+    #[arg(long, value_name = "FORMAT", ignore_case = true, value_parser = target())]
+    to: Option<Target>,
+    /// Writes a .dsc beside the mesh OUT too, with the size of the picture, all materials and the lights.
+    #[arg(long)]
+    dsc: bool,
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Target {
+    /// A description with its mesh.
+    Description,
+    /// A mesh.
+    Mesh(MeshFormat),
+}
+
+impl Target {
+    fn named(name: &str) -> Option<Target> {
+        let mesh = MeshFormat::ALL.into_iter().find(|format| format.name() == name);
+        mesh.map(Target::Mesh).or((name == "dsc").then_some(Target::Description))
+    }
+
+    /// The format that a file's name asks for.
+    fn of(path: &Path) -> Result<Target, Report> {
+        let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
+        extension.as_deref().and_then(Target::named).ok_or_else(|| {
+            let message = format!("{} does not end in .{}", path.display(), names().collect::<Vec<_>>().join(", ."));
+            Diagnostic::error(message).hint("choose a format with `--to`").into()
+        })
+    }
+}
+
+fn names() -> impl Iterator<Item = &'static str> {
+    std::iter::once("dsc").chain(MeshFormat::ALL.iter().map(|format| format.name()))
+}
+
+fn target() -> impl TypedValueParser<Value = Target> {
+    let names = PossibleValuesParser::new(names().map(PossibleValue::new));
+    names.map(|name| Target::named(&name.to_ascii_lowercase()).expect("the parser lets only names pass"))
+}
+
+/// Reads, converts and writes.
+pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let output = &arguments.output;
+    let target = arguments.to.map_or_else(|| Target::of(output), Ok).map_err(Failure::usage)?;
+    let has_description = arguments.dsc || target == Target::Description;
+    let paths = paths(output, target, has_description);
+    files::check_distinct(paths.iter().map(PathBuf::as_path)).map_err(Failure::usage)?;
+    for path in &paths {
+        files::check_target(path)?;
+    }
+    let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
+    files::check_spared(&paths, &loaded.files)?;
+    terminal.show(&loaded.warnings);
+    let scene = &loaded.scene;
+    let contents = contents(scene, target, has_description, &paths)
+        .map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
+    files::write_all(&paths.iter().zip(contents).collect::<Vec<_>>())?;
+    match target {
+        Target::Mesh(format) if has_description => terminal.show(&write::losses_beside_description(scene, format)),
+        Target::Mesh(format) => terminal.show(&write::losses(scene, format)),
+        Target::Description => {}
+    }
+    let shown: Vec<String> = paths.iter().rev().map(|path| path.display().to_string()).collect();
+    terminal.print(&format!("{}: {}\n", shown.join(" and "), parts(scene)))?;
+    Ok(Exit::Done)
+}
+
+/// The files of a result, in the order in which they take their places: what names another one comes after it.
+fn paths(output: &Path, target: Target, has_description: bool) -> Vec<PathBuf> {
+    let companion = match target {
+        Target::Mesh(MeshFormat::Obj) => Some(output.with_extension("mtl")),
+        Target::Description => Some(output.with_extension("off")),
+        Target::Mesh(_) => None,
+    };
+    let description = (has_description && target != Target::Description).then(|| output.with_extension("dsc"));
+    companion.into_iter().chain([output.to_owned()]).chain(description).collect()
+}
+
+/// The octets of these files.
+fn contents(scene: &Scene, target: Target, has_description: bool, paths: &[PathBuf]) -> std::io::Result<Vec<Vec<u8>>> {
+    let mut description = Vec::new();
+    if has_description {
+        write::dsc(scene, &mut description)?;
+    }
+    let mut files = match target {
+        Target::Mesh(MeshFormat::Obj) => {
+            let (mut library, mut mesh) = (Vec::new(), Vec::new());
+            write::mtl(scene, &mut library)?;
+            write::obj(scene, &library_name(&paths[0])?, &mut mesh)?;
+            vec![library, mesh]
+        }
+        Target::Mesh(format) => write::mesh(scene, format, "")?.into_iter().map(|(_, octets)| octets).collect(),
+        Target::Description => {
+            let mut mesh = Vec::new();
+            write::off(scene, &mut mesh)?;
+            vec![mesh]
+        }
+    };
+    files.extend(has_description.then_some(description));
+    Ok(files)
+}
+
+/// The name by which an `.obj` calls its library, which lies beside it.
+fn library_name(path: &Path) -> std::io::Result<String> {
+    let name = path.file_name().unwrap_or_default().to_str().unwrap_or_default();
+    // A statement ends at a line's end or a comment; blanks around a name and a backslash are not part of it.
+    if name.is_empty() || name.trim() != name || name.contains(['#', '\\', '\n', '\r']) {
+        let message = format!("an .obj cannot name {}", path.display());
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, message));
+    }
+    Ok(name.to_owned())
+}

@@ -1,6 +1,7 @@
 //! How far one picture is from another. All figures are over the linear components of all pixels, before any quantization to 8 bits, after
 //! clamping both pictures to [0, 1].
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::model::{Picture, Vec3};
@@ -9,7 +10,7 @@ use crate::model::{Picture, Vec3};
 pub const STEP: f64 = 1.0 / 255.0;
 
 /// Figures of the difference of two pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PictureError {
     /// Root of the mean square difference of the components.
     pub rmse: f64,

@@ -12,6 +12,7 @@ mod run;
 mod run_arguments;
 mod run_result;
 mod scene;
+mod schema;
 
 use clap::{Parser, Subcommand};
 
@@ -51,6 +52,7 @@ enum Command {
     Machine(machine::MachineArguments),
     Manual(manual::ManualArguments),
     Explain(explain::ExplainArguments),
+    Schema(schema::SchemaArguments),
     Completions(completions::CompletionsArguments),
 }
 
@@ -69,6 +71,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),
+        Some(Command::Schema(arguments)) => schema::execute(arguments, terminal),
         Some(Command::Completions(arguments)) => completions::execute(arguments, terminal),
     }
 }

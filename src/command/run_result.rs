@@ -1,5 +1,6 @@
 //! What `lancer run` found: as JSON and as tables.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use emu::machine::single::SingleRun;
@@ -7,6 +8,7 @@ use emu::profile::Profile;
 use emu::registers::Registers;
 use isa::Class;
 use isa::diagnostic::Diagnostic;
+use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 use super::run_arguments::Dump;
@@ -19,9 +21,10 @@ use crate::table::{count, grouped, row, table};
 pub const SCHEMA: &str = "lancer-run-1";
 
 /// The results of a program.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RunResult {
-    /// [`SCHEMA`].
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// The assembly file.
     pub program: String,
@@ -48,8 +51,8 @@ pub struct RunResult {
 }
 
 /// Registers by name.
-#[derive(Clone, Debug)]
-pub struct RegisterValues(pub Vec<(String, RegisterContents)>);
+#[derive(Clone, Debug, JsonSchema)]
+pub struct RegisterValues(#[schemars(with = "BTreeMap<String, RegisterContents>")] pub Vec<(String, RegisterContents)>);
 
 impl Serialize for RegisterValues {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -58,7 +61,7 @@ impl Serialize for RegisterValues {
 }
 
 /// What a register holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum RegisterContents {
     /// A scalar or a wide accumulator.
@@ -68,7 +71,7 @@ pub enum RegisterContents {
 }
 
 /// Octets of a memory.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct DumpedOctets {
     /// `memory` or `buffer`.
     pub space: &'static str,
@@ -81,7 +84,7 @@ pub struct DumpedOctets {
 }
 
 /// Why a program stopped.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TrapResult {
     /// What went wrong, without where.
     pub fault: String,

@@ -4,13 +4,16 @@
 mod hash;
 mod hexadecimal;
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use emu::machine::ProcessorUse;
 use emu::profile::{Profile, RegionProfile};
-use isa::Counts;
+use isa::{Class, Counts};
 use kernels::Function;
 use scenes::metrics::PictureError;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -36,10 +39,32 @@ impl Serialize for ByClass {
     }
 }
 
+impl JsonSchema for ByClass {
+    fn schema_name() -> Cow<'static, str> {
+        "ByClass".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let property = |class: &Class| {
+            let what = json_schema!({ "type": "integer", "minimum": 0, "description": class.doc().trim() });
+            (class.name().to_owned(), what.to_value())
+        };
+        let properties: serde_json::Map<String, serde_json::Value> = Class::ALL.iter().map(property).collect();
+        let names: Vec<&str> = Class::ALL.iter().map(|class| class.name()).collect();
+        json_schema!({
+            "type": "object",
+            "description": "One number for each class of operations.",
+            "properties": properties,
+            "required": names,
+        })
+    }
+}
+
 /// A picture and what it took. Counts are those of all cores together; the main processor's stand apart.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Render {
-    /// [`SCHEMA`].
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Name of the scene.
     pub scene: String,
@@ -89,7 +114,7 @@ pub struct Render {
 }
 
 /// Rays by kind, counted from calls of the kernels' functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Rays {
     /// One a pixel.
     pub camera: u64,
@@ -102,7 +127,7 @@ pub struct Rays {
 }
 
 /// Where the clocks of a processor went; `busy + waiting + idle` are the clocks of the frame.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Processor {
     /// Clocks of instructions.
     pub busy: u64,
@@ -117,7 +142,7 @@ pub struct Processor {
 }
 
 /// A function or region.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Region {
     /// Its name.
     pub name: String,
@@ -130,7 +155,7 @@ pub struct Region {
 }
 
 /// The main processor, which makes the camera rays and feeds the cores.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Main {
     /// Instructions.
     pub instructions: u64,
@@ -144,7 +169,7 @@ pub struct Main {
 }
 
 /// The bus.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Bus {
     /// Clocks in which a transfer held it.
     pub busy: u64,
@@ -163,8 +188,8 @@ pub struct Bus {
 }
 
 /// Octets by kind of data, in the order of the addresses.
-#[derive(Clone, Debug)]
-pub struct Kinds(pub Vec<(String, u64)>);
+#[derive(Clone, Debug, JsonSchema)]
+pub struct Kinds(#[schemars(with = "BTreeMap<String, u64>")] pub Vec<(String, u64)>);
 
 impl Serialize for Kinds {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -173,8 +198,8 @@ impl Serialize for Kinds {
 }
 
 /// Bits of a word and fraction bits of the quantities.
-#[derive(Clone, Debug)]
-pub struct Formats(pub Vec<(&'static str, i32)>);
+#[derive(Clone, Debug, JsonSchema)]
+pub struct Formats(#[schemars(with = "BTreeMap<String, i32>")] pub Vec<(&'static str, i32)>);
 
 impl Serialize for Formats {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -183,7 +208,7 @@ impl Serialize for Formats {
 }
 
 /// Seconds that the host took.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Host {
     /// Reading the scene.
     pub load_seconds: f64,

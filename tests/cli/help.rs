@@ -8,7 +8,7 @@ fn help_and_messages_say_what_they_said() {
 }
 
 /// A command and all commands below it, from what their help lists.
-fn commands(session: &Session, above: &str) -> Vec<String> {
+pub fn commands(session: &Session, above: &str) -> Vec<String> {
     let help = session.succeed(&format!("{above} --help"));
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     let names = listed.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help");

@@ -7,5 +7,6 @@ mod help;
 mod programs;
 mod render;
 mod scene;
+mod schema;
 mod session;
 mod streams;

@@ -73,6 +73,7 @@ fn wrong_command_lines_end_with_2() {
         ("scene convert cornell a --to 3ds", "possible values: dsc, off, obj, ply, stl"),
         ("scene convert cornell a.mtl --to obj", "a.mtl would be written twice"),
         ("scene convert cornell a.dsc --to obj --dsc", "a.dsc would be written twice"),
+        ("schema lancer-scene-0", "possible values"),
         ("scene generate house", "possible values"),
         ("scene", "Usage"),
         ("completions klingon", "possible values"),

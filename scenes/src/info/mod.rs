@@ -3,7 +3,10 @@
 
 mod precision;
 
+use std::borrow::Cow;
+
 use isa::diagnostic::Report;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 
 pub use self::precision::Precision;
@@ -16,9 +19,10 @@ use crate::read::mesh::repeated;
 pub const SCHEMA: &str = "lancer-scene-1";
 
 /// The facts of a scene.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SceneInfo {
-    /// [`SCHEMA`].
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Name of the scene.
     pub scene: String,
@@ -55,7 +59,7 @@ pub struct SceneInfo {
 }
 
 /// A material and how many triangles have it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct MaterialInfo {
     /// Diffuse colour.
     pub colour: Vec3,
@@ -72,7 +76,7 @@ pub struct MaterialInfo {
 }
 
 /// Octets of global memory.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Memory {
     /// Name of the layout.
     pub layout: &'static str,
@@ -89,6 +93,20 @@ pub struct Named<T>(pub Vec<(&'static str, T)>);
 impl<T: Serialize> Serialize for Named<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Named<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("Named_{}", T::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "object", "additionalProperties": generator.subschema_for::<T>() })
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a scene loses on the grid: how far its vertices move, and which triangles lose their area.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::image::Image;
@@ -7,7 +8,7 @@ use crate::model::{Scene, Vec3};
 use crate::read::mesh::is_flat;
 
 /// How far vertices move when they are stored.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Precision {
     /// Distance of neighbouring stored coordinates, in scene units.
     pub step: f64,

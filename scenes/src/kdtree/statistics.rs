@@ -1,11 +1,12 @@
 //! Figures of a tree. Nothing here changes one.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Content, KdTree};
 
 /// Size and shape of a tree.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Statistics {
     /// All nodes.
     pub nodes: usize,

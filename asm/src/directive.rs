@@ -108,7 +108,7 @@ directives! {
     ".else" "" Action::Else, "Reads what follows when nothing before was read.";
     ".endif" "" Action::EndIf, "Ends a condition.";
     ".macro" "name a, b=default, rest..." Action::Macro,
-        "Begins a macro: `\\a` is an argument, `\\@` the number of the call, `\\()` nothing.";
+        "Begins a macro: `\\a` is an argument, `\\@` the number of the call, `\\()` nothing; `a:req` and `rest:vararg` as in GNU as.";
     ".endm" "" Action::Stray(".macro"), "Ends a macro.";
     ".exitm" "" Action::ExitMacro, "Leaves the macro that is being read.";
     ".local" "name, ..." Action::Local, "Names that each call of a macro has for itself.";

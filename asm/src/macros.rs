@@ -62,8 +62,25 @@ fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
     parts
 }
 
+/// What may stand behind a parameter's name: `:req`, which each parameter without a default is anyway, or `:vararg`.
+/// Whether it is the latter.
+fn qualifier(cursor: &mut Cursor) -> Parsed<bool> {
+    if !cursor.accept(":") {
+        return Ok(false);
+    }
+    match cursor.name("`req` or `vararg`")? {
+        ("vararg", _) => Ok(true),
+        ("req", _) => Ok(false),
+        (other, at) => {
+            let message = format!("a parameter cannot be `{other}`");
+            let problem = Problem::new(explain::MACRO, message, at, "`req` or `vararg` is expected");
+            Err(problem)
+        }
+    }
+}
+
 impl Assembler<'_> {
-    /// `.macro name a, b=default, rest...`
+    /// `.macro name a, b=default, rest...`, where GNU as has `a:req` and `rest:vararg`.
     pub(crate) fn define_macro(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let header = self.macro_header(cursor);
         let Some(lines) = self.capture(&[".macro"], ".endm", at) else { return header.map(|_| ()) };
@@ -101,7 +118,7 @@ impl Assembler<'_> {
                 ));
             }
             let mut parameter = Parameter { name: text.into(), default: None, takes_rest: false };
-            if cursor.accept("...") {
+            if qualifier(cursor)? || cursor.accept("...") {
                 parameter.takes_rest = true;
                 parameter.default = Some("".into());
             } else if cursor.accept("=") {

@@ -246,6 +246,8 @@ fn macros_take_arguments_defaults_and_the_rest() {
         all 1, 2, (3, 4)";
     assert!(assemble(&Source::new("t.s", sum), &Isa::base(), &Options::default()).is_err());
     assert_eq!(code(&sum.replace("(3, 4)", "min(3, 4)")), "movi s1, 1; movi s1, 2; movi s1, 3");
+    let gnu = sum.replace("(3, 4)", "4").replace("head, tail...", "head:req, tail:vararg");
+    assert_eq!(code(&gnu), "movi s1, 1; movi s1, 2; movi s1, 4");
 }
 
 #[test]

@@ -10,3 +10,5 @@
         .endm
         .macro copy a
         .endm
+        .macro  odd a:rec
+        .endm

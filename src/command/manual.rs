@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, ValueEnum};
+use clap::{Args, Command, CommandFactory, ValueEnum};
+use clap_mangen::Man;
 use isa::Isa;
 
 use super::Lancer;
@@ -44,15 +45,51 @@ pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> R
     let octets = match arguments.form {
         Form::Markdown => manual::markdown(&Isa::base()).into_bytes(),
         Form::Html => manual::html(&Isa::base()).into_bytes(),
-        Form::Man => {
-            let mut page = Vec::new();
-            clap_mangen::Man::new(Lancer::command()).render(&mut page).expect("writing to memory does not fail");
-            page
-        }
+        Form::Man => man_page().into_bytes(),
     };
     match &arguments.output {
         Some(path) => files::write(path, &octets)?,
         None => terminal.print_octets(&octets)?,
     }
     Ok(Exit::Done)
+}
+
+/// The man page of all commands in one: that of `lancer`, then a section for each command below it.
+fn man_page() -> String {
+    let mut command = Lancer::command();
+    command.build();
+    let mut page = rendered(|out| Man::new(command.clone()).render(out));
+    for command in command.get_subcommands() {
+        add_section(command, &mut page);
+    }
+    page
+}
+
+fn add_section(command: &Command, page: &mut String) {
+    if command.get_name() == "help" {
+        return;
+    }
+    let name = command.get_bin_name().unwrap_or_else(|| command.get_name());
+    let man = Man::new(command.clone());
+    let text = rendered(|out| {
+        man.render_synopsis_section(out)?;
+        man.render_description_section(out)?;
+        if command.get_opts().chain(command.get_positionals()).next().is_some() {
+            man.render_options_section(out)?;
+        }
+        man.render_extra_section(out)
+    });
+    page.push_str(&format!(".SH \"{}\"\n", name.to_uppercase()));
+    // Sections of a command are below its own, and each begins with the same definitions.
+    let lines = text.lines().filter(|line| !line.starts_with(".ie") && !line.starts_with(".el"));
+    page.extend(lines.map(|line| line.replace(".SH EXTRA", ".SS EXAMPLES").replace(".SH ", ".SS ") + "\n"));
+    for command in command.get_subcommands() {
+        add_section(command, page);
+    }
+}
+
+fn rendered(render: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> String {
+    let mut octets = Vec::new();
+    render(&mut octets).expect("writing to memory does not fail");
+    String::from_utf8(octets).expect("help texts are UTF-8")
 }

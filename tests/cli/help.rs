@@ -43,3 +43,20 @@ fn every_shell_has_its_completions() {
         assert!(script.contains("disassemble") && script.contains("weight-cutoff"), "{shell}");
     }
 }
+
+#[test]
+fn the_man_page_has_every_command_and_every_option() {
+    let session = Session::new();
+    let page = session.succeed("manual --as man").replace("\\-", "-");
+    for command in commands(&session, "") {
+        let name = format!(".SH \"LANCER{}\"", command.to_uppercase());
+        assert!(command.is_empty() || page.lines().any(|line| line == name), "{name}");
+        let help = session.succeed(&format!("{command} --help"));
+        let section = page.split(&name).nth(1).unwrap_or(&page);
+        let words = help.split_whitespace().filter(|word| word.starts_with("--") && word.len() > 2);
+        for option in words.map(|word| word.trim_end_matches([',', '.', ';', ')', '`'])) {
+            let option = option.split(['[', '=']).next().unwrap();
+            assert!(section.contains(option), "{command}: {option}");
+        }
+    }
+}

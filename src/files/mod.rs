@@ -13,7 +13,7 @@ use std::sync::Arc;
 use isa::diagnostic::{Diagnostic, Report, Source};
 use tempfile::{Builder, NamedTempFile};
 
-/// Octets of the largest text that is read.
+/// Octets of the largest file that is read: sources, programs, machines, memory.
 const LARGEST: u64 = 64 << 20;
 
 /// All octets of a file.
@@ -30,13 +30,16 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
     if path.is_dir() {
         return Err(Diagnostic::error(format!("{shown} is a folder, not a file")).into());
     }
+    let too_large = || Diagnostic::error(format!("{shown} is larger than {} MiB", LARGEST >> 20));
     let file = fs::File::open(path).map_err(refuse)?;
-    let mut octets = Vec::new();
-    file.take(LARGEST + 1).read_to_end(&mut octets).map_err(refuse)?;
-    if octets.len() as u64 > LARGEST {
-        return Err(Diagnostic::error(format!("{shown} is larger than {} MiB", LARGEST >> 20)).into());
+    let length = file.metadata().map_or(0, |metadata| metadata.len());
+    if length > LARGEST {
+        return Err(too_large().into());
     }
-    Ok(octets)
+    let mut octets = Vec::with_capacity(length as usize);
+    // Files that have no length, such as pipes, and those that grow.
+    file.take(LARGEST + 1).read_to_end(&mut octets).map_err(refuse)?;
+    if octets.len() as u64 > LARGEST { Err(too_large().into()) } else { Ok(octets) }
 }
 
 /// The text of a file; octets that are not UTF-8 are replaced.
@@ -44,7 +47,13 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
 /// # Errors
 /// See [`read`].
 pub fn source(path: &Path) -> Result<Arc<Source>, Report> {
-    Ok(Source::new(path.display().to_string(), String::from_utf8_lossy(&read(path)?)))
+    Ok(Source::new(path.display().to_string(), text(read(path)?)))
+}
+
+/// Octets as text; those that are not UTF-8 are replaced.
+pub fn text(octets: Vec<u8>) -> String {
+    // A copy is only made where something is replaced.
+    String::from_utf8(octets).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
 }
 
 /// Whether a result could be written there, so that a command fails before its work and not after it.

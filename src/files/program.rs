@@ -9,7 +9,7 @@ use asm::object;
 use isa::Program;
 use isa::diagnostic::{Diagnostic, Place, Report, Source};
 
-use super::read;
+use super::{read, text};
 use crate::table::grouped;
 
 /// A file format for programs.
@@ -61,20 +61,20 @@ impl ProgramFile {
     /// # Errors
     /// A file that cannot be read, or holds anything else.
     pub fn load(self, path: &Path) -> Result<Program, Report> {
-        self.decode(path, &read(path)?)
+        self.decode(path, read(path)?)
     }
 
-    fn decode(self, path: &Path, octets: &[u8]) -> Result<Program, Report> {
+    fn decode(self, path: &Path, octets: Vec<u8>) -> Result<Program, Report> {
         let shown = path.display();
         let words = match self {
             ProgramFile::Object => {
-                return object::read(octets).map_err(|error| Diagnostic::error(format!("{shown}: {error}")).into());
+                return object::read(&octets).map_err(|error| Diagnostic::error(format!("{shown}: {error}")).into());
             }
-            ProgramFile::Binary => binary(octets).ok_or_else(|| {
+            ProgramFile::Binary => binary(&octets).ok_or_else(|| {
                 let message = format!("{shown} has {} octets, which are no whole words", octets.len());
                 Diagnostic::error(message).hint("a word has 4 octets")
             })?,
-            ProgramFile::Hexadecimal => hexadecimal(&Source::new(shown.to_string(), String::from_utf8_lossy(octets)))?,
+            ProgramFile::Hexadecimal => hexadecimal(&Source::new(shown.to_string(), text(octets)))?,
         };
         if words.len() > WORDS {
             let message = format!("{shown} has {} words", grouped(words.len() as u64));
@@ -95,7 +95,7 @@ pub fn load_any(path: &Path) -> Result<Option<Program>, Report> {
     }
     let octets = read(path)?;
     let is_object = octets.starts_with(object::MAGIC);
-    is_object.then(|| ProgramFile::Object.decode(path, &octets)).transpose()
+    is_object.then(|| ProgramFile::Object.decode(path, octets)).transpose()
 }
 
 fn binary(octets: &[u8]) -> Option<Vec<u32>> {
@@ -109,26 +109,23 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
     let mut words: Vec<u32> = Vec::new();
     let mut messages = Report::default();
     let mut refuse = |span: std::ops::Range<usize>, message: String, label: &str| {
+        messages.0.push(Diagnostic::error(message).at(Place::new(source, span), label));
         // A file of another kind would otherwise be refused word by word.
-        if messages.0.len() < 5 {
-            messages.0.push(Diagnostic::error(message).at(Place::new(source, span), label));
-        }
+        messages.0.len() < 5
     };
     let mut at = 0;
     while let Some(first) = text[at..].find(|letter: char| !letter.is_whitespace()).map(|skipped| at + skipped) {
         let rest = &text[first..];
-        if let Some(end) = rest.strip_prefix("//").map(|_| rest.find('\n').unwrap_or(rest.len())) {
-            at = first + end;
+        if rest.starts_with("//") {
+            at = first + rest.find('\n').unwrap_or(rest.len());
             continue;
         }
         if rest.starts_with("/*") {
-            match rest.find("*/") {
-                Some(end) => at = first + end + 2,
-                None => {
-                    refuse(first..first + 2, "the comment is not closed".into(), "opened here");
-                    break;
-                }
-            }
+            let Some(end) = rest.find("*/") else {
+                refuse(first..first + 2, "the comment is not closed".into(), "opened here");
+                break;
+            };
+            at = first + end + 2;
             continue;
         }
         let end = first + rest.find(|letter: char| letter.is_whitespace() || letter == '/').unwrap_or(rest.len());
@@ -136,21 +133,27 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
         at = end;
         let token = text.get(first..end).unwrap_or_default();
         let digits = token.strip_prefix('@').unwrap_or(token).replace('_', "");
-        let number =
-            digits.chars().all(|digit| digit.is_ascii_hexdigit()).then(|| u32::from_str_radix(&digits, 16).ok());
-        match number.flatten() {
-            Some(address) if token.starts_with('@') => match address as usize {
-                address if address < words.len() || address > WORDS => {
-                    refuse(
-                        first..end,
-                        format!("the address {address:#x} is not possible here"),
-                        "goes back or too far",
-                    );
+        let is_plain = digits.chars().all(|digit| digit.is_ascii_hexdigit());
+        let goes_on = match is_plain.then(|| u32::from_str_radix(&digits, 16).ok()).flatten() {
+            Some(address) if token.starts_with('@') => {
+                let is_possible = (words.len()..=WORDS).contains(&(address as usize));
+                if is_possible {
+                    words.resize(address as usize, 0);
                 }
-                address => words.resize(address, 0),
-            },
-            Some(word) => words.push(word),
-            None => refuse(first..end, format!("`{token}` is no word"), "up to eight hexadecimal digits are expected"),
+                let message = || format!("the address {address:#x} is not possible here");
+                is_possible || refuse(first..end, message(), "goes back or too far")
+            }
+            Some(word) => {
+                words.push(word);
+                true
+            }
+            None => {
+                let shown: String = token.chars().take(40).collect();
+                refuse(first..end, format!("`{shown}` is no word"), "up to eight hexadecimal digits are expected")
+            }
+        };
+        if !goes_on {
+            break;
         }
     }
     if messages.has_errors() { Err(messages) } else { Ok(words) }
@@ -170,7 +173,7 @@ mod tests {
         let empty = Program { words: words.clone(), ..Program::default() };
         assert_eq!(ProgramFile::Binary.encode(&empty), [0, 0, 0, 0, 0x78, 0x56, 0x34, 0x12, 255, 255, 255, 255]);
         for format in [ProgramFile::Binary, ProgramFile::Hexadecimal] {
-            let back = format.decode(Path::new("a"), &format.encode(&empty)).unwrap();
+            let back = format.decode(Path::new("a"), format.encode(&empty)).unwrap();
             assert_eq!(back, empty, "{format:?}");
         }
         assert_eq!(parsed("00000000\n12345678\nffffffff\n"), Ok(words));
@@ -180,9 +183,9 @@ mod tests {
     #[test]
     fn more_words_than_a_program_may_have_are_refused() {
         let octets = vec![0; 4 * (WORDS + 1)];
-        let error = ProgramFile::Binary.decode(Path::new("a.bin"), &octets).unwrap_err().render(false);
+        let error = ProgramFile::Binary.decode(Path::new("a.bin"), octets.clone()).unwrap_err().render(false);
         assert!(error.contains("1,048,577 words"), "{error}");
-        assert!(ProgramFile::Binary.decode(Path::new("a.bin"), &octets[4..]).is_ok());
+        assert!(ProgramFile::Binary.decode(Path::new("a.bin"), octets[4..].to_vec()).is_ok());
     }
 
     #[test]

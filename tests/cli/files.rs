@@ -49,3 +49,52 @@ fn inputs_that_are_not_there_are_named() {
     session.fail(&format!("{TINY} --machine none.toml"), 1, "there is no file none.toml");
     session.fail(&format!("{TINY} --machine raport"), 1, "did you mean `report`?");
 }
+
+/// All files of a folder of the repository.
+fn files(folder: &str) -> Vec<std::path::PathBuf> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+    let mut paths: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn every_bad_file_ends_with_1_a_message_and_nothing_written() {
+    let session = Session::new();
+    let is_library = |path: &std::path::PathBuf| path.extension().is_some_and(|extension| extension == "mtl");
+    let mut bad = 0;
+    for kind in ["dsc", "off", "obj", "ply", "stl"] {
+        for path in files(&format!("scenes/tests/files/{kind}_bad")).iter().filter(|path| !is_library(path)) {
+            let mut command = session.command("scene convert");
+            let output = command.arg(path).args(["out.obj", "--dsc"]).output().unwrap();
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{}: {said}", path.display());
+            assert!(said.contains("error: "), "{}: {said}", path.display());
+            bad += 1;
+        }
+    }
+    for path in files("asm/tests/errors") {
+        let mut command = session.command("assemble -o out.o --data out.dat --map=out.map");
+        let output = command.arg(&path).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{}: {said}", path.display());
+        assert!(said.contains("error[E"), "{}: {said}", path.display());
+        bad += 1;
+    }
+    assert!(bad > 200 && session.names().is_empty(), "{bad} {:?}", session.names());
+}
+
+#[test]
+fn files_that_are_too_large_are_refused_before_they_are_read() {
+    let session = Session::new();
+    for (name, arguments, limit) in [
+        ("a.off", "scene info a.off", "a.off is larger than 256 MiB"),
+        ("a.dsc", "render a.dsc -o a.png", "a.dsc is larger than 256 MiB"),
+        ("a.s", "assemble a.s", "a.s is larger than 64 MiB"),
+        ("a.o", "run a.o", "a.o is larger than 64 MiB"),
+    ] {
+        // A file of nothing but a length.
+        std::fs::File::create(session.path(name)).unwrap().set_len(1 << 40).unwrap();
+        session.fail(arguments, 1, limit);
+    }
+}

@@ -9,6 +9,9 @@ use super::polygon::Cutter;
 use super::words::counted;
 use crate::model::Vec3;
 
+/// Most triangles of a mesh: a polygon of n corners in 2 octets each is n - 2 triangles of 16.
+const MOST: usize = 1 << 24;
+
 /// Faces on their way to triangles.
 #[derive(Default)]
 pub(super) struct Faces {
@@ -19,6 +22,7 @@ pub(super) struct Faces {
     origins: Vec<u32>,
     drawn: u32,
     left_out: usize,
+    is_too_many: bool,
 }
 
 impl Faces {
@@ -27,10 +31,18 @@ impl Faces {
         Faces { triangles: Vec::with_capacity(room), origins: Vec::with_capacity(room), ..Faces::default() }
     }
 
-    /// Takes a face whose corners are all in range; false when it has too few to be drawn.
+    /// Takes a face whose corners are all in range; false when it has too few to be drawn, or none more can be.
     pub(super) fn push(&mut self, vertices: &[Vec3], corners: &[u32], colour: Spec) -> bool {
+        self.push_up_to(MOST, vertices, corners, colour)
+    }
+
+    fn push_up_to(&mut self, most: usize, vertices: &[Vec3], corners: &[u32], colour: Spec) -> bool {
         if corners.len() < 3 {
             self.left_out += 1;
+            return false;
+        }
+        self.is_too_many |= self.triangles.len() + corners.len() - 2 > most;
+        if self.is_too_many {
             return false;
         }
         let (triangles, origins, face) = (&mut self.triangles, &mut self.origins, self.drawn);
@@ -48,9 +60,13 @@ impl Faces {
         self.origins.iter().map(|&face| of_faces[face as usize]).collect()
     }
 
-    /// The mesh, with warnings about what is odd in it.
+    /// The mesh, with warnings about what is odd in it, and an error when there were more triangles than a mesh may have.
     pub(super) fn into_mesh(mut self, name: &str, vertices: Vec<Vec3>, count: Option<Place>) -> Mesh {
         let mut warnings = Vec::new();
+        if self.is_too_many {
+            let error = Diagnostic::error(format!("{name}: its faces are more than {MOST} triangles"));
+            warnings.push(error.hint("polygons count as the triangles that they are cut into"));
+        }
         if self.left_out > 0 {
             let subject = counted(self.left_out, "face has", "faces have");
             warnings.push(Diagnostic::warning(format!("{name}: {subject} fewer than 3 corners and cannot be seen")));
@@ -74,5 +90,23 @@ impl Faces {
             count,
             warnings: Report(warnings),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_of_too_many_triangles_has_an_error_and_no_more_of_them() {
+        let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+        let mut faces = Faces::default();
+        let mut push = |corners: &[u32]| faces.push_up_to(3, &vertices, corners, Spec::Default);
+        assert!(push(&[0, 1, 2, 3]) && push(&[0, 1, 2]));
+        assert!(!push(&[0, 1, 2]) && !push(&[0, 1, 2, 3]));
+        let mesh = faces.into_mesh("a.off", vertices.to_vec(), None);
+        assert_eq!(mesh.triangles.len(), 3);
+        let error = mesh.warnings.0[0].message.as_str();
+        assert!(mesh.warnings.has_errors() && error == "a.off: its faces are more than 16777216 triangles", "{error}");
     }
 }

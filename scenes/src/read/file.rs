@@ -9,7 +9,7 @@ use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 use super::format::SCENES;
 
 /// Octets of the largest file that is read.
-const LARGEST: u64 = 1 << 30;
+const LARGEST: u64 = 256 << 20;
 
 /// All octets of a file.
 ///

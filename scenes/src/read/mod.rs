@@ -91,7 +91,7 @@ fn load_mesh(path: &Path, files: &mut Vec<PathBuf>) -> Result<Mesh, Report> {
 /// its own.
 fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Vec<PathBuf>>) -> Result<Mesh, Report> {
     let name = path.display().to_string();
-    match format {
+    let mesh = match format {
         Format::Dsc => Err(Diagnostic::error(format!("{name} is not a mesh")).into()),
         Format::Off => off::parse(bytes, &name),
         Format::Stl => stl::parse(bytes, &name),
@@ -114,7 +114,8 @@ fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Ve
             };
             obj::parse(bytes, &name, Some(&mut open))
         }
-    }
+    }?;
+    if mesh.warnings.has_errors() { Err(mesh.warnings) } else { Ok(mesh) }
 }
 
 /// The mesh beside a `.dsc`: the same name with a mesh's extension.

@@ -140,3 +140,14 @@ fn octets_with_a_right_checksum_are_read_or_refused() {
         Ok(())
     });
 }
+
+#[test]
+fn the_page_of_formats_has_the_parts_of_the_object_file() {
+    let (page, code) = (include_str!("../../docs/formats.md"), include_str!("../src/object.rs"));
+    let rows: Vec<&str> = code.lines().filter_map(|line| line.strip_prefix("//! |")).collect();
+    assert_eq!(rows.len(), 11);
+    for row in rows {
+        assert!(page.lines().any(|line| line.strip_prefix('|') == Some(row)), "docs/formats.md lacks |{row}");
+    }
+    assert!(page.contains(&format!("Version {} is written and read.", asm::object::VERSION)));
+}

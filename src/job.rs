@@ -7,7 +7,6 @@ use emu::machine::Config;
 use isa::diagnostic::{Diagnostic, Report};
 use kernels::build::{Crop, Options as KernelOptions};
 use scenes::image::Options as MemoryOptions;
-use scenes::layout::Layout;
 use scenes::model::{Camera, Scene, View};
 
 use crate::arguments::{
@@ -101,7 +100,7 @@ impl Job {
         job.adjust_machine(&arguments.machine, &arguments.numbers);
         job.memory = MemoryOptions {
             word: job.machine.arithmetic.word,
-            layout: arguments.machine.layout.unwrap_or(Layout::Wide),
+            layout: arguments.machine.layout.unwrap_or(arguments.kernels.profile.layout()),
             kd_depth: arguments.effort.kd_depth,
             formats: overrides::collect(&arguments.numbers.formats),
         };

@@ -8,7 +8,7 @@ use scenes::image::Image;
 use scenes::model::{Scene, View};
 
 use crate::function::{Function, Profile};
-use crate::prelude::{self, Walk};
+use crate::prelude;
 
 /// What of a scene decides which code its programs contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,7 +119,7 @@ fn assemble(
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
     let replaced: Vec<Function> = options.replaced.iter().map(|&(function, _)| function).collect();
-    let walk = if options.profile.walks_with_planes(&replaced) { Walk::Planes } else { Walk::Boxes };
+    let walk = options.profile.walk(&replaced);
     let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, walk, is_main))];
     files.extend(prelude::included(image.layout));
     for function in Function::of_program(is_main, features.has_tree(), features.has_glass()) {

@@ -16,6 +16,8 @@ pub struct Constants {
     pub t_shift: u32,
     /// How far the origin of a secondary ray is moved off the surface along the normal's major axis, raw.
     pub offset: i32,
+    /// The same in the profile `report`, whose distances are off by thousands of units: 1/2^17 of the coordinates in a word of 32 bits.
+    pub literal_offset: i32,
     /// A distance beyond all others, raw: that of the nearest hit as long as there is none.
     pub never: i32,
     /// What the triangle test returns for a miss: the largest word, beyond [`Constants::never`].
@@ -33,11 +35,13 @@ impl Constants {
         let spare = |needed: u32| needed.saturating_sub(2 * formats.word);
         let leaves = image.tree.nodes.iter().filter(|node| matches!(node.content, Content::Leaf { .. })).count();
         let largest = i32::MAX >> (32 - formats.word);
+        let offset = if formats.t == formats.position { 2 } else { 3 };
         Constants {
             formats,
             edge_shift: spare(edge),
             t_shift: spare(reach),
-            offset: if formats.t == formats.position { 2 } else { 3 },
+            offset,
+            literal_offset: offset.max(1 << (formats.word / 2 - 4)),
             never: largest - 1,
             missed: largest,
             most_steps: leaves as u32 + 1,

@@ -4,10 +4,16 @@ use std::fmt;
 use std::str::FromStr;
 
 use isa::diagnostic::{Diagnostic, did_you_mean};
+use scenes::layout::Layout;
+
+use crate::prelude::Walk;
 
 /// A set of kernels that differ only by which file serves a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Profile {
+    /// Scalar operations laid out as the formulas and pseudo codes of the report, each rounded to a word: what its annexes count. Its
+    /// decisions are not exact.
+    Report,
     /// Vector and wide rows: decisions on exact products, one rounding at the end.
     #[default]
     Vector,
@@ -17,19 +23,32 @@ pub enum Profile {
 
 impl Profile {
     /// All profiles.
-    pub const ALL: [Profile; 2] = [Profile::Vector, Profile::Ray];
+    pub const ALL: [Profile; 3] = [Profile::Report, Profile::Vector, Profile::Ray];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
+            Profile::Report => "report",
             Profile::Vector => "vector",
             Profile::Ray => "ray",
         }
     }
 
-    /// Whether the walk through the tree is the one that needs no boxes, when the user has replaced some functions.
-    pub fn walks_with_planes(self, replaced: &[Function]) -> bool {
-        Team::of(Function::Descend, self, replaced).is_some()
+    /// The layout of memory that goes with it unless the user chooses another.
+    pub const fn layout(self) -> Layout {
+        match self {
+            Profile::Report => Layout::Report,
+            Profile::Vector | Profile::Ray => Layout::Wide,
+        }
+    }
+
+    /// How its walk through the tree remembers far sides, when the user has replaced some functions.
+    pub fn walk(self, replaced: &[Function]) -> Walk {
+        match self {
+            Profile::Report => Walk::Restart,
+            _ if Team::of(Function::Descend, self, replaced).is_some() => Walk::Planes,
+            _ => Walk::Boxes,
+        }
     }
 }
 
@@ -151,47 +170,47 @@ macro_rules! functions {
 
 functions! {
     /// A work item: receives a pixel's ray, sends its colour.
-    Pixel "pixel" Core Always { Vector "vector/pixel.s" }
+    Pixel "pixel" Core Always { Report "report/pixel.s" Vector "vector/pixel.s" }
     /// Walks the tree of a pixel's rays.
-    RayTree "ray_tree" Core Tree { Vector "vector/ray_tree.s" }
+    RayTree "ray_tree" Core Tree { Report "report/ray_tree.s" Vector "vector/ray_tree.s" }
     /// What a ray adds to its pixel.
-    Contribution "contribution" Core Always { Vector "vector/contribution.s" }
+    Contribution "contribution" Core Always { Report "report/contribution.s" Vector "vector/contribution.s" }
     /// Follows a ray to its nearest hit.
-    Trace "trace" Core Always { Vector "vector/trace.s" }
+    Trace "trace" Core Always { Report "report/trace.s" Vector "vector/trace.s" }
     /// Tests the triangles of a packet.
-    Packet "packet" Core Always { Vector "vector/packet.s" }
+    Packet "packet" Core Always { Report "report/packet.s" Vector "vector/packet.s" }
     /// Ray against triangle.
-    Triangle "triangle" Core Always { Vector "vector/triangle.s" Ray "ray/triangle.s" }
+    Triangle "triangle" Core Always { Report "report/triangle.s" Vector "vector/triangle.s" Ray "ray/triangle.s" }
     /// The packet after the current one.
-    NextPacket "next_packet" Core Always { Vector "vector/next_packet.s" }
+    NextPacket "next_packet" Core Always { Report "report/next_packet.s" Vector "vector/next_packet.s" }
     /// The plane through which the ray leaves a packet.
-    ExitFace "exit_face" Core Always { Vector "vector/exit_face.s" Ray "ray/exit_face.s" }
+    ExitFace "exit_face" Core Always { Report "report/exit_face.s" Vector "vector/exit_face.s" Ray "ray/exit_face.s" }
     /// Down the tree to a packet.
-    Descend "descend" Both Always { Vector "vector/descend.s" }
+    Descend "descend" Both Always { Report "report/descend.s" Vector "vector/descend.s" }
     /// The packet in which a secondary ray starts.
-    OwnPacket "own_packet" Core Always { Vector "vector/own_packet.s" }
+    OwnPacket "own_packet" Core Always { Report "report/own_packet.s" Vector "vector/own_packet.s" }
     /// Point, normal and material of the hit.
-    Surface "surface" Core Always { Vector "vector/surface.s" }
+    Surface "surface" Core Always { Report "report/surface.s" Vector "vector/surface.s" }
     /// Unit normal of the nearest triangle.
-    Normal "normal" Core Always { Vector "vector/normal.s" }
+    Normal "normal" Core Always { Report "report/normal.s" Vector "vector/normal.s" }
     /// Unit vector in a direction.
-    Unit "unit" Both Always { Vector "vector/unit.s" }
+    Unit "unit" Both Always { Report "report/unit.s" Vector "vector/unit.s" }
     /// Square root.
-    Sqrt "sqrt" Both Always { Vector "vector/sqrt.s" }
+    Sqrt "sqrt" Both Always { Report "report/sqrt.s" Vector "vector/sqrt.s" }
     /// Whitted's local term.
-    Shade "shade" Core Always { Vector "vector/shade.s" }
+    Shade "shade" Core Always { Report "report/shade.s" Vector "vector/shade.s" }
     /// Whether a ray is reflected.
-    Reflects "reflects" Core Tree { Vector "vector/reflects.s" }
+    Reflects "reflects" Core Tree { Report "report/reflects.s" Vector "vector/reflects.s" }
     /// The reflected ray.
-    Reflect "reflect" Core Tree { Vector "vector/reflect.s" }
+    Reflect "reflect" Core Tree { Report "report/reflect.s" Vector "vector/reflect.s" }
     /// Whether a ray is refracted.
-    Refracts "refracts" Core Glass { Vector "vector/refracts.s" }
+    Refracts "refracts" Core Glass { Report "report/refracts.s" Vector "vector/refracts.s" }
     /// The refracted ray.
-    Refract "refract" Core Glass { Vector "vector/refract.s" }
+    Refract "refract" Core Glass { Report "report/refract.s" Vector "vector/refract.s" }
     /// Makes the camera rays and feeds the cores.
     Dispatch "dispatch" Main Always { Vector "vector/dispatch.s" }
     /// The first packet of a camera ray.
-    FirstPacket "first_packet" Main Always { Vector "vector/first_packet.s" }
+    FirstPacket "first_packet" Main Always { Report "report/first_packet.s" Vector "vector/first_packet.s" }
 }
 
 impl Function {

@@ -35,6 +35,8 @@ pub(crate) fn structure(text: &mut String, structure: &Structure) {
 /// How a program remembers the far sides of its walks through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Walk {
+    /// Not at all: each walk starts at the root.
+    Restart,
     /// Nodes with boxes, the last one by axis.
     Boxes,
     /// Planes, the last one first.
@@ -58,6 +60,7 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main
     text.push_str(STRUCTURES);
     text.push_str(".buffer\n");
     text.push_str(match walk {
+        Walk::Restart => "NODE: .space 2 * sizeof(node)\n",
         Walk::Boxes => BOXES,
         Walk::Planes => PLANES,
     });
@@ -66,7 +69,7 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main
     if is_main {
         camera(&mut text, &image.camera)
     } else {
-        core(&mut text, image, features)
+        core(&mut text, image, features, walk)
     }
     text.push_str(".text\n");
     text
@@ -87,7 +90,8 @@ fn largest_packet(image: &Image) -> usize {
 }
 
 fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
-    let Constants { formats, edge_shift, t_shift, offset, never, missed, most_steps } = Constants::new(image);
+    let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
+        Constants::new(image);
     vec![
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
@@ -95,6 +99,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("EDGE_SHIFT", edge_shift.into()),
         ("T_SHIFT", t_shift.into()),
         ("OFFSET", offset.into()),
+        ("LITERAL_OFFSET", literal_offset.into()),
         ("NEVER", never.into()),
         ("MISSED", missed.into()),
         ("MOST_STEPS", most_steps.into()),
@@ -140,12 +145,13 @@ NODE: .space 2 * sizeof(node)
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
-fn core(text: &mut String, image: &Image, features: &Features) {
+fn core(text: &mut String, image: &Image, features: &Features, walk: Walk) {
     text.push_str(
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
     );
-    if features.has_tree() {
+    // The profile that walks from the root brings nodes of its own.
+    if features.has_tree() && walk != Walk::Restart {
         text.push_str("NODES: .space (BOUNCES + 1) * sizeof(raynode)\n");
     }
     let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));
@@ -225,7 +231,7 @@ fn camera(text: &mut String, camera: &RawCamera) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub fn included(layout: Layout) -> [Arc<Source>; 3] {
+pub fn included(layout: Layout) -> [Arc<Source>; 4] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -235,7 +241,7 @@ pub fn included(layout: Layout) -> [Arc<Source>; 3] {
         Layout::Report => file!("report.inc"),
         Layout::Wide => file!("wide.inc"),
     };
-    [file!("registers.inc"), file!("materials.inc"), structures]
+    [file!("registers.inc"), file!("materials.inc"), file!("scalar.inc"), structures]
 }
 
 /// Assembles files one after the other as one program; `name` stands for the program in messages.

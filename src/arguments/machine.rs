@@ -14,7 +14,7 @@ pub struct MachineArguments {
     /// Number of cores, 1 to 256 [default: the machine's, 4].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
     pub cores: Option<u32>,
-    /// Structures of global memory [default: wide].
+    /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = layout())]
     pub layout: Option<Layout>,
 }

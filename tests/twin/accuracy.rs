@@ -44,6 +44,7 @@ pub fn full(word: u32) -> Constants {
         edge_shift: 2 * (word - 1) + direction + 3 - 2 * word,
         t_shift: 3 * (word - 1) + 3 - 2 * word,
         offset: 3,
+        literal_offset: 3,
         never: largest - 1,
         missed: largest,
         most_steps: 2,

@@ -9,7 +9,7 @@ use isa::diagnostic::Source;
 use isa::{Isa, Program};
 use kernels::Function;
 use kernels::build::Crop;
-use kernels::prelude::{self, Walk};
+use kernels::prelude;
 
 use super::Subject;
 
@@ -64,8 +64,6 @@ impl Place {
 pub struct Experiment {
     /// Functions of the subject's profile that take part.
     pub functions: &'static [Function],
-    /// Files that serve others: name and text.
-    pub files: &'static [(&'static str, &'static str)],
     /// Operands, in the order of a case's words; those of the buffer come first.
     pub operands: &'static [Place],
     /// What is done with them; s31 is not to be changed.
@@ -86,12 +84,12 @@ impl<'a> Bench<'a> {
     pub fn new(subject: &'a Subject, experiment: &Experiment) -> Bench<'a> {
         let cases_at = (subject.image.bytes.len() as u32).next_multiple_of(16);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
-        let walk = if subject.profile.walks_with_planes(&[]) { Walk::Planes } else { Walk::Boxes };
+        let walk = subject.profile.walk(&[]);
         let scene = prelude::text(&subject.image, &subject.features, &crop, walk, false);
         let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", scene)];
         files.extend(prelude::included(subject.image.layout));
         let own = experiment.functions.iter().filter_map(|function| function.file(subject.profile, &[]));
-        files.extend(own.chain(experiment.files.iter().copied()).map(|(name, text)| Source::new(name, text)));
+        files.extend(own.map(|(name, text)| Source::new(name, text)));
         files.push(Source::new("<driver>", driver(experiment, cases_at)));
         let assembled = prelude::assemble("<bench>", &files, &Isa::base())
             .unwrap_or_else(|report| panic!("{}", report.render(false)));

@@ -10,7 +10,6 @@ use kernels::twin::exit_face::exit_face;
 use kernels::twin::first_packet::first_packet;
 use kernels::twin::planes::Packets;
 use kernels::twin::ray::{Exit, Packet, Ray, Search};
-use kernels::twin::report;
 use kernels::twin::triangle::triangle;
 use kernels::twin::unit::{sqrt, unit};
 use kernels::{Function, Profile};
@@ -37,15 +36,27 @@ pub(super) const MODES: [Modes; 5] = [
     Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap },
 ];
 
-const REPORT_SQRT: &[(&str, &str)] = &[("report/sqrt.s", include_str!("../../kernels/asm/report/sqrt.s"))];
-
-const REPORT_TRIANGLE: &[(&str, &str)] = &[("report/triangle.s", include_str!("../../kernels/asm/report/triangle.s"))];
-
 /// A generated scene with a small picture.
 pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
     let size = (8, 6);
     let scene = generate::scene(name, &generate::Options { level, size, triangles: None }).expect("a generated scene");
     Subject::new(scene, View::new(size), modes, image::Options::default()).expect("a scene that fits the word")
+}
+
+fn runner() -> TestRunner {
+    let config = Config { cases: 12, failure_persistence: None, ..Config::default() };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &SEED))
+}
+
+/// Something that holds in all random cases.
+pub(super) fn for_all(cases: impl Strategy<Value = Vec<i32>>, law: impl Fn(&[i32])) {
+    let outcome = runner().run(&prop::collection::vec(cases, 1..250), |cases| {
+        cases.iter().for_each(|case| law(case));
+        Ok(())
+    });
+    if let Err(failure) = outcome {
+        panic!("{failure}\nseed {SEED:?}");
+    }
 }
 
 /// Runs the experiment on random cases and compares each result with the twin's.
@@ -56,9 +67,7 @@ pub(super) fn agree(
     twin: impl Fn(&[i32]) -> Vec<i32>,
 ) {
     let bench = Bench::new(subject, experiment);
-    let config = Config { cases: 12, failure_persistence: None, ..Config::default() };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &SEED));
-    let outcome = runner.run(&prop::collection::vec(cases, 1..250), |cases| {
+    let outcome = runner().run(&prop::collection::vec(cases, 1..250), |cases| {
         for (case, machine) in cases.iter().zip(bench.run(&cases)) {
             prop_assert_eq!(machine, twin(case), "machine and twin at {:?} in {:?}", case, subject.modes);
         }
@@ -92,12 +101,11 @@ fn square_roots() {
     let operands = &[Place::Wide("w0")];
     let results = &[Place::Scalar("s12")];
     let body = "    call link_leaf, sqrt\n";
-    let vector = Experiment { functions: &[Function::Sqrt], files: &[], operands, body, results };
-    let report = Experiment { functions: &[], files: REPORT_SQRT, operands, body, results };
+    let experiment = Experiment { functions: &[Function::Sqrt], operands, body, results };
     for modes in MODES {
-        let subject = subject("slabs", Some(4), modes);
-        for experiment in [&vector, &report] {
-            agree(&subject, experiment, squares(modes.word).prop_map(wide_words), |case| {
+        for profile in [Profile::Vector, Profile::Report] {
+            let subject = subject("slabs", Some(4), modes).with(profile);
+            agree(&subject, &experiment, squares(modes.word).prop_map(wide_words), |case| {
                 let (square, root) = (i128::from(wide(case)), sqrt(&modes, wide(case)));
                 let twice = 2 * i128::from(root);
                 assert!((twice - 1) * (twice - 1).max(0) <= 4 * square, "{root} is too large for {square}");
@@ -112,7 +120,6 @@ fn square_roots() {
 fn units() {
     let experiment = Experiment {
         functions: &[Function::Unit, Function::Sqrt],
-        files: &[],
         operands: &[Place::Vector("v6")],
         body: "    call link_step, unit\n",
         results: &[Place::Vector("v6")],
@@ -147,7 +154,7 @@ pub(super) fn triangle_and_ray(word: u32) -> impl Strategy<Value = Vec<i32>> {
     )
 }
 
-const CORNERS_AND_RAY: &[Place] = &[
+pub(super) const CORNERS_AND_RAY: &[Place] = &[
     Place::Triple("SLOT + triangle.v0"),
     Place::Triple("SLOT + triangle.v1"),
     Place::Triple("SLOT + triangle.v2"),
@@ -159,28 +166,19 @@ const CORNERS_AND_RAY: &[Place] = &[
 fn triangles() {
     let body = "    movi slot, SLOT\n    call link_step, triangle\n";
     let (operands, results) = (CORNERS_AND_RAY, &[Place::Scalar("s12")]);
-    let exact = Experiment { functions: &[Function::Triangle], files: &[], operands, body, results };
-    let literal = Experiment { functions: &[], files: REPORT_TRIANGLE, operands, body, results };
+    let experiment = Experiment { functions: &[Function::Triangle], operands, body, results };
     for modes in MODES {
         let subject = subject("slabs", Some(4), modes);
         let constants = Constants::new(&subject.image);
-        let parts = |case: &[i32]| {
+        agree(&subject, &experiment, triangle_and_ray(modes.word), |case| {
             let ray = Ray::new(&modes, vector(case, 9), vector(case, 12));
-            ([0, 3, 6].map(|at| vector(case, at)), ray)
-        };
-        agree(&subject, &exact, triangle_and_ray(modes.word), |case| {
-            let (corners, ray) = parts(case);
-            vec![triangle(&modes, &constants, &ray, &corners)]
-        });
-        agree(&subject, &literal, triangle_and_ray(modes.word), |case| {
-            let (corners, ray) = parts(case);
-            vec![report::triangle(&modes, &constants, &ray, &corners)]
+            vec![triangle(&modes, &constants, &ray, &[0, 3, 6].map(|at| vector(case, at)))]
         });
     }
 }
 
 /// Two corners of a box.
-fn corners(bits: u32) -> impl Strategy<Value = [[i32; 3]; 2]> {
+pub(super) fn corners(bits: u32) -> impl Strategy<Value = [[i32; 3]; 2]> {
     (point(bits), point(bits)).prop_map(|(a, b)| [[0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k]))])
 }
 
@@ -188,7 +186,6 @@ fn corners(bits: u32) -> impl Strategy<Value = [[i32; 3]; 2]> {
 fn exit_faces() {
     let experiment = Experiment {
         functions: &[Function::ExitFace],
-        files: &[],
         operands: &[
             Place::Vector("origin"),
             Place::Vector("direction"),
@@ -217,10 +214,10 @@ fn exit_faces() {
 }
 
 /// What a packet is in registers: number of triangles, address of the references, box.
-const PACKET: &[Place] =
+pub(super) const PACKET: &[Place] =
     &[Place::Scalar("packet_count"), Place::Scalar("packet_refs"), Place::Vector("box_low"), Place::Vector("box_high")];
 
-fn packet_words(subject: &Subject, packet: Option<Packet>) -> Vec<i32> {
+pub(super) fn packet_words(subject: &Subject, packet: Option<Packet>) -> Vec<i32> {
     match packet {
         None => vec![-1, 0, 0, 0, 0, 0, 0, 0],
         Some(Packet { bounds, references }) => {
@@ -232,12 +229,12 @@ fn packet_words(subject: &Subject, packet: Option<Packet>) -> Vec<i32> {
 }
 
 /// Scenes with trees of different kinds.
-fn trees(modes: Modes) -> [Subject; 3] {
+pub(super) fn trees(modes: Modes) -> [Subject; 3] {
     [subject("slivers", Some(8), modes), subject("cornell", Some(2), modes), subject("slabs", Some(4), modes)]
 }
 
 /// A point whose coordinates are often in planes of the tree.
-fn point_of_tree(subject: &Subject) -> impl Strategy<Value = [i32; 3]> + use<> {
+pub(super) fn point_of_tree(subject: &Subject) -> impl Strategy<Value = [i32; 3]> + use<> {
     let corners: Vec<[i32; 3]> =
         subject.image.tree.nodes.iter().flat_map(|node| [node.bounds.low, node.bounds.high]).collect();
     let Bounds { low, high } = subject.image.bounds;
@@ -252,7 +249,6 @@ fn point_of_tree(subject: &Subject) -> impl Strategy<Value = [i32; 3]> + use<> {
 fn descents() {
     let experiment = Experiment {
         functions: &[Function::Descend],
-        files: &[],
         operands: &[
             Place::Vector("origin"),
             Place::Vector("direction"),
@@ -290,7 +286,6 @@ fn descents() {
 fn first_packets() {
     let experiment = Experiment {
         functions: &[Function::FirstPacket, Function::Descend],
-        files: &[],
         operands: &[Place::Vector("origin"), Place::Vector("direction")],
         body: "    mov packet_refs, s0\n    vmov box_low, zero_vector\n    vmov box_high, zero_vector\n    \
                call link_packet, first_packet\n",
@@ -313,7 +308,6 @@ fn first_packets() {
 fn next_packets() {
     let experiment = Experiment {
         functions: &[Function::NextPacket, Function::ExitFace, Function::Descend],
-        files: &[],
         operands: &[
             Place::Vector("origin"),
             Place::Vector("direction"),
@@ -360,7 +354,6 @@ fn next_packets() {
 fn walks_of_the_ray_unit() {
     let experiment = Experiment {
         functions: &[Function::OwnPacket, Function::NextPacket, Function::Descend],
-        files: &[],
         operands: &[Place::Vector("origin"), Place::Vector("direction")],
         body: "    mov near, s0\n    li near_t, NEVER\n    mov any_hit, s0\n    mov s29, s0\n    mov s30, s0\n    \
                call link_packet, own_packet\n    bltz packet_count, 2f\n1:\n    movi s12, 31\n    imul s30, s30, s12\n    \
@@ -397,7 +390,6 @@ fn walks_of_the_ray_unit() {
 fn walks() {
     let experiment = Experiment {
         functions: &[Function::OwnPacket, Function::NextPacket, Function::ExitFace, Function::Descend],
-        files: &[],
         operands: &[Place::Vector("origin"), Place::Vector("direction")],
         body: "    vabs steep, direction\n    li steps, MOST_STEPS\n    mov near, s0\n    mov any_hit, s0\n    mov s29, s0\n    \
                mov s30, s0\n    call link_packet, own_packet\nwalk_packet:\n    movi s12, 31\n    imul s30, s30, s12\n    \

@@ -193,6 +193,24 @@ fn pictures_of_the_ray_unit_in_fewer_bits() {
 }
 
 #[test]
+fn pictures_as_the_report_draws_them() {
+    let report = Setting { profile: Profile::Report, layout: Layout::Report, ..PLAIN };
+    assert_eq!(check_all(&report), 0);
+    assert_eq!(check_all(&Setting { is_perspective: true, background: 0.3, bounces: 2, ..report }), 0);
+    assert_eq!(check_all(&Setting { layout: Layout::Wide, shift: 0.0, ..report }), 0);
+}
+
+#[test]
+fn pictures_as_the_report_draws_them_in_fewer_bits() {
+    let report = Setting { profile: Profile::Report, layout: Layout::Wide, ..PLAIN };
+    assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, background: 0.7, ..report }), 0);
+    assert_eq!(check_all(&Setting { modes: word(16), layout: Layout::Report, bounces: 2, ..report }), 0);
+    assert_eq!(check_all(&Setting { modes: word(8), ..report }), 0);
+    let modes = Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap };
+    assert_eq!(check_all(&Setting { modes, is_perspective: true, ..report }), 0);
+}
+
+#[test]
 fn parts_of_pictures() {
     let view = View { shift: [0.3, 0.1], ..View::new((50, 40)) };
     let subject = Subject::new(small("cornell"), view, PLAIN.modes, image::Options::default()).expect("a small scene");

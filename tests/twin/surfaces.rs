@@ -18,7 +18,6 @@ use super::operands::{direction, point, vector, words};
 fn surfaces() {
     let experiment = Experiment {
         functions: &[Function::Surface, Function::Normal, Function::Unit, Function::Sqrt],
-        files: &[],
         operands: &[
             Place::Triple("NEAR_SLOT + triangle.v0"),
             Place::Triple("NEAR_SLOT + triangle.v1"),
@@ -60,7 +59,6 @@ fn surface(twin: &Twin<Modes>) -> Surface {
 fn reflected_rays() {
     let experiment = Experiment {
         functions: &[Function::Reflect, Function::OwnPacket, Function::Descend],
-        files: &[],
         operands: &[
             Place::Vector("point"),
             Place::Vector("facing"),
@@ -86,7 +84,6 @@ fn reflected_rays() {
 fn weights_of_children() {
     let experiment = Experiment {
         functions: &[Function::Refracts, Function::Reflects],
-        files: &[],
         operands: &[
             Place::Word("MATERIALS + material.reflection"),
             Place::Word("MATERIALS + material.transmission"),
@@ -134,7 +131,6 @@ fn weights_of_children() {
 fn refracted_rays() {
     let experiment = Experiment {
         functions: &[Function::Refract, Function::OwnPacket, Function::Descend, Function::Sqrt],
-        files: &[],
         operands: &[
             Place::Word("NODES + raynode.k"),
             Place::Word("NODES + raynode.eta"),

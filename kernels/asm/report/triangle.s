@@ -2,49 +2,12 @@
 ; inclusive comparisons, (1 / det) x written three times. 9 additions, 15 subtractions, 27 multiplications, 3 divisions and
 ; 7 comparisons for every input (Annex II).
 ;
-; A product of two positions is kept WORD bits lower. The determinant of a small triangle underflows, and the inverse of one below
-; 2^(INVERSE - WORD + 1) saturates: that is what one format a quantity does to this arrangement.
+; A product of two positions is kept WORD bits lower. Edges and determinant are shifted into range first, and the quotients back: a
+; cadrage (5.6), which the annex counts as little as the square root's. Without it the determinant of a small triangle would be 0.
 ;
 ; In: slot, origin, direction. Out: s12 = t, or MISSED. Returns by link_step. Scratch: s12, s17, s18, v6 to v17.
 
-.equ INVERSE, 3 * WORD / 2 - 2          ; fraction bits of 1 / det beyond those of a determinant
-
-; \d = \a - \b
-.macro subtract d, a, b
-  .rept 3, k
-    vget  s17, \a, k
-    vget  s18, \b, k
-    sub   s17, s17, s18
-    vput  \d, s17, k
-  .endr
-.endm
-
-; s12 = \a . \b
-.macro dot_product a, b, shift
-    vget  s12, \a, x
-    vget  s17, \b, x
-    mul   s12, s12, s17, \shift
-  .rept 2, k
-    vget  s17, \a, k + 1
-    vget  s18, \b, k + 1
-    mul   s17, s17, s18, \shift
-    add   s12, s12, s17
-  .endr
-.endm
-
-; \d = \a x \b
-.macro cross_product d, a, b, shift
-  .rept 3, k
-    vget  s12, \a, (k + 1) % 3
-    vget  s17, \b, (k + 2) % 3
-    mul   s12, s12, s17, \shift
-    vget  s17, \a, (k + 2) % 3
-    vget  s18, \b, (k + 1) % 3
-    mul   s17, s17, s18, \shift
-    sub   s12, s12, s17
-    vput  \d, s12, k
-  .endr
-.endm
+.equ INVERSE, 2 * WORD - 5              ; fraction bits of 1 / det beyond those of a determinant
 
 ; s12 = (1 / det) s12. Scratch: s17, s18.
 .macro over_determinant shift
@@ -54,22 +17,43 @@
     mul   s12, s17, s12, \shift
 .endm
 
+; s12, shifted as what stands in lane \lane of v14. Scratch: s17.
+.macro shift_with lane
+    vget  s17, v14, \lane
+    scale s12, s12, s17
+.endm
+
+; \d = \a, shifted into range; by how much goes to lane \lane of v14. Scratch: s17.
+.macro shift_into_range d, a, lane
+    vnorm \d, s17, \a
+    vput  v14, s17, \lane
+.endm
+
 .func triangle
     load_triangle slot
     subtract v7, v7, v6                 ; E1
     subtract v8, v8, v6                 ; E2
     subtract v9, origin, v6             ; T
+    shift_into_range v7, v7, x
+    shift_into_range v8, v8, y
     cross_product v10, direction, v8, dir   ; P = D x E2
     cross_product v11, v9, v7, WORD     ; Q = T x E1
     dot_product v10, v7, WORD
-    vput  v12, s12, x                   ; det = P . E1
+    vmov  v12, zero_vector
+    vput  v12, s12, x
+    shift_into_range v12, v12, z        ; det = P . E1
     dot_product v10, v9, WORD
+    shift_with z
+    shift_with x
     over_determinant INVERSE - bary
     vput  v13, s12, x                   ; u = (1 / det) P . T
     dot_product v11, direction, dir
+    shift_with z
+    shift_with y
     over_determinant INVERSE - bary
     vput  v13, s12, y                   ; v = (1 / det) Q . D
     dot_product v11, v8, WORD
+    shift_with z
     over_determinant INVERSE - WORD - t + pos
     vput  v13, s12, z                   ; t = (1 / det) Q . E2
 

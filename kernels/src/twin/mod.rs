@@ -33,6 +33,7 @@ use crate::build::{Crop, Features};
 use crate::constants::Constants;
 use crate::function::Profile;
 use ray::Stuck;
+use ray_tree::Branch;
 use stage::Stage;
 
 /// All that the twins of a scene's kernels share.
@@ -132,12 +133,24 @@ impl<A: Arithmetic> Twin<A> {
     fn row(&self, crop: &Crop, row: u32) -> Result<Vec<Vector>, Failure> {
         let mut branches = Vec::new();
         let pixels = (0..crop.width).map(|column| {
-            let bits = self.constants.formats.direction;
-            let ray = camera::camera(&self.arithmetic, bits, &self.camera, crop.column + column, crop.row + row);
-            let first = first_packet::first_packet(&self.arithmetic, &self.stage, &ray);
-            self.ray_tree(ray, first, &mut branches)
-                .map_err(|Stuck| Failure::Stuck { pixel: row * crop.width + column })
+            let pixel = |Stuck| Failure::Stuck { pixel: row * crop.width + column };
+            self.pixel(crop.column + column, crop.row + row, &mut branches).map_err(pixel)
         });
         pixels.collect()
+    }
+
+    /// The colour of a pixel. `branches` is room that pixels may share.
+    fn pixel(&self, column: u32, row: u32, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
+        let (arithmetic, bits) = (&self.arithmetic, self.constants.formats.direction);
+        let unit = |vector| match self.profile {
+            Profile::Report => report::unit(arithmetic, bits, vector),
+            Profile::Vector | Profile::Ray => unit::unit(arithmetic, bits, vector),
+        };
+        let ray = camera::camera(arithmetic, unit, &self.camera, column, row);
+        if self.profile == Profile::Report {
+            let first = report::first_packet(arithmetic, &self.constants, &self.stage, &ray);
+            return self.literal_ray_tree(ray, first);
+        }
+        self.ray_tree(ray, first_packet::first_packet(arithmetic, &self.stage, &ray), branches)
     }
 }

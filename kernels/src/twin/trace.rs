@@ -8,6 +8,7 @@ use super::exact_triangle::exact_triangle;
 use super::exit_face::exit_face;
 use super::first_packet::first_packet;
 use super::ray::{Packet, Ray, Search, Stuck};
+use super::report;
 use super::triangle::triangle;
 use crate::function::Profile;
 
@@ -32,6 +33,7 @@ impl<A: Arithmetic> Twin<A> {
     /// profile `ray` looks.
     pub fn own_packet(&self, ray: &Ray) -> Option<Packet> {
         match self.profile {
+            Profile::Report => Some(report::own_packet(&self.stage, ray)),
             Profile::Vector => Some(own_packet(&self.arithmetic, &self.stage, ray)),
             Profile::Ray => first_packet(&self.arithmetic, &self.stage, ray),
         }
@@ -40,19 +42,23 @@ impl<A: Arithmetic> Twin<A> {
     /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
     pub fn triangle(&self, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
         match self.profile {
+            Profile::Report => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
             Profile::Vector => triangle(&self.arithmetic, &self.constants, ray, vertices),
             Profile::Ray => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
         }
     }
 
-    /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index.
+    /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index; the profile `report` tests all and
+    /// keeps the first of equal hits.
     pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
+        let is_literal = self.profile == Profile::Report;
         for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
             let vertices = &self.stage.triangles[index as usize].vertices;
             let t = self.triangle(ray, vertices);
-            if t < search.t || t == search.t && search.triangle.is_some_and(|nearest| index < nearest) {
+            let has_lower_index = || !is_literal && search.triangle.is_some_and(|nearest| index < nearest);
+            if t < search.t || t == search.t && has_lower_index() {
                 (search.t, search.triangle) = (t, Some(index));
-                if search.takes_any {
+                if search.takes_any && !is_literal {
                     return;
                 }
             }
@@ -64,6 +70,9 @@ impl<A: Arithmetic> Twin<A> {
     pub fn next_packet(&self, ray: &Ray, packet: &Packet, search: &Search) -> Option<Packet> {
         if search.takes_any && search.triangle.is_some() {
             return None;
+        }
+        if self.profile == Profile::Report {
+            return report::next_packet(&self.arithmetic, &self.constants, &self.stage, ray, packet, search);
         }
         let exit = exit_face(&self.arithmetic, ray, &packet.bounds);
         if search.takes_any || search.triangle.is_some() {

@@ -1,0 +1,33 @@
+; The refracted ray, T = eta (D + c N) - sqrt(k) N with eta = ni / nt, c = N . I and k = 1 - eta^2 (1 - c^2): as the third line of 4.2
+; has it, the last one corrected. k < 0 is total reflection: there is no ray.
+; In: the ray, its hit (near_t, near_slot) and inside. Out: s12 = k or, when k >= 0, something positive; then origin and direction.
+; Returns by link_node. Scratch: what surface needs, v9.
+.func refract
+    call  link_trace, surface
+    lw    s12, MATERIAL_AT(s0)
+    lw    s13, material.index(s12)
+    li    s14, 1 << index
+    beqz  inside, 1f
+    div   s15, s13, s14, index          ; out of the body
+    jump  2f
+1:  div   s15, s14, s13, index          ; into it
+2:  vput  v9, s15, x
+    li    s14, 1:dir
+    mul   s12, cosine, cosine, dir
+    sub   s12, s14, s12
+    mul   s12, s12, s15, dir
+    mul   s12, s12, s15, index + index - dir
+    sub   s12, s14, s12
+    bltz  s12, 3f
+    wextend w0, s12, dir
+    call  link_leaf, sqrt
+    scale_vector v7, facing, cosine, dir
+    scale_vector v8, facing, s12, dir
+    add_vectors v7, direction, v7
+    vget  s12, v9, x
+    scale_vector v7, v7, s12, index
+    subtract direction, v7, v8
+    vmov  origin, behind
+    movi  s12, 1
+3:  ret   link_node
+.endfunc

@@ -1,0 +1,35 @@
+; The point that was hit, moved off the surface to both sides, the normal there, and the material.
+; In: origin, direction, near_t, near_slot. Out: point, behind, facing, cosine >= 0, material. Returns by link_trace.
+; Scratch: s12 to s15, s17, s18, v6 to v8, w0 to w5.
+.func surface
+    call  link_packet, normal
+    dot_product facing, direction, dir
+    blez  s12, 1f
+  .rept 3, k
+    vget  s17, facing, k
+    neg   s17, s17
+    vput  facing, s17, k
+  .endr
+    mov   cosine, s12
+    jump  2f
+1:  neg   cosine, s12
+2:  scale_vector v6, direction, near_t, t + dir - pos
+    add_vectors v6, origin, v6
+    ; The distance is not exact, so the point may lie on the wrong side: it moves along the normal's major axis by more than that error.
+    vmajor s12, facing
+    vgetr s13, facing, s12
+    vgetr s14, v6, s12
+    movi  s15, LITERAL_OFFSET
+    bgez  s13, 3f
+    movi  s15, -LITERAL_OFFSET
+3:  add   s13, s14, s15
+    vmov  point, v6
+    vputr point, s13, s12
+.if HAS_GLASS
+    sub   s13, s14, s15
+    vmov  behind, v6
+    vputr behind, s13, s12
+.endif
+    load_material
+    ret   link_trace
+.endfunc

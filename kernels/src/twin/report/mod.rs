@@ -1,0 +1,14 @@
+//! The twins of the profile `report`: the functions as the report writes them, in scalar operations, each rounded to a word.
+
+mod crossing;
+mod scalar;
+mod shade;
+mod surface;
+mod tree;
+mod triangle;
+mod walk;
+
+pub use crossing::{Exit, exit_face, first_packet};
+pub use surface::{Refraction, normal, reflect, refract, sides, unit};
+pub use triangle::triangle;
+pub use walk::{descend, next_packet, own_packet};

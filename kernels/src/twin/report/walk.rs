@@ -1,0 +1,54 @@
+//! From packet to packet by the rounded point where the ray leaves (report 5.3.4).
+
+use isa::number::Vector;
+
+use super::crossing::exit_face;
+use crate::constants::Constants;
+use crate::twin::lanes::Lanes;
+use crate::twin::ray::{Packet, Ray, Search};
+use crate::twin::stage::{Node, Stage};
+
+/// From the root down to the packet that has a point; in the plane of a split the ray's direction decides.
+pub fn descend(stage: &Stage, ray: &Ray, point: Vector) -> Packet {
+    let mut bounds = stage.bounds;
+    let mut number = 0;
+    loop {
+        let (axis, at, left) = match stage.nodes[number as usize] {
+            Node::Inner { axis, at, left } => (axis, at, left),
+            Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
+        };
+        if point[axis] > at || point[axis] == at && !ray.is_backwards(axis) {
+            bounds.low[axis] = at;
+            number = left + 1;
+        } else {
+            bounds.high[axis] = at;
+            number = left;
+        }
+    }
+}
+
+/// The packet in which a ray starts that starts inside the scene's box.
+pub fn own_packet(stage: &Stage, ray: &Ray) -> Packet {
+    descend(stage, ray, ray.origin)
+}
+
+/// The packet after the current one; `None` when the search is over: the ray leaves the scene, or the nearest hit is nearer than the exit.
+pub fn next_packet(
+    arithmetic: &impl Lanes,
+    constants: &Constants,
+    stage: &Stage,
+    ray: &Ray,
+    packet: &Packet,
+    search: &Search,
+) -> Option<Packet> {
+    let exit = exit_face(arithmetic, constants, ray, &packet.bounds);
+    if (search.takes_any || search.triangle.is_some()) && search.t < exit.t {
+        return None;
+    }
+    let outer = match exit.axis {
+        3 => 0,
+        axis if ray.is_backwards(axis) => stage.bounds.low[axis],
+        axis => stage.bounds.high[axis],
+    };
+    (outer != exit.plane).then(|| descend(stage, ray, exit.point))
+}

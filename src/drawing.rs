@@ -3,13 +3,11 @@
 
 use std::time::{Duration, Instant};
 
-use emu::machine::{self, Frame, Setup};
-use emu::octets::Memory;
-use isa::Isa;
+use emu::machine::{self, Frame};
 use isa::diagnostic::Report;
 use kernels::build::{Build, Crop};
 use rayon::prelude::*;
-use scenes::image::{self, Image, Kind};
+use scenes::image::{Image, Kind};
 use scenes::layout::PIXEL;
 use scenes::metrics::{self, PictureError};
 use scenes::model::Picture;
@@ -17,6 +15,7 @@ use scenes::reference::{Method, Reference};
 
 use crate::failure::Failure;
 use crate::job::Job;
+use crate::load::Load;
 
 /// Whether a picture is measured against double precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,27 +68,17 @@ pub struct Drawing {
 /// A scene that does not fit its formats, errors in the user's kernels, a machine out of its ranges, a trap.
 pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) -> Result<Drawing, Failure> {
     let start = Instant::now();
-    let isa = Isa::base();
-    let mut image = image::build(&job.scene, &job.view, &job.memory)?;
-    let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
+    let (load, image) = Load::picture(job)?;
     let reference = match comparison {
         Comparison::Reference => Some(Reference::new(&job.scene, &job.view, Method::Hierarchy)?),
         Comparison::None => None,
     };
-    let crop = build.crop;
+    let crop = load.build.crop;
     let built = Instant::now();
-    let setup = Setup {
-        config: &job.machine,
-        isa: &isa,
-        core: &build.cores,
-        main: &build.main,
-        kinds: image.regions.iter().map(|(kind, range)| (range.clone(), kind.name().to_owned())).collect(),
-        options: machine::Options { has_profile: true, has_items: true },
-    };
-    let memory = Memory::new(std::mem::take(&mut image.bytes));
+    let setup = load.setup(&job.machine, machine::Options { has_profile: true, has_items: true, window: None });
     let (frame, reference) = std::thread::scope(|scope| {
         let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
-        let frame = timed(|| machine::run(&setup, memory, progress));
+        let frame = timed(|| machine::run(&setup, load.memory.clone(), progress));
         (frame, beside.join().expect("the reference does not panic"))
     });
     let (frame, run) = frame;
@@ -98,6 +87,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let words = colour_words(&image, &frame, &crop);
     let picture = picture(&image, &words, (crop.width, crop.height));
     let error = reference.as_ref().and_then(|reference| metrics::compare(&picture, reference));
+    let build = load.build;
     let warnings = build.warnings.clone();
     let times = Times { build: built - start, run, reference: reference_time };
     Ok(Drawing { image, build, frame, crop, words, picture, reference, error, warnings, times })

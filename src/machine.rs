@@ -3,26 +3,10 @@
 use std::path::Path;
 
 use emu::machine::Config;
+use emu::machine::preset::PRESETS;
 use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 
 use crate::files;
-
-/// A machine that is known by name.
-#[derive(Clone, Copy, Debug)]
-pub struct Preset {
-    /// What the user types.
-    pub name: &'static str,
-    /// One line on what it is.
-    pub description: &'static str,
-    make: fn() -> Config,
-}
-
-/// All presets, the default first.
-pub const PRESETS: &[Preset] = &[Preset {
-    name: DEFAULT,
-    description: "the report's: four cores at 100 MHz, one clock an elementary operation, a bus of an octet in two clocks",
-    make: Config::default,
-}];
 
 /// Name of the machine that runs when the user names none.
 pub const DEFAULT: &str = "report";
@@ -33,7 +17,7 @@ pub const DEFAULT: &str = "report";
 /// A name that is neither, and what is wrong in the file.
 pub fn find(name: &str) -> Result<(String, Config), Report> {
     if let Some(preset) = PRESETS.iter().find(|preset| preset.name == name) {
-        return Ok((preset.name.to_owned(), (preset.make)()));
+        return Ok((preset.name.to_owned(), preset.config()));
     }
     let path = Path::new(name);
     let is_file = path.exists() || path.extension().is_some() || name.contains(std::path::is_separator);
@@ -52,29 +36,64 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     Ok((stem, config))
 }
 
-/// What each key means, with its unit, range and source; `[section]` describes what follows.
+/// What each key means, with its unit, range and where its default comes from; `[section]` describes what follows.
 const COMMENTS: &[(&str, &str)] = &[
     ("cores", "cores, 1 to 256, the main processor not counted (report 6.1: 4)"),
     ("clock_hz", "clock rate in hertz; it turns clocks into seconds and changes nothing else (report 6.1: 100 MHz)"),
     ("buffer_octets", "octets of each core's local buffer (report 6.2: the sum of the list is 18,525)"),
-    ("step_limit", "instructions that a pixel may take"),
+    ("step_limit", "instructions that a pixel may take (ours: thousands of times what one takes)"),
     ("[arithmetic]", "how results are rounded and what happens when they do not fit"),
-    ("arithmetic.word", "bits of a word, 8 to 32"),
-    ("arithmetic.quantization", "rounding by its IEEE 1666 name; RND is to nearest, ties up"),
-    ("arithmetic.overflow", "overflow by its IEEE 1666 name; SAT gives the nearest number that fits"),
-    ("arithmetic.trap_division_by_zero", "whether a division by zero stops the machine instead of saturating"),
-    ("[clocks]", "clocks of an operation, by class (report 6.1: one for an elementary operation)"),
-    ("[units]", "operations of a class that run at once"),
-    ("[bus]", "the shared bus; a transfer takes setup_clocks + ceil(octets / octets_per_beat) * clocks_per_beat"),
+    ("arithmetic.word", "bits of a word, 8 to 32 (ours: 32; the report multiplies in 32 masked steps)"),
+    ("arithmetic.quantization", "rounding by its IEEE 1666 name (ours: RND, to nearest, ties up; the report has none)"),
+    (
+        "arithmetic.overflow",
+        "overflow by its IEEE 1666 name (ours: SAT, the nearest number that fits; the report has none)",
+    ),
+    (
+        "arithmetic.trap_division_by_zero",
+        "whether a division by zero stops the machine instead of saturating (ours: no)",
+    ),
+    (
+        "[clocks]",
+        "clocks of an operation, by class (report 6.1: 1 for add, sub, mul, div and cmp; what it does not count takes 0)",
+    ),
+    ("[units]", "operations of a class that run at once (report 6.1: one)"),
+    ("[bus]", "the shared bus; a burst takes setup_clocks + ceil(octets / octets_per_beat) * clocks_per_beat"),
     ("bus.octets_per_beat", "octets that go over it at once (report 6.1: 1)"),
     ("bus.clocks_per_beat", "clocks for that (report 6.1: 2)"),
-    ("bus.setup_clocks", "clocks before the first beat of a transfer"),
-    ("bus.arbiter", "who gets the bus next: round-robin"),
+    ("bus.setup_clocks", "clocks before the first beat of a burst (report 6.1: none)"),
+    (
+        "bus.burst_octets",
+        "octets of the longest burst, 0 for no limit (report 6.1: no limit); a longer transfer asks again after each burst",
+    ),
+    (
+        "bus.overlap",
+        "whether a core goes on during its block load, up to its next transfer, message or end (report 6.1: it adds both up)",
+    ),
+    (
+        "bus.arbiter",
+        "who gets the bus next: fixed-priority, round-robin, weighted, oldest-first or tdma (ours; the report has none)",
+    ),
+    (
+        "bus.weights",
+        "weighted: bursts a turn of each master, the main processor after the last core (ours: 1 where the list ends)",
+    ),
+    ("bus.slot_clocks", "tdma: clocks of a master's slot, which no burst exceeds (ours: two triangles of 62)"),
+    ("[cache]", "each core's private cache for one kind of data that is only read; hits take no time"),
+    ("cache.octets", "octets of a cache, 0 for none (report 6.2: none)"),
+    ("cache.line_octets", "octets of a line, which comes over the bus whole (ours)"),
+    ("cache.kind", "kind of data that goes through it: nodes, references, triangles, materials, lights (ours)"),
     ("[main]", "the main processor, which makes the camera rays and feeds the cores"),
-    ("main.traffic", "whether its transfers and messages use the bus; otherwise they take no time"),
-    ("main.buffer_octets", "octets of its local buffer"),
-    ("main.step_limit", "instructions that its whole program may take"),
+    ("main.traffic", "whether its transfers and messages use the bus; otherwise they take no time (ours: they do)"),
+    ("main.buffer_octets", "octets of its local buffer (ours; the report has none)"),
+    ("main.step_limit", "instructions that its whole program may take (ours)"),
 ];
+
+/// What may stand for a machine, for help texts.
+pub fn named() -> String {
+    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    format!("Preset ({}) or TOML file", names.join(", "))
+}
 
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
 pub fn commented(name: &str, config: &Config) -> String {
@@ -126,6 +145,8 @@ mod tests {
             assert!(pair[0].starts_with('#') || is_class, "{} has no comment", pair[1]);
         }
         for (key, comment) in COMMENTS {
+            let has_source = key.starts_with('[') || comment.contains("(ours") || comment.contains("(report");
+            assert!(has_source, "{key} does not say where its default comes from");
             assert!(text.contains(&format!("# {comment}\n")), "{key} is no key");
         }
     }

@@ -80,6 +80,33 @@ impl Row {
     }
 }
 
+/// The report's estimate of a pixel as a load for the machine: 203,000 clocks of computing and 49,600 of transfers, in 20
+/// equal parts. Report 6.1.
+pub mod load {
+    use super::*;
+
+    /// Clocks of computing of a pixel on the report's machine.
+    pub const COMPUTING: u64 = 203_000;
+
+    /// Clocks of its transfers there.
+    pub const TRANSFER: u64 = 49_600;
+
+    /// Octets of global memory that the load reads.
+    pub const MEMORY: usize = 1_240;
+
+    /// The programs of the cores and of the main processor, for that many pixels.
+    ///
+    /// # Errors
+    /// What the assembler finds; our own programs have no errors.
+    pub fn programs(pixels: u32, isa: &Isa) -> Result<(Program, Program), Report> {
+        let (core, feed) = (file!("annex/load.s"), file!("annex/feed.s"));
+        let constant = Source::new("<pixels>", format!(".equ PIXELS, {pixels}\n"));
+        let core = prelude::assemble("<core>", &[Source::new(core.0, core.1)], isa)?;
+        let main = prelude::assemble("<main>", &[constant, Source::new(feed.0, feed.1)], isa)?;
+        Ok((core.program, main.program))
+    }
+}
+
 /// Octets of global memory that every driver is content with.
 pub const MEMORY: usize = 128 << 10;
 

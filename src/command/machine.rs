@@ -10,14 +10,14 @@ const EXAMPLES: &str = "\
 Examples:
   lancer machine
   lancer machine report > mine.toml    # then change a key, and: lancer render cornell --machine mine.toml
+  lancer machine wide32                # a 32-bit bus with bursts, three units a class
   lancer machine mine.toml             # keys that the file leaves out have the report's values";
 
 /// Prints a machine as a TOML file with every key, its unit and what it means.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct MachineArguments {
-    /// Preset (report) or TOML file.
-    #[arg(value_name = "NAME|FILE", default_value = machine::DEFAULT)]
+    #[arg(value_name = "NAME|FILE", default_value = machine::DEFAULT, help = machine::named())]
     machine: String,
 }
 

@@ -41,6 +41,8 @@ pub struct Config {
     pub units: ClassUnits,
     /// The shared bus.
     pub bus: BusConfig,
+    /// The cores' private caches.
+    pub cache: CacheConfig,
     /// The main processor.
     pub main: MainConfig,
 }
@@ -56,6 +58,7 @@ impl Default for Config {
             clocks: ClassClocks::default(),
             units: ClassUnits::default(),
             bus: BusConfig::default(),
+            cache: CacheConfig::default(),
             main: MainConfig::default(),
         }
     }
@@ -171,22 +174,83 @@ pub struct BusConfig {
     pub octets_per_beat: u64,
     /// Clocks for that; 2, "a memory access takes twice an elementary operation". Report 6.1.
     pub clocks_per_beat: u64,
-    /// Clocks before the first beat of a transfer; 0. The report has none.
+    /// Clocks before the first beat of a burst; 0. The report has none.
     pub setup_clocks: u64,
+    /// Octets of the longest burst, 0 for no limit; 0. A longer transfer asks for the bus again after each burst.
+    pub burst_octets: u64,
+    /// Whether a core goes on while its block load is on its way; no. Report 6.1 adds computing and waiting up.
+    ///
+    /// The core goes on as soon as it has asked, up to the next thing that it wants of the machine (a transfer, a
+    /// message, a barrier, its end); that begins when the load has ended. The data count as being there at once: the
+    /// buffer's other half was filled ahead, and always with the right data, so this is the most that a second buffer
+    /// can bring. Loads of single words are waited for.
+    pub overlap: bool,
     /// Who gets the bus next; round-robin.
     pub arbiter: ArbiterKind,
+    /// Bursts that a master keeps its turn for, the main processor after the last core, for the weighted arbiter; 1
+    /// where the list ends.
+    pub weights: Vec<u32>,
+    /// Clocks of a slot of the TDMA arbiter; 128. A burst is never longer than what fits a slot.
+    pub slot_clocks: u64,
 }
 
 impl Default for BusConfig {
     fn default() -> BusConfig {
-        BusConfig { octets_per_beat: 1, clocks_per_beat: 2, setup_clocks: 0, arbiter: ArbiterKind::default() }
+        BusConfig {
+            octets_per_beat: 1,
+            clocks_per_beat: 2,
+            setup_clocks: 0,
+            burst_octets: 0,
+            overlap: false,
+            arbiter: ArbiterKind::default(),
+            weights: Vec::new(),
+            slot_clocks: 128,
+        }
     }
 }
 
 impl BusConfig {
-    /// How long a transfer holds the bus.
+    /// How long a burst holds the bus.
     pub fn length(&self, octets: Octets) -> Clocks {
         Clocks(self.setup_clocks + octets.0.div_ceil(self.octets_per_beat) * self.clocks_per_beat)
+    }
+
+    /// Octets of the longest burst.
+    pub fn longest_burst(&self) -> Octets {
+        let limit = if self.burst_octets == 0 { u64::MAX } else { self.burst_octets };
+        let beats_of_slot = self.slot_clocks.saturating_sub(self.setup_clocks) / self.clocks_per_beat;
+        match self.arbiter {
+            ArbiterKind::Tdma => Octets(limit.min((beats_of_slot * self.octets_per_beat).max(1))),
+            _ => Octets(limit),
+        }
+    }
+
+    /// How long a transfer that nobody disturbs holds the bus, all its bursts together.
+    pub fn whole_length(&self, octets: Octets) -> Clocks {
+        let burst = self.longest_burst();
+        if octets <= burst {
+            return self.length(octets);
+        }
+        let whole = Clocks(self.length(burst).0 * (octets.0 / burst.0));
+        if octets.0.is_multiple_of(burst.0) { whole } else { whole + self.length(Octets(octets.0 % burst.0)) }
+    }
+}
+
+/// The private cache that each core has for one kind of data that is only read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CacheConfig {
+    /// Octets of each core's cache, 0 for none; 0. The report has none.
+    pub octets: u32,
+    /// Octets of a line, which is got whole; 64.
+    pub line_octets: u32,
+    /// Kind of data that goes through it, by the loader's name; nodes of the tree.
+    pub kind: String,
+}
+
+impl Default for CacheConfig {
+    fn default() -> CacheConfig {
+        CacheConfig { octets: 0, line_octets: 64, kind: "nodes".to_owned() }
     }
 }
 
@@ -212,6 +276,26 @@ impl Config {
     /// What operations take.
     pub fn timing(&self) -> Timing {
         Timing { clocks: self.clocks.0, units: self.units.0 }
+    }
+
+    /// Whether work items do the same on both machines, in the same clocks of computing: only cores, bus, caches and
+    /// main processor may differ.
+    pub fn computes_like(&self, other: &Config) -> bool {
+        let Config {
+            cores: _,
+            clock_hz: _,
+            buffer_octets,
+            step_limit,
+            arithmetic,
+            clocks,
+            units,
+            bus: _,
+            cache: _,
+            main: _,
+        } = self;
+        (buffer_octets, step_limit) == (&other.buffer_octets, &other.step_limit)
+            && arithmetic == &other.arithmetic
+            && (clocks, units) == (&other.clocks, &other.units)
     }
 
     /// Reads a machine file; keys that it leaves out have their defaults.
@@ -261,6 +345,19 @@ impl Config {
         check("bus.octets_per_beat", self.bus.octets_per_beat, 1, MOST_CLOCKS);
         check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
         check("bus.setup_clocks", self.bus.setup_clocks, 0, MOST_CLOCKS);
+        check("bus.burst_octets", self.bus.burst_octets, 0, MOST_BUFFER_OCTETS.into());
+        let slot = if self.bus.arbiter == ArbiterKind::Tdma {
+            self.bus.setup_clocks.saturating_add(self.bus.clocks_per_beat)
+        } else {
+            1
+        };
+        check("bus.slot_clocks", self.bus.slot_clocks, slot, 4 * MOST_CLOCKS);
+        for (master, &weight) in self.bus.weights.iter().enumerate() {
+            check(&format!("bus.weights[{master}]"), weight.into(), 1, MOST_CLOCKS);
+        }
+        check("bus.weights' length", self.bus.weights.len() as u64, 0, u64::from(MOST_CORES) + 1);
+        check("cache.octets", self.cache.octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("cache.line_octets", self.cache.line_octets.into(), 1, MOST_BUFFER_OCTETS.into());
         check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("main.step_limit", self.main.step_limit, 1, 1 << 62);
         if messages.is_empty() { Ok(()) } else { Err(Report(messages)) }

@@ -3,6 +3,9 @@
 use isa::number::Vector;
 
 use super::bus::BusUse;
+use super::cache::CacheUse;
+use super::trace::Trace;
+use super::waits::Waits;
 use crate::octets::Memory;
 use crate::profile::Profile;
 use crate::quantity::{Clocks, Octets};
@@ -47,26 +50,45 @@ pub struct Item {
 /// Octets moved to or from one kind of data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KindUse {
-    /// Name that the loader gave it, or `message`, or `other` for addresses without a name.
+    /// Name that the loader gave it, or `messages`, or `other` for addresses without a name.
     pub kind: String,
     /// Octets moved, over the bus or beside it.
     pub octets: Octets,
 }
 
+/// How a frame was run; its result does not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Work items ran by themselves, and what they did was replayed on the machine's clock.
+    Replayed,
+    /// Everything happened in the order of the machine's clock.
+    Stepped {
+        /// Why it could not be replayed; empty when stepping was asked for.
+        why: &'static str,
+    },
+}
+
 /// The result of a run of the machine.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
+    /// How it was run.
+    pub method: Method,
     /// Length of the frame: until the last processor had nothing more to do.
     pub clocks: Clocks,
     /// Each core, then the main processor.
     pub processors: Vec<ProcessorUse>,
     /// The bus.
     pub bus: BusUse,
+    /// How long each master waited for its bursts: the cores, then the main processor where it uses the bus.
+    pub waits: Vec<Waits>,
+    /// The cores' caches together. What was asked for is what was moved over the bus and beside it, without the lines
+    /// that were filled, and with what was asked of the caches.
+    pub cache: CacheUse,
     /// Octets that instructions asked to move, from the counts of the instructions.
     pub asked: Octets,
     /// Octets that were moved beside the bus because the main processor's traffic is off.
     pub aside: Octets,
-    /// Octets by kind, in the order in which the loader named them, then `message`, then `other`.
+    /// Octets by kind, in the order in which the loader named them, then `messages`, then `other`.
     pub kinds: Vec<KindUse>,
     /// Global memory at the end.
     pub memory: Memory,
@@ -80,6 +102,8 @@ pub struct Frame {
     pub main_profile: Option<Profile>,
     /// Work items in the order of their start, where a record of them was asked for.
     pub items: Vec<Item>,
+    /// What happened in the window that was asked for.
+    pub trace: Option<Trace>,
     /// Number of work items finished.
     pub item_count: u64,
 }

@@ -24,7 +24,7 @@ impl Kinds {
             kinds.ranges.push((range.clone(), number));
         }
         kinds.ranges.sort_by_key(|(range, _)| range.start);
-        kinds.message = kinds.number("message");
+        kinds.message = kinds.number("messages");
         kinds.other = kinds.number("other");
         kinds
     }
@@ -41,7 +41,7 @@ impl Kinds {
     /// Adds a transfer; one that runs over the end of a range belongs where it starts.
     pub fn add(&mut self, request: Option<Request>) {
         match request {
-            Some(Request::Transfer { address, octets }) => {
+            Some(Request::Transfer { address, octets, .. }) => {
                 let after = self.ranges.partition_point(|(range, _)| range.start <= address);
                 let found = self.ranges[..after].last().filter(|(range, _)| range.contains(&address));
                 self.totals[found.map_or(self.other, |&(_, kind)| kind)].octets += octets;
@@ -49,6 +49,18 @@ impl Kinds {
             Some(Request::Send { octets, .. }) => self.totals[self.message].octets += octets,
             _ => {}
         }
+    }
+
+    /// Adds totals of the same kinds.
+    pub fn merge(&mut self, totals: &[KindUse]) {
+        for (total, more) in self.totals.iter_mut().zip(totals) {
+            total.octets += more.octets;
+        }
+    }
+
+    /// The totals so far.
+    pub fn totals(&self) -> &[KindUse] {
+        &self.totals
     }
 
     /// The totals.

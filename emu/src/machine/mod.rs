@@ -3,32 +3,51 @@
 
 pub mod arbiter;
 pub mod bus;
+pub mod cache;
 pub mod config;
+mod ending;
 pub mod frame;
+mod independence;
 mod kinds;
+mod library;
 pub mod mailbox;
+mod meeting;
+pub mod preset;
 mod processor;
+mod recorded;
+mod recorder;
+mod recording;
+mod replay;
 mod schedule;
+mod scout;
 pub mod single;
 mod station;
+mod tape;
+pub mod trace;
+pub mod waits;
 
 use std::fmt;
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, Report};
+use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 use isa::number::Modes;
 use isa::number::Nearest32;
 use isa::{Isa, Program};
 
 pub use config::Config;
-pub use frame::{Frame, Item, KindUse, ProcessorUse};
+pub use frame::{Frame, Item, KindUse, Method, ProcessorUse};
+pub use recorded::Recorded;
+
+use trace::Window;
 
 use crate::exec::{Watch, Watching};
 use crate::octets::Memory;
-use crate::profile::{Profiler, Unobserved};
+use crate::profile::{Observer, Profiler, Unobserved};
 use crate::trap::Trap;
+use ending::Ending;
 
 /// What a machine runs.
+#[derive(Clone)]
 pub struct Setup<'a> {
     /// The machine.
     pub config: &'a Config,
@@ -51,6 +70,8 @@ pub struct Options {
     pub has_profile: bool,
     /// Each work item.
     pub has_items: bool,
+    /// What every processor and the bus do in this window of clocks.
+    pub window: Option<Window>,
 }
 
 /// Why a run has no result.
@@ -103,34 +124,141 @@ impl From<Report> for Failure {
     }
 }
 
-/// Runs a frame on a memory image: until the main processor has halted and no core has anything more to do. `progress` is called with the
-/// number of work items finished, each time one is.
+/// Runs a frame on a memory image: until the main processor has halted and no core has anything more to do. `progress`
+/// is called with the number of work items finished, each time one is.
+///
+/// Work items that only take a message, read global memory and send messages to the main processor run once, on all host
+/// threads, and are then replayed in the order of the machine's clocks; anything else is stepped in that order. The
+/// result is the same, but for [`Frame::method`].
 ///
 /// # Errors
 /// A machine out of its ranges, a program whose initial buffer does not fit, or a trap.
 pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
+    check(setup)?;
+    let results = run_alike(std::slice::from_ref(setup), &memory, progress);
+    results.into_iter().next().expect("a machine has a result")
+}
+
+/// Runs a frame by stepping, also where it could be replayed.
+///
+/// # Errors
+/// As [`run`].
+pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
+    check(setup)?;
+    let frame = choose(setup, Stepping { setup, memory, progress });
+    frame.map_err(Ending::into_failure)
+}
+
+/// Runs the same frame on several machines. Those that compute alike (in the same clocks, with the same arithmetic and
+/// buffer) and differ only in cores, bus, caches and main processor share one run of the work items. `progress` is told of the first
+/// of those that share one.
+pub fn run_all(
+    setup: &Setup,
+    machines: &[Config],
+    memory: &Memory,
+    progress: &mut dyn FnMut(u64),
+) -> Vec<Result<Frame, Failure>> {
+    let setups: Vec<Setup> = machines.iter().map(|config| Setup { config, ..setup.clone() }).collect();
+    let mut results: Vec<Option<Result<Frame, Failure>>> = setups.iter().map(|_| None).collect();
+    for first in 0..setups.len() {
+        if results[first].is_some() {
+            continue;
+        }
+        if let Err(failure) = check(&setups[first]) {
+            results[first] = Some(Err(failure));
+            continue;
+        }
+        let is_alike = |at: &usize| {
+            results[*at].is_none() && machines[*at].computes_like(&machines[first]) && check(&setups[*at]).is_ok()
+        };
+        let alike: Vec<usize> = (first..setups.len()).filter(is_alike).take(at_once(memory)).collect();
+        let group: Vec<Setup> = alike.iter().map(|&at| setups[at].clone()).collect();
+        for (&at, result) in alike.iter().zip(run_alike(&group, memory, progress)) {
+            results[at] = Some(result);
+        }
+    }
+    results.into_iter().flatten().collect()
+}
+
+/// Machines that share a run of the work items, at most: each has a thread and a copy of global memory.
+fn at_once(memory: &Memory) -> usize {
+    const OCTETS: usize = 256 << 20;
+    (OCTETS / memory.octets().len().max(1)).clamp(1, 64)
+}
+
+fn check(setup: &Setup) -> Result<(), Failure> {
     setup.config.check()?;
     check_buffer("a core", setup.core, setup.config.buffer_octets)?;
     check_buffer("the main processor", setup.main, setup.config.main.buffer_octets)?;
-    let arithmetic = &setup.config.arithmetic;
-    let traps = arithmetic.trap_division_by_zero;
-    if arithmetic.modes() == Modes::default() && !traps {
-        run_on(setup, memory, &Nearest32, progress)
-    } else {
-        run_on(setup, memory, &Watching::new(arithmetic.modes(), traps), progress)
+    let cache = &setup.config.cache;
+    let mut names = setup.kinds.iter().map(|(_, kind)| kind.as_str());
+    if cache.octets != 0 && !setup.kinds.is_empty() && !names.clone().any(|kind| kind == cache.kind) {
+        let message = Diagnostic::error(format!("`cache.kind` is `{}`, but no data are called so", cache.kind));
+        let hint = match did_you_mean(&cache.kind, names.clone()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("there are {}", names.by_ref().collect::<Vec<_>>().join(", ")),
+        };
+        return Err(Report::from(message.hint(hint)).into());
+    }
+    Ok(())
+}
+
+/// The arithmetic of a machine that does not compute with [`Nearest32`].
+fn watching(config: &Config) -> Option<Watching> {
+    let (modes, traps) = (config.arithmetic.modes(), config.arithmetic.trap_division_by_zero);
+    (modes != Modes::default() || traps).then(|| Watching::new(modes, traps))
+}
+
+/// Runs machines that compute alike.
+fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<Frame, Failure>> {
+    let Some(first) = setups.first() else { return Vec::new() };
+    choose(first, Replaying { setups, memory, progress })
+}
+
+/// Work that is the same on every arithmetic and for every observer, but compiled for each of them.
+trait Work {
+    /// What comes of it.
+    type Result;
+
+    /// Does it.
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result;
+}
+
+/// Does work on the arithmetic and for the observer that a machine needs.
+fn choose<W: Work>(setup: &Setup, work: W) -> W::Result {
+    match (watching(setup.config), setup.options.has_profile) {
+        (None, true) => work.run::<_, Profiler>(&Nearest32),
+        (None, false) => work.run::<_, Unobserved>(&Nearest32),
+        (Some(modes), true) => work.run::<_, Profiler>(&modes),
+        (Some(modes), false) => work.run::<_, Unobserved>(&modes),
     }
 }
 
-fn run_on<T: Watch>(
-    setup: &Setup,
+struct Stepping<'a> {
+    setup: &'a Setup<'a>,
     memory: Memory,
-    arithmetic: &T,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Frame, Failure> {
-    if setup.options.has_profile {
-        schedule::run::<T, Profiler>(setup, memory, arithmetic, progress)
-    } else {
-        schedule::run::<T, Unobserved>(setup, memory, arithmetic, progress)
+    progress: &'a mut dyn FnMut(u64),
+}
+
+impl Work for Stepping<'_> {
+    type Result = Result<Frame, Ending>;
+
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+        schedule::run::<T, O>(self.setup, self.memory, arithmetic, None, self.progress)
+    }
+}
+
+struct Replaying<'a> {
+    setups: &'a [Setup<'a>],
+    memory: &'a Memory,
+    progress: &'a mut dyn FnMut(u64),
+}
+
+impl Work for Replaying<'_> {
+    type Result = Vec<Result<Frame, Failure>>;
+
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+        replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)
     }
 }
 

@@ -2,8 +2,11 @@
 
 use isa::number::Vector;
 
+use super::cache::Cache;
 use super::frame::ProcessorUse;
 use super::station::{Request, Shared, Station};
+use super::tape::Tape;
+use super::trace::{Doing, Spans};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Message, Watch};
@@ -18,6 +21,8 @@ use crate::trap::Fault;
 pub enum Act {
     /// It moves octets beside the bus.
     Aside,
+    /// It reads what its cache holds.
+    Hit,
     /// It takes a message.
     Receive,
     /// It leaves a barrier.
@@ -98,12 +103,21 @@ pub struct Processor<'a, O> {
     pub tally: Tally,
     /// Who watches it.
     pub observer: O,
+    /// The work item that it replays instead of running its program.
+    pub tape: Option<Tape>,
     /// How far it has come.
     pub clock: Clocks,
     /// What it is at.
     pub standing: Standing,
     /// What it asked for last.
     pub request: Option<Request>,
+    /// Why its engine stopped, while a block load that it does not wait for is on its way: what comes next begins when
+    /// that has ended.
+    pub held: Option<Pause>,
+    /// Its cache.
+    pub cache: Option<Cache>,
+    /// What it does when, where that is watched.
+    pub spans: Option<Spans>,
     /// What went wrong.
     pub fault: Option<Fault>,
     /// Where its clocks went.
@@ -125,9 +139,13 @@ impl<'a, O: Observer> Processor<'a, O> {
             initial,
             tally: Tally::new(code),
             observer: O::new(code),
+            tape: None,
             clock: Clocks(0),
             standing: Standing::Asleep,
             request: None,
+            held: None,
+            cache: None,
+            spans: None,
             fault: None,
             used: ProcessorUse::default(),
             work: Work::new(Clocks(0)),
@@ -149,6 +167,9 @@ impl<'a, O: Observer> Processor<'a, O> {
     /// Runs the engine up to the next thing that concerns others, with leave for the one that it waits for, done at
     /// the processor's clock, or without.
     pub fn advance<T: Watch>(&mut self, shared: &mut Shared, arithmetic: &T, has_leave: bool) -> Advance {
+        if let Some(tape) = self.tape.take() {
+            return self.replay(tape, shared, has_leave);
+        }
         let (clocks, steps) = (self.state.clocks, self.state.steps);
         let mut station = Station::new(shared, self.seat.core, has_leave.then_some(self.clock));
         let pause = checked::run(
@@ -162,24 +183,52 @@ impl<'a, O: Observer> Processor<'a, O> {
         );
         self.request = station.request;
         let taken = station.taken;
-        let spent = Clocks(self.state.clocks - clocks);
         let steps = self.state.steps - steps;
-        self.clock += spent;
-        self.used.busy += spent;
+        self.spend(self.state.clocks - clocks, steps, has_leave);
+        Advance { pause, taken, steps }
+    }
+
+    /// Starts its program, or the next recorded work item, from reset.
+    pub fn restart(&mut self) {
+        match &mut self.tape {
+            Some(tape) => *tape = Tape::default(),
+            None => {
+                self.state.begin(self.code, &self.initial);
+                self.observer.begin(self.state.pc);
+            }
+        }
+    }
+}
+
+impl<O> Processor<'_, O> {
+    /// Notes what it does from its clock on.
+    #[inline]
+    fn note(&mut self, doing: Doing, until: Clocks) {
+        if let Some(spans) = &mut self.spans {
+            spans.add(doing, self.clock, until);
+        }
+    }
+
+    /// Computes for some clocks.
+    pub(super) fn spend(&mut self, clocks: u64, steps: u64, has_leave: bool) {
+        self.note(Doing::Busy, self.clock + Clocks(clocks));
+        self.clock += Clocks(clocks);
+        self.used.busy += Clocks(clocks);
         self.used.instructions += steps;
         self.work.has_acted |= has_leave;
-        Advance { pause, taken, steps }
     }
 
     /// Does nothing until a clock.
     pub fn idle_until(&mut self, clock: Clocks) {
+        self.note(Doing::Idle, clock);
         self.used.idle += clock - self.clock;
         self.clock = clock;
     }
 
-    /// Waits for the bus and its transfer until a clock.
-    pub fn wait_until(&mut self, granted: Clocks, end: Clocks) {
-        self.used.longest_wait = self.used.longest_wait.max(granted - self.clock);
+    /// Waits for a transfer until it has ended, if it has not yet.
+    pub fn wait_until(&mut self, end: Clocks) {
+        let end = end.max(self.clock);
+        self.note(Doing::Waiting, end);
         self.used.waiting += end - self.clock;
         self.clock = end;
     }

@@ -1,65 +1,82 @@
 //! Steps all processors in the order of their clocks. Between two things that concern others a processor runs ahead by
 //! itself; whatever concerns others happens in clock order, at equal clocks in a fixed one.
 
-use isa::Class;
-
 use super::bus::Bus;
+use super::cache::Cache;
+use super::ending::Ending;
 use super::frame::{Frame, Item};
 use super::kinds::Kinds;
-use super::mailbox::Mailboxes;
+use super::library::Library;
 use super::processor::{Act, Processor, Standing, Work};
-use super::station::{Request, Shared};
+use super::station::{Access, Request, Shared};
+use super::tape::Tape;
+use super::trace::{BusWatch, Spans};
 use super::{Failure, Setup};
 use crate::checked::{Pause, Seat};
 use crate::code::Code;
 use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::{Observer, Profile};
+use crate::profile::Observer;
 use crate::quantity::{Clocks, Octets};
-use crate::tally::Tally;
-use crate::trap::{Fault, Trap};
+use crate::trap::Fault;
 
-/// Runs a frame on one arithmetic and with one kind of observer.
+/// Runs a frame on one arithmetic and with one kind of observer. With recorded work items the cores replay them; their
+/// counts are then missing from the frame.
 pub fn run<T: Watch, O: Observer>(
     setup: &Setup,
     memory: Memory,
     arithmetic: &T,
+    library: Option<Library>,
     progress: &mut dyn FnMut(u64),
-) -> Result<Frame, Failure> {
+) -> Result<Frame, Ending> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
-    let mut machine: Machine<T, O> = Machine::new(setup, memory, &core_code, &main_code, arithmetic, progress);
-    machine.begin();
-    while machine.step()? {}
-    machine.check_end()?;
+    let shared = Shared::new(memory, setup.config.cores + 1, library);
+    let mut machine: Machine<T, O> = Machine::new(setup, shared, &core_code, &main_code, arithmetic, progress);
+    let done = machine.run();
+    if let Some(library) = &mut machine.shared.library {
+        if done.is_ok() && library.lost.is_none() && !library.is_used_up() {
+            library.lose::<()>("the main processor hands out other work than it would to many cores");
+        }
+        if let Some(reason) = library.lost {
+            return Err(Ending::Lost(reason));
+        }
+    }
+    done.map_err(Ending::Failure)?;
     Ok(machine.finish(&core_code, &main_code))
 }
 
-struct Machine<'a, T, O> {
-    setup: &'a Setup<'a>,
+/// All processors, what they share, and what they have done so far.
+pub(super) struct Machine<'a, T, O> {
+    pub setup: &'a Setup<'a>,
     arithmetic: &'a T,
-    processors: Vec<Processor<'a, O>>,
-    shared: Shared,
-    bus: Bus,
-    kinds: Kinds,
-    aside: Octets,
+    /// The cores, then the main processor.
+    pub processors: Vec<Processor<'a, O>>,
+    pub shared: Shared,
+    pub bus: Bus,
+    /// Who watches the bus, where somebody does.
+    pub bus_watch: Option<BusWatch>,
+    pub kinds: Kinds,
+    pub aside: Octets,
     /// Clock of the last thing that concerned others.
-    now: Clocks,
-    items: Vec<Item>,
-    item_count: u64,
-    has_main_halted: bool,
+    pub now: Clocks,
+    pub items: Vec<Item>,
+    pub item_count: u64,
+    pub has_main_halted: bool,
     /// Processors that wait at a barrier.
-    meeting: usize,
+    pub meeting: usize,
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
+    /// Whether a recorded transfer is nothing but a transfer: no cache, no overlap, nobody who watches.
+    is_plain: bool,
     progress: &'a mut dyn FnMut(u64),
 }
 
 impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
     fn new(
         setup: &'a Setup<'a>,
-        memory: Memory,
+        shared: Shared,
         core_code: &'a Code<'a>,
         main_code: &'a Code<'a>,
         arithmetic: &'a T,
@@ -70,16 +87,24 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         let mut processors = Vec::with_capacity(cores as usize + 1);
         for core in 0..cores {
             let seat = Seat { core, cores, step_limit: config.step_limit };
-            processors.push(Processor::new(core_code, seat, config.buffer_octets));
+            let mut processor = Processor::new(core_code, seat, config.buffer_octets);
+            processor.tape = shared.library.is_some().then(Tape::default);
+            processor.cache = Cache::new(&config.cache, &setup.kinds);
+            processors.push(processor);
         }
+        let window = setup.options.window;
         let seat = Seat { core: cores, cores, step_limit: config.main.step_limit };
         processors.push(Processor::new(main_code, seat, config.main.buffer_octets));
+        for processor in &mut processors {
+            processor.spans = window.map(Spans::new);
+        }
         Machine {
             setup,
             arithmetic,
             processors,
-            shared: Shared { memory, mailboxes: Mailboxes::new(cores + 1) },
-            bus: Bus::new(&config.bus, cores + 1),
+            shared,
+            bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
+            bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             kinds: Kinds::new(&setup.kinds),
             aside: Octets(0),
             now: Clocks(0),
@@ -88,11 +113,20 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
+            is_plain: config.cache.octets == 0 && !config.bus.overlap && window.is_none(),
             progress,
         }
     }
 
-    fn main(&self) -> usize {
+    /// Runs to the end.
+    fn run(&mut self) -> Result<(), Failure> {
+        self.begin();
+        while self.step()? {}
+        self.check_end()
+    }
+
+    /// Number of the main processor.
+    pub(super) fn main(&self) -> usize {
         self.processors.len() - 1
     }
 
@@ -106,21 +140,25 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
     }
 
     /// Resets a processor at its clock and lets it run, or sleep where a message has to come first.
-    fn start(&mut self, number: usize) {
+    pub(super) fn start(&mut self, number: usize) {
         let processor = &mut self.processors[number];
         if processor.begins_by_receiving && self.shared.mailboxes.next(number as u32).is_none() {
             processor.standing = Standing::Asleep;
             return;
         }
         processor.work = Work::new(processor.clock);
-        processor.state.begin(processor.code, &processor.initial);
-        processor.observer.begin(processor.state.pc);
+        processor.restart();
         self.advance(number, false);
     }
 
     /// Lets a processor run up to the next thing that concerns others, and notes what that is. With leave, what it
     /// waits for is done first, at its clock.
     fn advance(&mut self, number: usize, has_leave: bool) {
+        self.run_on(number, has_leave, false);
+    }
+
+    /// The same; who runs ahead of its own transfer does the next thing when that has ended.
+    fn run_on(&mut self, number: usize, has_leave: bool, is_ahead: bool) {
         let is_main = number == self.main();
         let steps_allowed = self.steps_allowed();
         let processor = &mut self.processors[number];
@@ -132,15 +170,18 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         {
             (processor.work.subject, processor.work.start) = (Some(message.first()), at);
         }
-        match advance.pause {
-            Pause::Halt => processor.act(Act::Halt),
-            Pause::Fault(fault) => processor.stop(fault),
-            // Cores could play on among themselves for ever while the main processor waits. Between two of its steps
-            // each of them needs at most a work item.
+        // Cores could play on among themselves for ever while the main processor waits. Between two of its steps each of
+        // them needs at most a work item.
+        let pause = match advance.pause {
             Pause::Wait if self.steps_without_main > steps_allowed => {
-                processor.stop(Fault::StepLimit(processor.seat.step_limit));
+                Pause::Fault(Fault::StepLimit(processor.seat.step_limit))
             }
-            Pause::Wait => self.ask(number),
+            pause => pause,
+        };
+        if is_ahead {
+            processor.held = Some(pause);
+        } else {
+            self.settle(number, pause);
         }
         // What was done with the leave may be what another processor waits for.
         if let Some((_, sender)) = advance.taken {
@@ -150,6 +191,16 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             && has_leave
         {
             self.deliver(to as usize);
+        }
+    }
+
+    /// Notes why an engine has stopped.
+    fn settle(&mut self, number: usize, pause: Pause) {
+        let processor = &mut self.processors[number];
+        match pause {
+            Pause::Halt => processor.act(Act::Halt),
+            Pause::Fault(fault) => processor.stop(fault),
+            Pause::Wait => self.ask(number),
         }
     }
 
@@ -179,50 +230,45 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
     }
 
     /// Asks for the bus, or goes beside it where the main processor's traffic takes no time.
-    fn ask_for_transfer(&mut self, number: usize) {
+    pub(super) fn ask_for_transfer(&mut self, number: usize) {
         let main = self.main();
         let processor = &mut self.processors[number];
         let is_to_main = matches!(processor.request, Some(Request::Send { to, .. }) if to as usize == main);
         if !self.setup.config.main.traffic && (number == main || is_to_main) {
             processor.act(Act::Aside);
-        } else {
-            processor.standing = Standing::Asks;
-            self.bus.request(number as u32, processor.clock, processor.asked_octets());
+            return;
         }
-    }
-
-    /// Sets when a listening processor takes its next message, when there is one.
-    fn listen(&mut self, number: usize) {
-        let processor = &mut self.processors[number];
-        if let Some((arrival, _)) = self.shared.mailboxes.next(number as u32) {
-            processor.standing = Standing::Acts { at: arrival.max(processor.clock), act: Act::Receive };
-        }
-    }
-
-    /// A message has come for a processor.
-    fn deliver(&mut self, receiver: usize) {
-        let is_main = receiver == self.main();
-        match self.processors[receiver].standing {
-            Standing::Listens | Standing::Acts { act: Act::Receive, .. } => self.listen(receiver),
-            Standing::Asleep => self.start(receiver),
-            Standing::Rests if !is_main => {
-                if let Some((arrival, _)) = self.shared.mailboxes.next(receiver as u32) {
-                    let processor = &mut self.processors[receiver];
-                    processor.idle_until(arrival.max(processor.clock));
-                }
-                self.start(receiver);
+        let mut octets = processor.asked_octets();
+        let mut is_ahead = false;
+        if let Some(Request::Transfer { address, access: access @ (Access::Load | Access::Read), .. }) =
+            processor.request
+        {
+            match processor.cache.as_mut().and_then(|cache| cache.read(address, octets)) {
+                Some(Octets(0)) => return processor.act(Act::Hit),
+                Some(filled) => octets = filled,
+                None => {}
             }
-            _ => {}
+            is_ahead = self.setup.config.bus.overlap && number != main && access == Access::Load;
+        }
+        processor.standing = Standing::Asks;
+        if let Some(watch) = &mut self.bus_watch {
+            watch.ask(number as u32, processor.request);
+        }
+        self.bus.request(number as u32, processor.clock, octets);
+        if is_ahead {
+            self.account(number);
+            self.run_on(number, true, true);
         }
     }
 
-    /// A receiver has emptied the mailbox that it has for a sender.
-    fn unblock(&mut self, sender: usize, receiver: u32, at: Clocks) {
-        let processor = &mut self.processors[sender];
-        if processor.standing == (Standing::Blocked { to: receiver }) {
-            processor.idle_until(at.max(processor.clock));
-            self.ask_for_transfer(sender);
+    /// Adds what a processor has asked for to the totals; of recorded work items they are known already.
+    fn account(&mut self, number: usize) {
+        let processor = &mut self.processors[number];
+        if processor.tape.is_some() {
+            return;
         }
+        processor.used.octets += processor.asked_octets();
+        self.kinds.add(processor.request);
     }
 
     /// Does the next thing that concerns others; false when there is none.
@@ -234,26 +280,47 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             Standing::Acts { at, act } => Some((at, act, number)),
             _ => None,
         });
-        match (acts.min(), self.bus.next_decision()) {
-            (Some((at, act, number)), decision) if decision.is_none_or(|clock| at <= clock) => {
-                self.act(number, at, act)?;
+        let act = acts.min();
+        // Nothing but decisions of the arbiter comes before the next act, as long as those wake nobody.
+        while let Some(clock) = self.bus.next_decision().filter(|&clock| act.is_none_or(|(at, ..)| clock < at)) {
+            if self.decide(clock) {
+                return Ok(true);
             }
-            (_, Some(clock)) => self.decide(clock),
-            (_, None) => return Ok(false),
         }
+        let Some((at, act, number)) = act else { return Ok(false) };
+        self.act(number, at, act)?;
         Ok(true)
     }
 
-    /// Lets the arbiter choose, and the chosen one do what it waits for.
-    fn decide(&mut self, clock: Clocks) {
+    /// Lets the arbiter choose, and the chosen one do what it waits for; true when anyone but the arbiter may have
+    /// something to do now.
+    fn decide(&mut self, clock: Clocks) -> bool {
         self.now = clock;
-        let Some(grant) = self.bus.decide(clock) else { return };
+        let Some(grant) = self.bus.decide(clock) else { return false };
+        if let Some(watch) = &mut self.bus_watch {
+            watch.grant(&grant);
+        }
         let number = grant.master as usize;
         let processor = &mut self.processors[number];
-        processor.wait_until(grant.start, grant.end);
-        processor.used.octets += processor.asked_octets();
-        self.kinds.add(processor.request);
-        self.advance(number, true);
+        processor.used.longest_wait = processor.used.longest_wait.max(grant.waited);
+        if !grant.is_last {
+            return false;
+        }
+        processor.wait_until(grant.end);
+        if self.is_plain
+            && let Some(octets) = processor.roll_on(&self.shared)
+        {
+            self.bus.request(grant.master, processor.clock, octets);
+            return false;
+        }
+        match processor.held.take() {
+            Some(pause) => self.settle(number, pause),
+            None => {
+                self.account(number);
+                self.advance(number, true);
+            }
+        }
+        true
     }
 
     fn act(&mut self, number: usize, at: Clocks, act: Act) -> Result<(), Failure> {
@@ -263,10 +330,12 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         processor.idle_until(at);
         match act {
             Act::Aside => {
-                let octets = processor.asked_octets();
-                processor.used.octets += octets;
-                self.aside += octets;
-                self.kinds.add(processor.request);
+                self.aside += processor.asked_octets();
+                self.account(number);
+                self.advance(number, true);
+            }
+            Act::Hit => {
+                self.account(number);
                 self.advance(number, true);
             }
             Act::Receive | Act::Leave => self.advance(number, true),
@@ -305,94 +374,6 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             self.start(number);
         } else {
             processor.standing = Standing::Rests;
-        }
-    }
-
-    /// Lets all leave the barrier, when nobody is missing, at the clock at which the last one came or had no more to do.
-    fn leave_barrier(&mut self) {
-        let is_here = |processor: &Processor<O>| match processor.standing {
-            Standing::Meets | Standing::Rests => true,
-            // Nobody but the main processor begins work.
-            Standing::Asleep | Standing::Listens => self.has_main_halted && processor.work.subject.is_none(),
-            _ => false,
-        };
-        if !self.processors.iter().all(is_here) {
-            return;
-        }
-        let meets = |processor: &&mut Processor<O>| processor.standing == Standing::Meets;
-        let last = self.processors.iter_mut().filter(meets).map(|processor| processor.clock).max();
-        let at = last.unwrap_or_default().max(self.now);
-        for processor in self.processors.iter_mut().filter(meets) {
-            processor.standing = Standing::Acts { at, act: Act::Leave };
-        }
-        self.meeting = 0;
-    }
-
-    /// The trap of a processor that stopped.
-    fn trap(&self, number: usize) -> Trap {
-        let processor = &self.processors[number];
-        let kind = processor.fault.unwrap_or(Fault::Deadlock);
-        let trap = Trap::new(kind, number as u32, processor.state.pc, processor.code.program);
-        match processor.work.subject {
-            Some([x, y, z]) => {
-                trap.with_detail(format!("in the work item whose first message began with {x}, {y}, {z}"))
-            }
-            None => trap,
-        }
-    }
-
-    /// Whether everybody has done what was begun.
-    fn check_end(&self) -> Result<(), Failure> {
-        let is_stuck = |number: usize| {
-            let processor = &self.processors[number];
-            match processor.standing {
-                Standing::Rests | Standing::Asleep => false,
-                // A core that waits without having received anything is out of work once the main processor is done.
-                Standing::Listens | Standing::Blocked { .. } if number != self.main() => {
-                    !self.has_main_halted || processor.work.subject.is_some()
-                }
-                _ => true,
-            }
-        };
-        let mut stuck = (0..self.processors.len()).filter(|&number| is_stuck(number));
-        let Some(first) = stuck.next() else { return Ok(()) };
-        let others: Vec<String> =
-            std::iter::once(first).chain(stuck).map(|number| self.processors[number].waits_for()).collect();
-        Err(self.trap(first).with_detail(others.join(", ")).into())
-    }
-
-    fn finish(mut self, core_code: &Code, main_code: &Code) -> Frame {
-        let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
-        for processor in &mut self.processors {
-            processor.idle_until(clocks);
-        }
-        self.items.sort_by_key(|item| (item.start, item.core));
-        let used = self.processors.iter().map(|processor| processor.used).collect();
-        let main = self.processors.pop().expect("a machine has a main processor");
-        let mut tally = Tally::new(core_code);
-        let mut profile: Option<Profile> = None;
-        for processor in self.processors {
-            tally.merge(&processor.tally);
-            match (&mut profile, processor.observer.into_profile(core_code, &processor.tally)) {
-                (Some(profile), Some(more)) => profile.merge(&more),
-                (profile, more) => *profile = more,
-            }
-        }
-        let asked = tally.counts(core_code)[Class::Octet] + main.tally.counts(main_code)[Class::Octet];
-        Frame {
-            clocks,
-            processors: used,
-            bus: self.bus.used(),
-            asked: Octets(asked),
-            aside: self.aside,
-            kinds: self.kinds.into_totals(),
-            memory: self.shared.memory,
-            tally,
-            main_profile: main.observer.into_profile(main_code, &main.tally),
-            main_tally: main.tally,
-            profile,
-            items: self.items,
-            item_count: self.item_count,
         }
     }
 }

@@ -6,7 +6,6 @@ use isa::{Isa, Program};
 
 use super::check_buffer;
 use super::config::Config;
-use super::mailbox::Mailboxes;
 use super::processor::Processor;
 use super::station::{Request, Shared};
 use crate::checked::{Pause, Seat, State};
@@ -83,7 +82,7 @@ fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmet
     let code = Code::new(single.program, single.isa, single.config.timing());
     let seat = Seat { core: 0, cores: 1, step_limit: single.step_limit };
     let mut processor: Processor<O> = Processor::new(&code, seat, single.config.buffer_octets);
-    let mut shared = Shared { memory, mailboxes: Mailboxes::new(1) };
+    let mut shared = Shared::new(memory, 1, None);
     processor.state.registers = single.registers.clone();
     processor.observer.begin(processor.state.pc);
     let mut has_leave = false;
@@ -104,7 +103,7 @@ fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmet
         let octets = processor.asked_octets();
         if octets.0 != 0 {
             let start = processor.clock;
-            processor.wait_until(start, start + single.config.bus.length(octets));
+            processor.wait_until(start + single.config.bus.whole_length(octets));
         }
         has_leave = true;
     };

@@ -1,10 +1,24 @@
 //! A core's link to the machine: it asks first, and acts when the machine says that its time has come.
 
+use std::ops::Range;
+
+use super::library::Library;
 use super::mailbox::Mailboxes;
 use crate::exec::{Link, Message};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::{Clocks, Octets};
 use crate::trap::{Fault, Stop};
+
+/// What a transfer does with global memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// It copies a block to the buffer.
+    Load,
+    /// It reads a word.
+    Read,
+    /// It writes, or reads and writes.
+    Write,
+}
 
 /// What a core waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +29,8 @@ pub enum Request {
         address: u32,
         /// Octets that go over the bus.
         octets: Octets,
+        /// What it does.
+        access: Access,
     },
     /// A message to another processor.
     Send {
@@ -30,12 +46,32 @@ pub enum Request {
 }
 
 /// What all processors share.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Shared {
     /// Global memory.
     pub memory: Memory,
+    /// From the first to the last octet of global memory that was written.
+    pub written: Range<u64>,
     /// Messages on their way.
     pub mailboxes: Mailboxes,
+    /// The work items that the cores replay, where they do.
+    pub library: Option<Library>,
+}
+
+impl Shared {
+    /// A memory, empty mailboxes, and recorded work items.
+    pub fn new(memory: Memory, processors: u32, library: Option<Library>) -> Shared {
+        Shared { memory, written: 0..0, mailboxes: Mailboxes::new(processors), library }
+    }
+
+    fn note_written(&mut self, address: u32, octets: u32) {
+        let (start, end) = (u64::from(address), u64::from(address) + u64::from(octets));
+        if self.written.is_empty() {
+            self.written = start..end;
+        } else {
+            self.written = self.written.start.min(start)..self.written.end.max(end);
+        }
+    }
 }
 
 /// The link of one core while its engine runs. An instruction is tried twice: without leave it only says what it asks
@@ -69,15 +105,15 @@ impl<'a> Station<'a> {
     }
 }
 
-fn transfer(address: u32, octets: u32) -> Request {
-    Request::Transfer { address, octets: Octets(octets.into()) }
+fn transfer(access: Access, address: u32, octets: u32) -> Request {
+    Request::Transfer { address, octets: Octets(octets.into()), access }
 }
 
 impl Link for Station<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
         self.shared.memory.slice(from, octets)?;
-        self.enter(transfer(from, octets))?;
+        self.enter(transfer(Access::Load, from, octets))?;
         place.copy_from_slice(self.shared.memory.slice(from, octets)?);
         Ok(())
     }
@@ -85,31 +121,34 @@ impl Link for Station<'_> {
     fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let data = buffer.slice(from, octets)?;
         self.shared.memory.slice(to, octets)?;
-        self.enter(transfer(to, octets))?;
+        self.enter(transfer(Access::Write, to, octets))?;
         self.shared.memory.slice_mut(to, octets)?.copy_from_slice(data);
+        self.shared.note_written(to, octets);
         Ok(())
     }
 
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         let octets = 4 * words.len() as u32;
         self.shared.memory.slice(address, octets)?;
-        self.enter(transfer(address, octets))?;
+        self.enter(transfer(Access::Read, address, octets))?;
         Ok(self.shared.memory.read_words(address, words)?)
     }
 
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         let octets = 4 * words.len() as u32;
         self.shared.memory.slice(address, octets)?;
-        self.enter(transfer(address, octets))?;
+        self.enter(transfer(Access::Write, address, octets))?;
+        self.shared.note_written(address, octets);
         Ok(self.shared.memory.put_words(address, words)?)
     }
 
     fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
         self.shared.memory.slice(address, 4)?;
         // It is read and written back in one transfer.
-        self.enter(transfer(address, 8))?;
+        self.enter(transfer(Access::Write, address, 8))?;
         let before = self.shared.memory.word(address)?;
         self.shared.memory.put_words(address, &[before.wrapping_add(more)])?;
+        self.shared.note_written(address, 4);
         Ok(before)
     }
 

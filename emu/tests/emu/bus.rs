@@ -1,7 +1,9 @@
 //! The bus under load: what is asked for is moved, time is accounted for, nobody waits for ever.
 
+use emu::machine::arbiter::ArbiterKind;
 use emu::machine::bus::{Bus, Grant};
 use emu::machine::config::{BusConfig, MainConfig};
+use emu::machine::waits::Waits;
 use emu::machine::{Config, Frame};
 use emu::quantity::{Clocks, Octets};
 use isa::{Class, Op, Program};
@@ -12,7 +14,8 @@ use super::builder::program;
 use super::machine::{dispatch, run, worker};
 
 fn check_accounts(frame: &Frame) {
-    assert_eq!(frame.asked, frame.bus.moved + frame.aside);
+    let uncached = frame.bus.moved - frame.cache.filled + frame.aside;
+    assert_eq!(frame.asked, uncached + frame.cache.asked);
     assert_eq!(frame.asked, frame.kinds.iter().map(|kind| kind.octets).sum());
     assert_eq!(frame.asked, frame.processors.iter().map(|used| used.octets).sum());
     assert!(frame.bus.busy <= frame.clocks);
@@ -45,8 +48,12 @@ proptest! {
     fn every_clock_and_octet_is_accounted_for(
         cores in 1u32..9, items in 0i32..40, segments in 1i32..6, spin in 0i32..200, octets in 0i32..64,
         octets_per_beat in 1u64..5, clocks_per_beat in 1u64..4, setup_clocks in 0u64..5, traffic: bool,
+        arbiter in prop::sample::select(ArbiterKind::ALL.to_vec()), burst_octets in 0u64..70, overlap: bool,
     ) {
-        let bus = BusConfig { octets_per_beat, clocks_per_beat, setup_clocks, ..BusConfig::default() };
+        let weights = vec![2, 3];
+        let bus = BusConfig {
+            octets_per_beat, clocks_per_beat, setup_clocks, burst_octets, overlap, arbiter, weights, slot_clocks: 50,
+        };
         let config =
             Config { cores, bus: bus.clone(), main: MainConfig { traffic, ..MainConfig::default() }, ..Config::default() };
         let (core, main) = (varied(segments, spin, octets), dispatch(items));
@@ -56,9 +63,20 @@ proptest! {
         for item in 0..items {
             prop_assert_eq!(frame.memory.word(4 * item as u32), Ok(item + 1));
         }
-        // In turn, nobody waits for more than one transfer of each other master, each of at most 64 octets.
-        let bound = u64::from(cores) * bus.length(Octets(64)).0;
+        // In turn, nobody waits for more than one burst of each other master, each of at most 64 octets, or with weights
+        // for at most three of them; with slots for less than all of them.
+        let others = u64::from(cores) - u64::from(!traffic);
+        let burst = bus.length(Octets(64).min(bus.longest_burst())).0;
+        let bound = match arbiter {
+            ArbiterKind::RoundRobin => others * burst,
+            ArbiterKind::Weighted => others.min(2) * 3 * burst + others.saturating_sub(2) * burst,
+            ArbiterKind::Tdma => (others + 1) * bus.slot_clocks - 1,
+            ArbiterKind::OldestFirst => others * burst,
+            ArbiterKind::FixedPriority => u64::MAX,
+        };
         prop_assert!(frame.bus.longest_wait.0 <= bound, "{:?} > {}", frame.bus.longest_wait, bound);
+        prop_assert!(frame.bus.bursts >= frame.bus.transfers);
+        prop_assert_eq!(frame.waits.iter().map(Waits::total).sum::<u64>(), frame.bus.bursts);
         let longest = frame.processors.iter().map(|used| used.longest_wait).max();
         prop_assert_eq!(longest, Some(frame.bus.longest_wait));
 
@@ -77,12 +95,13 @@ proptest! {
     }
 
     #[test]
-    fn grants_never_overlap_and_come_in_turn(
-        requests in prop::collection::vec((0u32..5, 0u64..30, 0u64..12), 1..200), setup_clocks in 0u64..3,
+    fn grants_never_overlap(
+        requests in prop::collection::vec((0u32..5, 0u64..30, 0u64..32), 1..200), setup_clocks in 0u64..3,
+        arbiter in prop::sample::select(ArbiterKind::ALL.to_vec()), burst_octets in 0u64..12,
     ) {
         // Each master asks again a while after its last transfer, in the order of the list.
         const MASTERS: u32 = 5;
-        let config = BusConfig { setup_clocks, ..BusConfig::default() };
+        let config = BusConfig { setup_clocks, arbiter, burst_octets, slot_clocks: 20, ..BusConfig::default() };
         let mut bus = Bus::new(&config, MASTERS);
         let mut lists: Vec<Vec<(u64, u64)>> = vec![Vec::new(); MASTERS as usize];
         for &(master, pause, octets) in requests.iter().rev() {
@@ -101,26 +120,43 @@ proptest! {
         let mut grants: Vec<Grant> = Vec::new();
         let mut passed = vec![0; MASTERS as usize];
         while let Some(clock) = bus.next_decision() {
-            let grant = bus.decide(clock).expect("round-robin always grants");
+            let Some(grant) = bus.decide(clock) else {
+                prop_assert_eq!(arbiter, ArbiterKind::Tdma, "the others never leave the bus idle");
+                continue;
+            };
             let arrival = asked[grant.master as usize].expect("it has asked");
-            prop_assert!(grant.start >= arrival);
+            prop_assert_eq!(grant.start - arrival, grant.waited);
             prop_assert!(grants.last().is_none_or(|last| last.end <= grant.start), "the last one is over");
-            // The bus is never idle while somebody waits.
-            let free = grants.last().map_or(Clocks(0), |last| last.end);
-            prop_assert_eq!(grant.start, asked.iter().flatten().copied().min().expect("somebody asked").max(free));
+            if arbiter == ArbiterKind::Tdma {
+                let slot = |clock: Clocks| clock.0 / config.slot_clocks % u64::from(MASTERS);
+                prop_assert_eq!(slot(grant.start), u64::from(grant.master));
+                prop_assert!(grant.end.0 <= (grant.start.0 / config.slot_clocks + 1) * config.slot_clocks);
+                prop_assert!(grant.waited.0 < u64::from(MASTERS) * config.slot_clocks);
+            } else {
+                // The bus is never idle while somebody waits.
+                let free = grants.last().map_or(Clocks(0), |last| last.end);
+                let earliest = asked.iter().flatten().copied().min().expect("somebody asked");
+                prop_assert_eq!(grant.start, earliest.max(free));
+            }
             for other in 0..MASTERS as usize {
                 if other != grant.master as usize && asked[other].is_some_and(|arrival| arrival <= grant.start) {
                     passed[other] += 1;
-                    prop_assert!(passed[other] < MASTERS, "master {} is passed over", other);
+                    let is_fair = arbiter != ArbiterKind::RoundRobin || passed[other] < MASTERS;
+                    prop_assert!(is_fair, "master {} is passed over", other);
                 }
             }
             passed[grant.master as usize] = 0;
-            ask(&mut bus, &mut asked, grant.master, grant.end);
+            if grant.is_last {
+                ask(&mut bus, &mut asked, grant.master, grant.end);
+            } else {
+                asked[grant.master as usize] = Some(grant.end);
+            }
             grants.push(grant);
         }
-        prop_assert_eq!(grants.len(), requests.len());
-        prop_assert_eq!(bus.used().moved.0, requests.iter().map(|request| request.2).sum::<u64>());
-        prop_assert_eq!(bus.used().busy.0, grants.iter().map(|grant| (grant.end - grant.start).0).sum::<u64>());
+        let used = bus.used();
+        prop_assert_eq!((used.transfers, used.bursts), (requests.len() as u64, grants.len() as u64));
+        prop_assert_eq!(used.moved.0, requests.iter().map(|request| request.2).sum::<u64>());
+        prop_assert_eq!(used.busy.0, grants.iter().map(|grant| (grant.end - grant.start).0).sum::<u64>());
     }
 }
 
@@ -190,7 +226,7 @@ fn octets_are_told_apart_by_what_they_are() {
     let octets = |kind: &str| frame.kinds.iter().find(|total| total.kind == kind).map(|total| total.octets.0);
     // Loads start in the answers, where the loader says that 0..400 are.
     assert_eq!(octets("answer"), Some(10 * (3 * 100 + 4)));
-    assert_eq!(octets("message"), Some(10 * (60 + 24)));
+    assert_eq!(octets("messages"), Some(10 * (60 + 24)));
     assert_eq!(octets("other"), Some(0));
     assert_eq!(frame.bus.transfers, 10 * (3 + 1 + 2));
     let core = emu::code::Code::new;

@@ -8,4 +8,6 @@ mod meanings;
 mod messages;
 mod profile;
 mod ray;
+mod replay;
+mod saturation;
 mod traps;

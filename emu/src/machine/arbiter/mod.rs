@@ -1,54 +1,188 @@
 //! Who gets the bus next: one trait, one small file for each arbiter. When the bus is free is not decided here.
 
+mod fixed_priority;
+mod oldest_first;
 mod round_robin;
+mod tdma;
+mod weighted;
 
 use serde::{Deserialize, Serialize};
 
+pub use fixed_priority::FixedPriority;
+pub use oldest_first::OldestFirst;
 pub use round_robin::RoundRobin;
+pub use tdma::Tdma;
+pub use weighted::Weighted;
 
+use super::config::BusConfig;
 use crate::quantity::Clocks;
 
-/// A master that asks for the bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Claim {
-    /// Number of the master: a core, or the main processor after the last core.
-    pub master: u32,
-    /// When it began to ask.
-    pub arrival: Clocks,
-    /// How long its transfer will hold the bus.
-    pub length: Clocks,
+/// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
+#[derive(Clone, Debug)]
+pub struct Claims {
+    arrivals: Vec<Clocks>,
+    lengths: Vec<Clocks>,
+}
+
+/// When a master begins to ask that does not ask.
+pub const NEVER: Clocks = Clocks(u64::MAX);
+
+impl Claims {
+    /// Nobody asks.
+    pub fn new(masters: u32) -> Claims {
+        Claims { arrivals: vec![NEVER; masters as usize], lengths: vec![Clocks(0); masters as usize] }
+    }
+
+    /// A master asks, from a clock on, for a burst that holds the bus for that long.
+    #[inline]
+    pub fn ask(&mut self, master: u32, arrival: Clocks, length: Clocks) {
+        (self.arrivals[master as usize], self.lengths[master as usize]) = (arrival, length);
+    }
+
+    /// A master asks no more.
+    #[inline]
+    pub fn withdraw(&mut self, master: u32) {
+        self.arrivals[master as usize] = NEVER;
+    }
+
+    /// Number of masters, whether they ask or not.
+    pub fn masters(&self) -> u32 {
+        self.arrivals.len() as u32
+    }
+
+    /// When a master began, or begins, to ask for its burst; beyond every clock for one that does not.
+    #[inline]
+    pub fn arrival(&self, master: u32) -> Clocks {
+        self.arrivals[master as usize]
+    }
+
+    /// How long a master's burst will hold the bus.
+    #[inline]
+    pub fn length(&self, master: u32) -> Clocks {
+        self.lengths[master as usize]
+    }
+
+    /// When the first master began, or begins, to ask; `None` when nobody asks.
+    #[inline]
+    pub fn earliest(&self) -> Option<Clocks> {
+        self.arrivals.iter().copied().min().filter(|&arrival| arrival != NEVER)
+    }
+
+    /// Masters that ask at a clock, by number.
+    pub fn asking(&self, clock: Clocks) -> impl Iterator<Item = u32> {
+        (0..self.masters()).filter(move |&master| self.arrival(master) <= clock)
+    }
+
+    /// The first master from `turn` on, round the circle, that asks at a clock.
+    #[inline]
+    pub fn first_from(&self, turn: u32, clock: Clocks) -> Option<u32> {
+        (turn..self.masters()).chain(0..turn).find(|&master| self.arrival(master) <= clock)
+    }
 }
 
 /// What an arbiter decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The bus goes to this one of the claims, counted from 0.
-    Grant(usize),
+    /// The bus goes to this master, which asks.
+    Grant(u32),
     /// Nobody may use the bus now; ask again at this later clock, or earlier when another master begins to ask.
     Later(Clocks),
 }
 
-/// Chooses among the masters that ask for a free bus. A grant lasts to the end of the transfer.
+/// Chooses among the masters that ask for a free bus. A grant lasts to the end of the burst.
 pub trait Arbiter: Send {
-    /// Decides at `clock`, when the bus is free. There is at least one claim, all have arrived by then, and they stand
-    /// in the order of their masters.
-    fn choose(&mut self, clock: Clocks, claims: &[Claim]) -> Verdict;
+    /// Decides at `clock`, when the bus is free and at least one master asks.
+    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict;
+}
+
+/// The verdict for a master, where one asks.
+fn grant(master: Option<u32>, clock: Clocks) -> Verdict {
+    master.map_or(Verdict::Later(clock + Clocks(1)), Verdict::Grant)
 }
 
 /// The arbiters that a machine can have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ArbiterKind {
+    /// [`FixedPriority`].
+    FixedPriority,
     /// [`RoundRobin`].
     #[default]
     RoundRobin,
+    /// [`Weighted`].
+    Weighted,
+    /// [`OldestFirst`].
+    OldestFirst,
+    /// [`Tdma`].
+    Tdma,
 }
 
 impl ArbiterKind {
-    /// A new arbiter of the kind for that many masters.
-    pub fn build(self, masters: u32) -> Box<dyn Arbiter> {
+    /// All of them, in the order of their names' first mention in the manual.
+    pub const ALL: [ArbiterKind; 5] = [
+        ArbiterKind::FixedPriority,
+        ArbiterKind::RoundRobin,
+        ArbiterKind::Weighted,
+        ArbiterKind::OldestFirst,
+        ArbiterKind::Tdma,
+    ];
+
+    /// Its name, as in a machine's file.
+    pub fn name(self) -> &'static str {
         match self {
-            ArbiterKind::RoundRobin => Box::new(RoundRobin::new(masters)),
+            ArbiterKind::FixedPriority => "fixed-priority",
+            ArbiterKind::RoundRobin => "round-robin",
+            ArbiterKind::Weighted => "weighted",
+            ArbiterKind::OldestFirst => "oldest-first",
+            ArbiterKind::Tdma => "tdma",
+        }
+    }
+
+    /// A new arbiter of the kind for that many masters, with its parameters.
+    pub fn build(self, config: &BusConfig, masters: u32) -> Box<dyn Arbiter> {
+        match self {
+            ArbiterKind::FixedPriority => Box::new(FixedPriority),
+            ArbiterKind::RoundRobin => Box::new(RoundRobin::new()),
+            ArbiterKind::Weighted => Box::new(Weighted::new(masters, &config.weights)),
+            ArbiterKind::OldestFirst => Box::new(OldestFirst),
+            ArbiterKind::Tdma => Box::new(Tdma::new(masters, Clocks(config.slot_clocks))),
+        }
+    }
+}
+
+/// Claims of these masters, each from a clock on, for that long.
+#[cfg(test)]
+fn claims(masters: u32, asking: impl IntoIterator<Item = (u32, u64, u64)>) -> Claims {
+    let mut claims = Claims::new(masters);
+    for (master, arrival, length) in asking {
+        claims.ask(master, Clocks(arrival), Clocks(length));
+    }
+    claims
+}
+
+/// The masters that get the bus, turn by turn, with these of four masters asking for one clock each.
+#[cfg(test)]
+fn turns(arbiter: &mut dyn Arbiter, asking: &[&[u32]]) -> Vec<u32> {
+    let turn = |masters: &&[u32]| {
+        let claims = claims(4, masters.iter().map(|&master| (master, 0, 1)));
+        match arbiter.choose(Clocks(0), &claims) {
+            Verdict::Grant(chosen) => chosen,
+            Verdict::Later(clock) => panic!("the bus stays idle until {clock:?}"),
+        }
+    };
+    asking.iter().map(turn).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_machines_file() {
+        for kind in ArbiterKind::ALL {
+            let config = BusConfig { arbiter: kind, ..BusConfig::default() };
+            let text = toml::to_string(&config).expect("a bus has nothing that TOML cannot hold");
+            assert!(text.contains(&format!("arbiter = \"{}\"", kind.name())), "{text}");
         }
     }
 }

@@ -1,0 +1,106 @@
+//! A core's private cache of tree nodes: which lines it holds, not what is in them, since nodes are only read.
+
+use std::ops::Range;
+
+use super::config::CacheConfig;
+use crate::quantity::Octets;
+
+/// What a cache did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CacheUse {
+    /// Reads that found all their lines; they take no time.
+    pub hits: u64,
+    /// Reads that had to get lines.
+    pub misses: u64,
+    /// Octets that reads through the cache asked for, hits and misses.
+    pub asked: Octets,
+    /// Octets of the lines that misses got over the bus.
+    pub filled: Octets,
+}
+
+impl std::iter::Sum for CacheUse {
+    fn sum<I: Iterator<Item = CacheUse>>(caches: I) -> CacheUse {
+        caches.fold(CacheUse::default(), |total, cache| CacheUse {
+            hits: total.hits + cache.hits,
+            misses: total.misses + cache.misses,
+            asked: total.asked + cache.asked,
+            filled: total.filled + cache.filled,
+        })
+    }
+}
+
+/// A direct-mapped cache: the line at an address has one place, the address in lines modulo their number.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    cached: Vec<Range<u32>>,
+    line: u32,
+    /// The line that each place holds.
+    lines: Vec<Option<u32>>,
+    used: CacheUse,
+}
+
+impl Cache {
+    /// An empty cache for the ranges of the kind that the configuration names; `None` for a machine without caches.
+    pub fn new(config: &CacheConfig, kinds: &[(Range<u32>, String)]) -> Option<Cache> {
+        let count = config.octets / config.line_octets.max(1);
+        let cached = kinds.iter().filter(|(_, kind)| *kind == config.kind).map(|(range, _)| range.clone()).collect();
+        let lines = vec![None; count as usize];
+        (count != 0).then(|| Cache { cached, line: config.line_octets, lines, used: CacheUse::default() })
+    }
+
+    /// Reads octets: how many have to come over the bus, or `None` for what is not cached. Only a read that lies in a
+    /// cached range altogether goes through the cache.
+    pub fn read(&mut self, address: u32, octets: Octets) -> Option<Octets> {
+        let end = u64::from(address) + octets.0;
+        let is_in = |range: &Range<u32>| range.start <= address && end <= u64::from(range.end);
+        if octets == Octets(0) || !self.cached.iter().any(is_in) {
+            return None;
+        }
+        let mut missing = 0;
+        for line in address / self.line..=((end - 1) / u64::from(self.line)) as u32 {
+            let place = line as usize % self.lines.len();
+            if self.lines[place].replace(line) != Some(line) {
+                missing += u64::from(self.line);
+            }
+        }
+        let filled = Octets(missing);
+        let used = &mut self.used;
+        *if missing == 0 { &mut used.hits } else { &mut used.misses } += 1;
+        used.asked += octets;
+        used.filled += filled;
+        Some(filled)
+    }
+
+    /// What it did so far.
+    pub fn used(&self) -> CacheUse {
+        self.used
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_got_once_and_thrown_out_by_those_of_the_same_place() {
+        let config = CacheConfig { octets: 64, line_octets: 16, ..CacheConfig::default() };
+        let kinds = [(100..400, "nodes".to_owned()), (400..500, "triangles".to_owned())];
+        let mut cache = Cache::new(&config, &kinds).expect("it has four lines");
+        let mut read = |address, octets| cache.read(address, Octets(octets)).map(|filled| filled.0);
+        // Octets, and what comes over the bus; four lines of 16, so 64 octets further on is the same place.
+        assert_eq!(read(112, 4), Some(16));
+        assert_eq!(read(112, 16), Some(0));
+        assert_eq!(read(120, 16), Some(16), "the second of two lines");
+        assert_eq!(read(176, 8), Some(16));
+        assert_eq!(read(112, 1), Some(16), "it was thrown out");
+        assert_eq!(read(120, 16), Some(0), "both are there again");
+        assert_eq!(read(96, 8), None, "it begins before the nodes");
+        assert_eq!(read(398, 8), None, "it ends after them");
+        assert_eq!(read(450, 8), None, "no node");
+    }
+
+    #[test]
+    fn a_machine_without_caches_has_none() {
+        assert!(Cache::new(&CacheConfig::default(), &[]).is_none());
+    }
+}

@@ -1,0 +1,115 @@
+//! How a schedule ends: with a frame, with a trap, or with the news that its recordings were of no use.
+
+use isa::Class;
+
+use super::Failure;
+use super::cache::Cache;
+use super::frame::{Frame, Method};
+use super::processor::Standing;
+use super::recording::Reason;
+use super::schedule::Machine;
+use super::trace::Spans;
+use crate::code::Code;
+use crate::exec::Watch;
+use crate::profile::{Observer, Profile};
+use crate::quantity::Octets;
+use crate::tally::Tally;
+use crate::trap::{Fault, Trap};
+
+/// Why a schedule has no result.
+pub enum Ending {
+    /// The machine stopped.
+    Failure(Failure),
+    /// The recorded work items turned out not to be what this machine does.
+    Lost(Reason),
+}
+
+impl Ending {
+    /// What a run without recordings ended with.
+    pub fn into_failure(self) -> Failure {
+        match self {
+            Ending::Failure(failure) => failure,
+            Ending::Lost(_) => unreachable!("only a replay has recordings to lose"),
+        }
+    }
+}
+
+impl<T: Watch, O: Observer> Machine<'_, T, O> {
+    /// The trap of a processor that stopped.
+    pub(super) fn trap(&self, number: usize) -> Trap {
+        let processor = &self.processors[number];
+        let kind = processor.fault.unwrap_or(Fault::Deadlock);
+        let trap = Trap::new(kind, number as u32, processor.state.pc, processor.code.program);
+        match processor.work.subject {
+            Some([x, y, z]) => {
+                trap.with_detail(format!("in the work item whose first message began with {x}, {y}, {z}"))
+            }
+            None => trap,
+        }
+    }
+
+    /// Whether everybody has done what was begun.
+    pub(super) fn check_end(&self) -> Result<(), Failure> {
+        let is_stuck = |number: usize| {
+            let processor = &self.processors[number];
+            match processor.standing {
+                Standing::Rests | Standing::Asleep => false,
+                // A core that waits without having received anything is out of work once the main processor is done.
+                Standing::Listens | Standing::Blocked { .. } if number != self.main() => {
+                    !self.has_main_halted || processor.work.subject.is_some()
+                }
+                _ => true,
+            }
+        };
+        let mut stuck = (0..self.processors.len()).filter(|&number| is_stuck(number));
+        let Some(first) = stuck.next() else { return Ok(()) };
+        let others: Vec<String> =
+            std::iter::once(first).chain(stuck).map(|number| self.processors[number].waits_for()).collect();
+        Err(self.trap(first).with_detail(others.join(", ")).into())
+    }
+
+    pub(super) fn finish(mut self, core_code: &Code, main_code: &Code) -> Frame {
+        let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
+        for processor in &mut self.processors {
+            processor.idle_until(clocks);
+        }
+        self.items.sort_by_key(|item| (item.start, item.core));
+        let caches = self.processors.iter().filter_map(|processor| processor.cache.as_ref());
+        let cache = caches.map(Cache::used).sum();
+        let used = self.processors.iter().map(|processor| processor.used).collect();
+        let spans =
+            self.processors.iter_mut().map(|processor| processor.spans.take().map_or(Vec::new(), Spans::into_list));
+        let spans = spans.collect();
+        let trace = self.bus_watch.map(|watch| watch.into_trace(spans));
+        let main = self.processors.pop().expect("a machine has a main processor");
+        let mut tally = Tally::new(core_code);
+        let mut profile: Option<Profile> = None;
+        for processor in self.processors {
+            tally.merge(&processor.tally);
+            match (&mut profile, processor.observer.into_profile(core_code, &processor.tally)) {
+                (Some(profile), Some(more)) => profile.merge(&more),
+                (profile, more) => *profile = more,
+            }
+        }
+        let asked = tally.counts(core_code)[Class::Octet] + main.tally.counts(main_code)[Class::Octet];
+        Frame {
+            method: Method::Stepped { why: "" },
+            clocks,
+            processors: used,
+            bus: self.bus.used(),
+            waits: self.bus.waits().to_vec(),
+            cache,
+            asked: Octets(asked),
+            aside: self.aside,
+            kinds: self.kinds.into_totals(),
+            memory: self.shared.memory,
+            tally,
+            main_profile: main.observer.into_profile(main_code, &main.tally),
+            main_tally: main.tally,
+            profile,
+            trace,
+            items: self.items,
+            item_count: self.item_count,
+        }
+    }
+}

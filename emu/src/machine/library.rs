@@ -1,0 +1,80 @@
+//! Recorded work items on their way from those who run them to a machine that replays them, a batch at a time.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use super::recorder::Prefix;
+use super::recording::{Reason, Recording};
+use crate::exec::Message;
+
+/// Recordings, or why there are no more.
+pub type Batch = Result<Vec<Arc<Recording>>, Reason>;
+
+/// Recordings that a machine holds at once, at most.
+const MOST_HELD: usize = 1 << 14;
+
+/// The recordings of one machine, each of which it uses once.
+#[derive(Debug)]
+pub struct Library {
+    /// What every work item does before its message comes.
+    pub prefix: Prefix,
+    /// Number of cores that the items were recorded with.
+    recorded_cores: u32,
+    /// Number of cores of this machine.
+    cores: u32,
+    batches: Receiver<Arc<Batch>>,
+    held: HashMap<Message, Vec<Arc<Recording>>>,
+    count: usize,
+    /// Why the replay is worth nothing.
+    pub lost: Option<Reason>,
+}
+
+impl Library {
+    /// The recordings that come through a channel.
+    pub fn new(prefix: Prefix, recorded_cores: u32, cores: u32, batches: Receiver<Arc<Batch>>) -> Library {
+        Library { prefix, recorded_cores, cores, batches, held: HashMap::new(), count: 0, lost: None }
+    }
+
+    /// Takes the recording of the work item that begins with a message; `None` when the replay is lost.
+    pub fn take(&mut self, message: &Message) -> Option<Arc<Recording>> {
+        loop {
+            if let Some(same) = self.held.get_mut(message) {
+                let recording = same.pop();
+                if same.is_empty() {
+                    self.held.remove(message);
+                }
+                self.count -= 1;
+                return recording;
+            }
+            let batch = self.batches.recv().ok().filter(|_| self.count < MOST_HELD);
+            match batch.as_deref() {
+                Some(Ok(batch)) => self.hold(batch)?,
+                Some(Err(reason)) => return self.lose(reason),
+                None => return self.lose("the main processor's messages depend on time or on the number of cores"),
+            }
+        }
+    }
+
+    fn hold(&mut self, batch: &[Arc<Recording>]) -> Option<()> {
+        for recording in batch {
+            if recording.depends_on_cores && self.recorded_cores != self.cores {
+                return self.lose("the work items depend on the number of cores");
+            }
+            self.held.entry(recording.message).or_default().push(recording.clone());
+            self.count += 1;
+        }
+        Some(())
+    }
+
+    /// Notes that the replay is worth nothing, and gives nothing.
+    pub fn lose<R>(&mut self, reason: Reason) -> Option<R> {
+        self.lost.get_or_insert(reason);
+        None
+    }
+
+    /// Whether each recording was used; waits for the last one.
+    pub fn is_used_up(&mut self) -> bool {
+        self.count == 0 && self.batches.recv().is_err()
+    }
+}

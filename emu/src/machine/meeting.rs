@@ -1,0 +1,63 @@
+//! Where processors wait for each other: mailboxes that are empty or full, and the barrier.
+
+use super::processor::{Act, Processor, Standing};
+use super::schedule::Machine;
+use crate::exec::Watch;
+use crate::profile::Observer;
+use crate::quantity::Clocks;
+
+impl<T: Watch, O: Observer> Machine<'_, T, O> {
+    /// Sets when a listening processor takes its next message, when there is one.
+    pub(super) fn listen(&mut self, number: usize) {
+        let processor = &mut self.processors[number];
+        if let Some((arrival, _)) = self.shared.mailboxes.next(number as u32) {
+            processor.standing = Standing::Acts { at: arrival.max(processor.clock), act: Act::Receive };
+        }
+    }
+
+    /// A message has come for a processor.
+    pub(super) fn deliver(&mut self, receiver: usize) {
+        let is_main = receiver == self.main();
+        match self.processors[receiver].standing {
+            Standing::Listens | Standing::Acts { act: Act::Receive, .. } => self.listen(receiver),
+            Standing::Asleep => self.start(receiver),
+            Standing::Rests if !is_main => {
+                if let Some((arrival, _)) = self.shared.mailboxes.next(receiver as u32) {
+                    let processor = &mut self.processors[receiver];
+                    processor.idle_until(arrival.max(processor.clock));
+                }
+                self.start(receiver);
+            }
+            _ => {}
+        }
+    }
+
+    /// A receiver has emptied the mailbox that it has for a sender.
+    pub(super) fn unblock(&mut self, sender: usize, receiver: u32, at: Clocks) {
+        let processor = &mut self.processors[sender];
+        if processor.standing == (Standing::Blocked { to: receiver }) {
+            processor.idle_until(at.max(processor.clock));
+            self.ask_for_transfer(sender);
+        }
+    }
+
+    /// Lets all leave the barrier, when nobody is missing, at the clock at which the last one came or had no more to do.
+    pub(super) fn leave_barrier(&mut self) {
+        let is_here = |processor: &Processor<O>| match processor.standing {
+            Standing::Meets | Standing::Rests => true,
+            // Nobody but the main processor begins work.
+            Standing::Asleep | Standing::Listens => self.has_main_halted && processor.work.subject.is_none(),
+            _ => false,
+        };
+        if !self.processors.iter().all(is_here) {
+            return;
+        }
+        let meets = |processor: &&mut Processor<O>| processor.standing == Standing::Meets;
+        let last = self.processors.iter_mut().filter(meets).map(|processor| processor.clock).max();
+        let at = last.unwrap_or_default().max(self.now);
+        for processor in self.processors.iter_mut().filter(meets) {
+            processor.standing = Standing::Acts { at, act: Act::Leave };
+        }
+        self.meeting = 0;
+    }
+}

@@ -1,0 +1,73 @@
+//! Machines that are known by name. The first is the report's; each other one changes it in one direction.
+
+use isa::Class;
+
+use super::config::{BusConfig, CacheConfig, Config};
+
+/// A machine that is known by name.
+#[derive(Clone, Copy, Debug)]
+pub struct Preset {
+    /// What the user types.
+    pub name: &'static str,
+    /// One line on what it is.
+    pub description: &'static str,
+    make: fn() -> Config,
+}
+
+impl Preset {
+    /// The machine.
+    pub fn config(&self) -> Config {
+        (self.make)()
+    }
+}
+
+/// All presets, the report's first.
+pub const PRESETS: &[Preset] = &[
+    Preset {
+        name: "report",
+        description: "the report's: four cores at 100 MHz, one clock an elementary operation, a bus of an octet in two clocks",
+        make: Config::default,
+    },
+    Preset {
+        name: "wide32",
+        description: "a bus of 32 bits a clock in bursts of 64 octets, and three units for add, sub and mul",
+        make: wide32,
+    },
+    Preset {
+        name: "double_buffer",
+        description: "the report's, with block loads that do not stop the core: a second buffer, filled ahead",
+        make: || Config { bus: BusConfig { overlap: true, ..BusConfig::default() }, ..Config::default() },
+    },
+    Preset {
+        name: "node_cache",
+        description: "the report's, with a private cache of 4 KiB for tree nodes in each core",
+        make: || Config { cache: CacheConfig { octets: 4096, ..CacheConfig::default() }, ..Config::default() },
+    },
+];
+
+/// Two clocks before a burst, the report's access time, are paid once in 64 octets instead of for each one.
+fn wide32() -> Config {
+    let bus =
+        BusConfig { octets_per_beat: 4, clocks_per_beat: 1, setup_clocks: 2, burst_octets: 64, ..BusConfig::default() };
+    let mut config = Config { bus, ..Config::default() };
+    for class in [Class::Add, Class::Sub, Class::Mul] {
+        config.units.0[class] = 3;
+    }
+    config
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_machines_and_differ() {
+        for (at, preset) in PRESETS.iter().enumerate() {
+            preset.config().check().expect(preset.name);
+            for other in &PRESETS[..at] {
+                assert_ne!(other.name, preset.name);
+                assert_ne!(other.config(), preset.config());
+            }
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::Setup;
+use super::independence::Independence;
+use super::kinds::Kinds;
+use super::recording::{Reason, Recording, Segment};
+use super::station::{Access, Request};
+use crate::checked::{self, Pause, Seat, State};
+use crate::code::Code;
+use crate::exec::{Link, Message, Watch};
+use crate::octets::{Buffer, Memory};
+use crate::profile::Observer;
+use crate::quantity::Octets;
+use crate::tally::Tally;
+use crate::trap::{Fault, Stop};
+
+/// The link of a work item that is recorded: it says what it asks for, then gets it at once.
+struct Wire<'a> {
+    memory: &'a Memory,
+    main: u32,
+    message: Option<Message>,
+    has_leave: bool,
+    request: Option<Request>,
+    sent: Vec<Message>,
+    unfit: Option<Reason>,
+}
+
+impl Wire<'_> {
+    fn enter(&mut self, request: Request) -> Result<(), Stop> {
+        if std::mem::take(&mut self.has_leave) {
+            return Ok(());
+        }
+        self.request = Some(request);
+        Err(Stop::Wait)
+    }
+
+    fn refuse(&mut self, reason: Reason) -> Stop {
+        self.unfit = Some(reason);
+        Stop::Wait
+    }
+
+    fn read_octets(&mut self, access: Access, from: u32, octets: u32) -> Result<&[u8], Stop> {
+        let memory = self.memory;
+        let found = memory.slice(from, octets)?;
+        self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })?;
+        Ok(found)
+    }
+}
+
+impl Link for Wire<'_> {
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let place = buffer.slice_mut(to, octets)?;
+        place.copy_from_slice(self.read_octets(Access::Load, from, octets)?);
+        Ok(())
+    }
+
+    fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
+        Err(self.refuse(WRITES))
+    }
+
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        let octets = self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
+        for (word, octets) in words.iter_mut().zip(octets.chunks_exact(4)) {
+            *word = i32::from_le_bytes(std::array::from_fn(|at| octets[at]));
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
+        Err(self.refuse(WRITES))
+    }
+
+    fn fetch_add(&mut self, _: u32, _: i32) -> Result<i32, Stop> {
+        Err(self.refuse(WRITES))
+    }
+
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        let receiver = u32::try_from(to).ok().filter(|&to| to <= self.main);
+        let receiver = receiver.ok_or(Fault::NoSuchCore { number: to, largest: self.main })?;
+        if receiver != self.main {
+            return Err(self.refuse("the cores send messages to each other"));
+        }
+        self.enter(Request::Send { to: receiver, octets: Octets(message.octets().into()) })?;
+        self.sent.push(message);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<(Message, u32), Stop> {
+        if self.message.is_none() {
+            return Err(self.refuse("a work item takes more than one message"));
+        }
+        self.enter(Request::Receive)?;
+        let message = self.message.take().ok_or(Stop::Wait)?;
+        Ok((message, self.main))
+    }
+
+    fn barrier(&mut self) -> Result<(), Stop> {
+        Err(self.refuse("the cores wait for each other at a barrier"))
+    }
+}
+
+const WRITES: Reason = "the cores write to global memory";
+const BEGINS: Reason = "a work item does not begin with a message";
+
+/// What a work item does before it takes its message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Prefix {
+    /// Clocks of computing.
+    pub clocks: u64,
+    /// Word of the receive.
+    pub pc: u32,
+}
+
+/// Room for the segments of work items that are recorded at the same time.
+pub struct Room {
+    taken: AtomicUsize,
+    most: usize,
+}
+
+impl Room {
+    /// Segments that a long work item takes room for at once.
+    const PORTION: usize = 4096;
+
+    /// For that many segments.
+    pub fn new(most: usize) -> Room {
+        Room { taken: AtomicUsize::new(0), most }
+    }
+
+    /// Whether more was wanted than there is.
+    pub fn is_full(&self) -> bool {
+        self.taken.load(Ordering::Relaxed) > self.most
+    }
+
+    /// Takes room for segments; false when there is none.
+    fn take(&self, segments: usize) -> bool {
+        self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most
+    }
+}
+
+/// A core that records, with the counts of all that it recorded.
+pub struct Recorder<'a, T, O> {
+    code: &'a Code<'a>,
+    memory: &'a Memory,
+    arithmetic: T,
+    seat: Seat,
+    state: State,
+    initial: Buffer,
+    /// Passes of all items.
+    pub tally: Tally,
+    /// Octets of all items.
+    pub kinds: Kinds,
+    /// Who watches them.
+    pub observer: Independence<O>,
+}
+
+impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
+    /// A core that has recorded nothing.
+    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T) -> Self {
+        let config = setup.config;
+        let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
+        let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
+        Recorder {
+            state: State::new(code, initial.clone()),
+            tally: Tally::new(code),
+            kinds: Kinds::new(&setup.kinds),
+            observer: Independence::new(code),
+            code,
+            memory,
+            arithmetic,
+            seat,
+            initial,
+        }
+    }
+
+    fn run(&mut self, wire: &mut Wire) -> Pause {
+        checked::run(self.code, self.seat, &mut self.state, &self.arithmetic, wire, &mut self.tally, &mut self.observer)
+    }
+
+    fn wire(&self, message: Message) -> Wire<'a> {
+        Wire {
+            memory: self.memory,
+            main: self.seat.cores,
+            message: Some(message),
+            has_leave: false,
+            request: None,
+            sent: Vec::new(),
+            unfit: None,
+        }
+    }
+
+    /// What every work item does before its message comes. The recorder's counts are worth nothing after that.
+    ///
+    /// # Errors
+    /// Something else comes first.
+    pub fn prefix(mut self) -> Result<Prefix, Reason> {
+        let mut wire = self.wire(Message::new([[0; 3]]));
+        match self.run(&mut wire) {
+            Pause::Wait if wire.request == Some(Request::Receive) => {
+                Ok(Prefix { clocks: self.state.clocks, pc: self.state.pc })
+            }
+            _ => Err(BEGINS),
+        }
+    }
+
+    /// Runs a work item from reset to its end.
+    ///
+    /// # Errors
+    /// Why it cannot be replayed.
+    pub fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
+        self.state.begin(self.code, &self.initial);
+        self.observer.begin(self.state.pc);
+        let mut wire = self.wire(message);
+        let mut segments = Vec::new();
+        let mut octets = Octets(0);
+        let mut before = 0;
+        let end = loop {
+            let pause = self.run(&mut wire);
+            if pause != Pause::Wait {
+                break pause;
+            }
+            if let Some(reason) = wire.unfit {
+                return Err(reason);
+            }
+            let request = wire.request.take().ok_or(BEGINS)?;
+            if request != Request::Receive {
+                if wire.message.is_some() {
+                    return Err(BEGINS);
+                }
+                let clocks = self.state.clocks - before;
+                let segment = Segment::new(clocks, self.state.pc, request, wire.sent.len());
+                let segment = segment.ok_or("a segment of a work item is too long")?;
+                octets += segment.octets();
+                self.kinds.add(Some(request));
+                segments.push(segment);
+                if segments.len().is_multiple_of(Room::PORTION) && !room.take(Room::PORTION) {
+                    return Err("there is no room for it");
+                }
+            }
+            before = self.state.clocks;
+            wire.has_leave = true;
+        };
+        if wire.message.is_some() {
+            return Err(BEGINS);
+        }
+        self.observer.end();
+        room.take(segments.len() % Room::PORTION);
+        if self.observer.depends_on_core {
+            return Err("a work item asks which core it runs on");
+        }
+        Ok(Recording {
+            message,
+            segments,
+            octets,
+            sent: wire.sent,
+            last_clocks: self.state.clocks - before,
+            last_pc: self.state.pc,
+            end,
+            steps: self.state.steps,
+            elementary: self.state.elementary,
+            depends_on_cores: self.observer.depends_on_cores,
+        })
+    }
+}

@@ -1,0 +1,100 @@
+//! What a work item did, apart from when: computing, transfers and messages one after the other. How it is put on the
+//! clock is not said here.
+
+use std::ops::Range;
+
+use super::station::{Access, Request};
+use crate::checked::Pause;
+use crate::exec::Message;
+use crate::quantity::Octets;
+
+/// Why a program's work items cannot be replayed and have to be stepped.
+pub type Reason = &'static str;
+
+/// Computing, and what the item asks for after it: 16 octets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Clocks of computing.
+    pub clocks: u32,
+    /// Word of the instruction that asks.
+    pub pc: u32,
+    /// First octet in global memory, or number of the message among those that the item sends.
+    pub address: u32,
+    /// Octets and access in one word.
+    what: u32,
+}
+
+/// A segment's access, in the lowest bits; 0 is a message.
+const LOAD: u32 = 1;
+const READ: u32 = 2;
+const WRITE: u32 = 3;
+
+impl Segment {
+    /// The segment that ends with a request; `None` for one that no replayed item makes, or that does not fit.
+    pub fn new(clocks: u64, pc: u32, request: Request, sent: usize) -> Option<Segment> {
+        let (address, octets, kind) = match request {
+            Request::Transfer { address, octets, access: Access::Load } => (address, octets, LOAD),
+            Request::Transfer { address, octets, access: Access::Read } => (address, octets, READ),
+            Request::Transfer { address, octets, access: Access::Write } => (address, octets, WRITE),
+            Request::Send { octets, .. } => (u32::try_from(sent).ok()?, octets, 0),
+            Request::Receive | Request::Barrier => return None,
+        };
+        let octets = u32::try_from(octets.0).ok().filter(|&octets| octets < 1 << 30)?;
+        Some(Segment { clocks: u32::try_from(clocks).ok()?, pc, address, what: octets << 2 | kind })
+    }
+
+    /// Octets that go over the bus.
+    #[inline]
+    pub fn octets(&self) -> Octets {
+        Octets((self.what >> 2).into())
+    }
+
+    /// Whether global memory is read.
+    #[inline]
+    pub fn is_read(&self) -> bool {
+        matches!(self.what & 3, LOAD | READ)
+    }
+
+    /// The octets of global memory that a transfer moves.
+    #[inline]
+    pub fn range(&self) -> Range<u64> {
+        u64::from(self.address)..u64::from(self.address) + self.octets().0
+    }
+
+    /// The request; messages go to the main processor, which has that number.
+    pub fn request(&self, main: u32) -> Request {
+        let (address, octets) = (self.address, self.octets());
+        let access = match self.what & 3 {
+            LOAD => Access::Load,
+            READ => Access::Read,
+            WRITE => Access::Write,
+            _ => return Request::Send { to: main, octets },
+        };
+        Request::Transfer { address, octets, access }
+    }
+}
+
+/// A work item from its first message to its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recording {
+    /// The message that it began with.
+    pub message: Message,
+    /// What it did after that.
+    pub segments: Vec<Segment>,
+    /// Octets of all of those.
+    pub octets: Octets,
+    /// The messages that it sent to the main processor.
+    pub sent: Vec<Message>,
+    /// Clocks of computing after the last segment.
+    pub last_clocks: u64,
+    /// Word of the instruction at which it ended.
+    pub last_pc: u32,
+    /// How it ended: by halting or by a fault.
+    pub end: Pause,
+    /// Instructions that it executed, those before its first message included.
+    pub steps: u64,
+    /// Elementary operations of those.
+    pub elementary: u64,
+    /// Whether what it did may depend on the number of cores.
+    pub depends_on_cores: bool,
+}

@@ -1,0 +1,169 @@
+//! Finds out what work there will be: runs the main processor's program ahead with as many cores as it likes, which
+//! answer at once. What it hands out is recorded on all host threads.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::Setup;
+use super::kinds::Kinds;
+use super::library::Batch;
+use super::recorder::{Recorder, Room};
+use super::recording::{Reason, Recording};
+use crate::checked::{self, Pause, Seat, State};
+use crate::code::Code;
+use crate::exec::{Link, Message, Watch};
+use crate::octets::{Buffer, Memory};
+use crate::profile::{Observer, Profile, Unobserved};
+use crate::tally::Tally;
+use crate::trap::{Fault, Stop};
+
+/// Cores that the main processor sees, and so work items in a batch.
+const LANES: u32 = 256;
+
+/// Segments in a batch, at most; 64 MiB of them. What is longer is stepped.
+const MOST_SEGMENTS: usize = 1 << 22;
+
+const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
+
+/// Instructions that the main processor may take between two batches.
+const MOST_STEPS: u64 = 1 << 32;
+
+/// The main processor's link: cores that take everything and answer in the order of their work.
+struct Desk<'a> {
+    memory: &'a mut Memory,
+    work: Vec<(u32, Message)>,
+    answers: VecDeque<(Message, u32)>,
+}
+
+impl Link for Desk<'_> {
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        buffer.slice_mut(to, octets)?.copy_from_slice(self.memory.slice(from, octets)?);
+        Ok(())
+    }
+
+    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        self.memory.slice_mut(to, octets)?.copy_from_slice(buffer.slice(from, octets)?);
+        Ok(())
+    }
+
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        Ok(self.memory.read_words(address, words)?)
+    }
+
+    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
+        Ok(self.memory.put_words(address, words)?)
+    }
+
+    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
+        let before = self.memory.word(address)?;
+        self.memory.put_words(address, &[before.wrapping_add(more)])?;
+        Ok(before)
+    }
+
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        let core = u32::try_from(to).ok().filter(|&to| to < LANES);
+        let core = core.ok_or(Fault::NoSuchCore { number: to, largest: LANES })?;
+        if self.work.len() >= 2 * LANES as usize {
+            return Err(Stop::Wait);
+        }
+        self.work.push((core, message));
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<(Message, u32), Stop> {
+        self.answers.pop_front().ok_or(Stop::Wait)
+    }
+
+    fn barrier(&mut self) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+}
+
+/// Records work items on all host threads. The recordings are in the order of the messages, whoever made them.
+fn record<T: Watch + Send, O: Observer + Send>(
+    recorders: &mut [Recorder<T, O>],
+    work: &[(u32, Message)],
+) -> Result<Vec<Arc<Recording>>, Reason> {
+    let (next, room) = (AtomicUsize::new(0), Room::new(MOST_SEGMENTS));
+    let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
+    found.resize_with(recorders.len(), Vec::new);
+    rayon::scope(|scope| {
+        for (recorder, found) in recorders.iter_mut().zip(&mut found) {
+            let (next, room) = (&next, &room);
+            scope.spawn(move |_| {
+                while !room.is_full()
+                    && let at = next.fetch_add(1, Ordering::Relaxed)
+                    && let Some((_, message)) = work.get(at)
+                {
+                    found.push((at, recorder.record(*message, room)));
+                }
+            });
+        }
+    });
+    // Whether they are too many does not depend on who recorded what first; so this reason comes before others.
+    if room.is_full() {
+        return Err(TOO_LONG);
+    }
+    let mut found: Vec<_> = found.into_iter().flatten().collect();
+    found.sort_unstable_by_key(|(at, _)| *at);
+    found.into_iter().map(|(_, recording)| recording.map(Arc::new)).collect()
+}
+
+/// What all work items together counted.
+pub struct Survey {
+    /// Their passes.
+    pub tally: Tally,
+    /// Their octets by kind.
+    pub kinds: Kinds,
+    /// Their functions and regions.
+    pub profile: Option<Profile>,
+}
+
+/// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
+pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
+    setup: &Setup,
+    memory: &Memory,
+    arithmetic: T,
+    hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
+) -> Survey {
+    let config = setup.config;
+    let core_code = Code::new(setup.core, setup.isa, config.timing());
+    let main_code = Code::new(setup.main, setup.isa, config.timing());
+    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone());
+    let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
+    let mut memory = memory.clone();
+    let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
+    let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
+    let mut tally = Tally::new(&main_code);
+    loop {
+        let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
+        let seat = Seat { core: LANES, cores: LANES, step_limit };
+        let nobody = &mut Unobserved;
+        let pause = checked::run(&main_code, seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
+        if desk.work.is_empty() {
+            break;
+        }
+        let batch = record(&mut recorders, &desk.work);
+        if let Ok(batch) = &batch {
+            for (&(core, _), recording) in desk.work.iter().zip(batch) {
+                desk.answers.extend(recording.sent.iter().map(|&message| (message, core)));
+            }
+        }
+        desk.work.clear();
+        let is_over = batch.is_err() || pause != Pause::Wait;
+        if !hand_over(Arc::new(batch)) || is_over {
+            break;
+        }
+    }
+    let mut survey = Survey { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None };
+    for recorder in recorders {
+        survey.tally.merge(&recorder.tally);
+        survey.kinds.merge(recorder.kinds.totals());
+        match (&mut survey.profile, recorder.observer.into_profile(&core_code, &recorder.tally)) {
+            (Some(profile), Some(more)) => profile.merge(&more),
+            (profile, more) => *profile = more,
+        }
+    }
+    survey
+}

@@ -1,0 +1,79 @@
+//! What a machine is given to do, apart from the machine: programs, global memory and its kinds of data. A picture is
+//! one such load, the report's estimate of a picture another.
+
+use emu::machine::{Config, Options, Setup};
+use emu::octets::Memory;
+use isa::Isa;
+use isa::diagnostic::Report;
+use kernels::annex::load;
+use kernels::build::Build;
+use scenes::image::{self, Image, Kind};
+
+use crate::failure::Failure;
+use crate::job::Job;
+
+/// Name of the report's estimate where a scene may be named.
+pub const ANNEX: &str = "annex";
+
+/// Its pixels.
+const ANNEX_PIXELS: u32 = 1_000;
+
+/// Programs and memory for a machine.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// The rows of the programs.
+    pub isa: Isa,
+    /// The programs.
+    pub build: Build,
+    /// Global memory.
+    pub memory: Memory,
+    /// Names for ranges of it.
+    pub kinds: Vec<(std::ops::Range<u32>, String)>,
+}
+
+/// What a kind of data is called where its octets are counted.
+fn traffic(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Frame => "pixels",
+        kind => kind.name(),
+    }
+}
+
+impl Load {
+    /// The picture of a job, with the description of its memory; the octets have moved into the load.
+    ///
+    /// # Errors
+    /// A scene that does not fit its formats, errors in the user's kernels.
+    pub fn picture(job: &Job) -> Result<(Load, Image), Failure> {
+        let isa = Isa::base();
+        let mut image = image::build(&job.scene, &job.view, &job.memory)?;
+        let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
+        let kinds = image.regions.iter().map(|(kind, range)| (range.clone(), traffic(*kind).to_owned())).collect();
+        let memory = Memory::new(std::mem::take(&mut image.bytes));
+        Ok((Load { isa, build, memory, kinds }, image))
+    }
+
+    /// The report's estimate of [`ANNEX_PIXELS`] pixels.
+    ///
+    /// # Errors
+    /// None that a user could make.
+    pub fn annex() -> Result<Load, Failure> {
+        let isa = Isa::base();
+        let (cores, main) = load::programs(ANNEX_PIXELS, &isa)?;
+        let crop = kernels::build::Crop { column: 0, row: 0, width: ANNEX_PIXELS, height: 1 };
+        let build = Build { cores, main, crop, warnings: Report::default() };
+        Ok(Load { isa, build, memory: Memory::new(vec![0; load::MEMORY]), kinds: Vec::new() })
+    }
+
+    /// The load on a machine.
+    pub fn setup<'a>(&'a self, config: &'a Config, options: Options) -> Setup<'a> {
+        Setup {
+            config,
+            isa: &self.isa,
+            core: &self.build.cores,
+            main: &self.build.main,
+            kinds: self.kinds.clone(),
+            options,
+        }
+    }
+}

@@ -4,7 +4,7 @@ use isa::Class;
 use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
-use crate::result::{Processor, Region, Render};
+use crate::result::{Processor, Region, Render, RunMethod};
 use crate::table::{count, grouped, percent, row, short, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -98,7 +98,7 @@ fn left_last(rows: Vec<Vec<String>>) -> String {
 }
 
 /// Where the clocks of all processors went, and the bus.
-pub fn processors(result: &Render, clock_hz: u64) -> String {
+pub fn processors(result: &Render) -> String {
     let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "octets", "pixels"])];
     let processor = |name: String, of: &Processor| {
         let share = |part: u64| percent(part, result.clocks);
@@ -110,16 +110,32 @@ pub fn processors(result: &Render, clock_hz: u64) -> String {
     rows.push(main);
     let bus = &result.bus;
     let mut text = format!(
-        "Machine: {} clocks, {} at {} MHz\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
+        "Machine: {} clocks, {} at {} MHz, {} a pixel; {}\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
         grouped(result.clocks),
-        seconds(result.clocks as f64 / clock_hz as f64),
-        clock_hz as f64 / 1e6,
+        seconds(result.seconds),
+        result.clock_hz as f64 / 1e6,
+        seconds(result.pixel_seconds),
+        match result.method {
+            RunMethod::Replayed => "pixels replayed".to_owned(),
+            RunMethod::Stepped { why } => format!("stepped: {why}"),
+        },
         table(rows),
         percent(bus.busy, result.clocks),
         grouped(bus.moved),
         grouped(bus.transfers),
         grouped(bus.longest_wait),
     );
+    text += &waits(&result.cores);
+    let cache = &bus.cache;
+    if cache.hits + cache.misses != 0 {
+        text += &format!(
+            "caches: {} of {} reads hit, {} octets filled instead of {}\n",
+            percent(cache.hits, cache.hits + cache.misses),
+            grouped(cache.hits + cache.misses),
+            grouped(cache.filled),
+            grouped(cache.asked),
+        );
+    }
     let kinds = bus.kinds.0.iter().filter(|(_, octets)| *octets != 0);
     let kinds: Vec<String> =
         kinds.map(|(kind, octets)| format!("{kind} {}", percent(*octets, bus.moved + bus.aside))).collect();
@@ -127,6 +143,33 @@ pub fn processors(result: &Render, clock_hz: u64) -> String {
         text += &format!("octets: {}\n", kinds.join(", "));
     }
     text
+}
+
+/// How long the cores waited for the bus: the share of no wait, then bounds that so many waits keep.
+fn waits(cores: &[Processor]) -> String {
+    let columns = cores.iter().map(|core| core.waits.len()).max().unwrap_or(0);
+    let count = |column: usize| cores.iter().filter_map(|core| core.waits.get(column)).sum::<u64>();
+    let counts: Vec<u64> = (0..columns).map(count).collect();
+    let total: u64 = counts.iter().sum();
+    if total == 0 {
+        return String::new();
+    }
+    // Column n ends before 2^n clocks.
+    let bound = |share: f64| {
+        let mut sum = 0;
+        let is_reached = |&count: &u64| {
+            sum += count;
+            sum as f64 >= share * total as f64
+        };
+        1_u64 << counts.iter().position(is_reached).unwrap_or(columns)
+    };
+    format!(
+        "waits of the cores: none {}, half below {}, nine of ten below {}, 99 of 100 below {} clocks\n",
+        percent(counts[0], total),
+        grouped(bound(0.5)),
+        grouped(bound(0.9)),
+        grouped(bound(0.99)),
+    )
 }
 
 /// A time with a fitting unit.

@@ -62,7 +62,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
         summary::title(&result) + &summary::rays(&result),
         summary::functions(&result),
         summary::classes(&result),
-        summary::processors(&result, job.machine.clock_hz),
+        summary::processors(&result),
         result.error.as_ref().map(summary::error).unwrap_or_default(),
         pictures,
         summary::hashes(&result),

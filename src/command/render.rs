@@ -86,7 +86,7 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     }
     match arguments.json {
         true => terminal.print(&result.json())?,
-        false => terminal.print(&text(&result, &job, &drawing))?,
+        false => terminal.print(&text(&result, &drawing))?,
     }
     if is_default && let Some(output) = output {
         terminal.say(&format!("picture: {}", output.display()));
@@ -119,12 +119,12 @@ fn format(path: &Path) -> Format {
     Format::of(path).expect("the parser lets only such names pass")
 }
 
-fn text(result: &Render, job: &Job, drawing: &Drawing) -> String {
+fn text(result: &Render, drawing: &Drawing) -> String {
     let mut parts = vec![
         summary::title(result) + &summary::rays(result),
         summary::functions(result),
         summary::classes(result),
-        summary::processors(result, job.machine.clock_hz),
+        summary::processors(result),
     ];
     parts.extend(result.error.as_ref().map(summary::error));
     if drawing.words.len() == 1 {

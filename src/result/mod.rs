@@ -8,7 +8,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use emu::machine::ProcessorUse;
+use emu::machine::waits::Waits;
+use emu::machine::{Method, ProcessorUse};
 use emu::profile::{Profile, RegionProfile};
 use isa::{Class, Counts};
 use kernels::Function;
@@ -88,8 +89,16 @@ pub struct Render {
     pub counts: ByClass,
     /// Octets that the cores moved over the bus.
     pub octets: u64,
+    /// Clock rate of the machine in hertz.
+    pub clock_hz: u64,
     /// Length of the frame in clocks.
     pub clocks: u64,
+    /// The same in seconds.
+    pub seconds: f64,
+    /// Seconds a pixel.
+    pub pixel_seconds: f64,
+    /// How the frame was run; nothing else depends on it.
+    pub method: RunMethod,
     /// Where the clocks of each core went.
     pub cores: Vec<Processor>,
     /// Functions of the cores' program.
@@ -113,6 +122,28 @@ pub struct Render {
     pub host: Option<Host>,
 }
 
+/// How a frame was run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum RunMethod {
+    /// Pixels ran by themselves, and what they did was replayed on the machine's clock.
+    Replayed,
+    /// Everything happened in the order of the machine's clock.
+    Stepped {
+        /// Why it could not be replayed.
+        why: &'static str,
+    },
+}
+
+impl From<Method> for RunMethod {
+    fn from(method: Method) -> RunMethod {
+        match method {
+            Method::Replayed => RunMethod::Replayed,
+            Method::Stepped { why } => RunMethod::Stepped { why },
+        }
+    }
+}
+
 /// Rays by kind, counted from calls of the kernels' functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Rays {
@@ -127,7 +158,7 @@ pub struct Rays {
 }
 
 /// Where the clocks of a processor went; `busy + waiting + idle` are the clocks of the frame.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Processor {
     /// Clocks of instructions.
     pub busy: u64,
@@ -139,6 +170,10 @@ pub struct Processor {
     pub octets: u64,
     /// Pixels that it drew.
     pub items: u64,
+    /// Longest wait from a request to its grant, in clocks.
+    pub longest_wait: u64,
+    /// Waits by length: how many of no clock, of 1, of 2 to 3, of 4 to 7 and so on, up to the longest one.
+    pub waits: Vec<u64>,
 }
 
 /// A function or region.
@@ -164,6 +199,8 @@ pub struct Main {
     /// Where its clocks went.
     #[serde(flatten)]
     pub clocks: Processor,
+    /// Share of the frame in which it was not idle.
+    pub load: f64,
     /// Functions of its program.
     pub functions: Vec<Region>,
 }
@@ -179,12 +216,31 @@ pub struct Bus {
     pub asked: u64,
     /// Octets that were moved beside it.
     pub aside: u64,
+    /// Share of the frame in which it was busy.
+    pub utilisation: f64,
     /// Transfers and messages.
     pub transfers: u64,
+    /// Grants: a transfer takes one for each of its bursts.
+    pub bursts: u64,
     /// Longest wait from a request to its grant, in clocks.
     pub longest_wait: u64,
-    /// Octets by kind of data.
+    /// Octets by kind of data; `messages` are the messages.
     pub kinds: Kinds,
+    /// The cores' caches together.
+    pub cache: Cache,
+}
+
+/// Caches.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct Cache {
+    /// Reads that took no time.
+    pub hits: u64,
+    /// Reads that had to get lines.
+    pub misses: u64,
+    /// Octets that hits and misses asked for.
+    pub asked: u64,
+    /// Octets of the lines that came over the bus.
+    pub filled: u64,
 }
 
 /// Octets by kind of data, in the order of the addresses.
@@ -237,6 +293,7 @@ impl Render {
     pub fn new(job: &Job, drawing: &Drawing) -> Render {
         let frame = &drawing.frame;
         let (cores, main) = frame.processors.split_at(job.machine.cores as usize);
+        let main_use = main.first().copied().unwrap_or_default();
         let whole = (drawing.crop.width, drawing.crop.height) == job.view.size;
         let counts = frame.profile.as_ref().map(Profile::total).unwrap_or_default();
         let main_counts = frame.main_profile.as_ref().map(Profile::total).unwrap_or_default();
@@ -255,14 +312,19 @@ impl Render {
             instructions: cores.iter().map(|core| core.instructions).sum(),
             counts: ByClass(counts),
             octets: cores.iter().map(|core| core.octets.0).sum(),
+            clock_hz: job.machine.clock_hz,
             clocks: frame.clocks.0,
-            cores: cores.iter().map(Processor::new).collect(),
+            seconds: frame.seconds(job.machine.clock_hz),
+            pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
+            method: frame.method.into(),
+            cores: (0..).zip(cores).map(|(number, core)| Processor::new(core, frame.waits.get(number))).collect(),
             functions: regions(frame.profile.as_ref(), true),
             regions: regions(frame.profile.as_ref(), false),
             main: Main {
                 instructions: main.iter().map(|main| main.instructions).sum(),
                 counts: ByClass(main_counts),
-                clocks: Processor::new(main.first().unwrap_or(&ProcessorUse::default())),
+                clocks: Processor::new(&main_use, frame.waits.get(cores.len())),
+                load: (main_use.busy + main_use.waiting).0 as f64 / frame.clocks.0.max(1) as f64,
                 functions: regions(frame.main_profile.as_ref(), true),
             },
             bus: Bus {
@@ -270,9 +332,17 @@ impl Render {
                 moved: frame.bus.moved.0,
                 asked: frame.asked.0,
                 aside: frame.aside.0,
+                utilisation: frame.utilisation(),
                 transfers: frame.bus.transfers,
+                bursts: frame.bus.bursts,
                 longest_wait: frame.bus.longest_wait.0,
                 kinds: Kinds(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
+                cache: Cache {
+                    hits: frame.cache.hits,
+                    misses: frame.cache.misses,
+                    asked: frame.cache.asked.0,
+                    filled: frame.cache.filled.0,
+                },
             },
             formats: Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect()),
             error: drawing.error,
@@ -312,9 +382,19 @@ impl Rays {
 }
 
 impl Processor {
-    fn new(used: &ProcessorUse) -> Processor {
-        let ProcessorUse { busy, waiting, idle, octets, items, .. } = *used;
-        Processor { busy: busy.0, waiting: waiting.0, idle: idle.0, octets: octets.0, items }
+    fn new(used: &ProcessorUse, waits: Option<&Waits>) -> Processor {
+        let ProcessorUse { busy, waiting, idle, octets, longest_wait, items, .. } = *used;
+        let waits = waits.map_or(&[][..], |waits| &waits.0);
+        let columns = waits.iter().rposition(|&count| count != 0).map_or(0, |last| last + 1);
+        Processor {
+            busy: busy.0,
+            waiting: waiting.0,
+            idle: idle.0,
+            octets: octets.0,
+            items,
+            longest_wait: longest_wait.0,
+            waits: waits[..columns].to_vec(),
+        }
     }
 }
 

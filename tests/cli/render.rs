@@ -58,6 +58,18 @@ fn figures_add_up() {
     assert_eq!((sum("items"), sum("octets")), (108, number(&result["octets"])));
     assert_eq!(result["octets"], result["counts"]["octet"]);
     assert_eq!(result["bus"]["asked"], result["bus"]["moved"]);
+    let kinds = result["bus"]["kinds"].as_object().unwrap();
+    for kind in ["triangles", "nodes", "references", "pixels", "messages"] {
+        assert!(number(&kinds[kind]) > 0, "{kind}");
+    }
+    assert_eq!(kinds.values().map(number).sum::<u64>(), number(&result["bus"]["moved"]));
+    assert_eq!(result["method"], serde_json::json!({ "kind": "replayed" }));
+    let waits = result["cores"].as_array().unwrap().iter().chain([&result["main"]]).map(|used| &used["waits"]);
+    let waits = waits.flat_map(|columns| columns.as_array().unwrap()).map(number);
+    assert_eq!(waits.sum::<u64>(), number(&result["bus"]["bursts"]), "each burst has waited for its time");
+    let seconds = result["seconds"].as_f64().unwrap();
+    assert_eq!(seconds, clocks as f64 / number(&result["clock_hz"]) as f64);
+    assert!((result["pixel_seconds"].as_f64().unwrap() * 108.0 - seconds).abs() < 1e-12);
     for (class, count) in result["counts"].as_object().unwrap() {
         let functions = result["functions"].as_array().unwrap().iter().chain(result["regions"].as_array().unwrap());
         assert_eq!(functions.map(|f| number(&f["exclusive"][class])).sum::<u64>(), number(count), "{class}");

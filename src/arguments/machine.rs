@@ -19,7 +19,8 @@ pub struct MachineArguments {
     pub layout: Option<Layout>,
 }
 
-fn layout() -> impl TypedValueParser<Value = Layout> {
+/// Names of the layouts.
+pub fn layout() -> impl TypedValueParser<Value = Layout> {
     let names = PossibleValuesParser::new(Layout::ALL.iter().map(|layout| layout.name()));
     names.map(|name| name.parse().expect("the parser lets only names pass"))
 }

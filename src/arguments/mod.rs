@@ -11,7 +11,7 @@ mod view;
 
 pub use effort::EffortArguments;
 pub use kernel::KernelArguments;
-pub use machine::MachineArguments;
+pub use machine::{MachineArguments, layout};
 pub use numbers::NumberArguments;
 pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};
 pub use view::{CameraKind, ViewArguments};

@@ -1,0 +1,222 @@
+//! How a load's time falls with the number of cores, measured on several machines, beside what theory expects. What is
+//! printed or drawn of it is said in the files below.
+
+mod chart;
+mod demand;
+mod text;
+
+use emu::machine::{self, Config, Frame, Method, Options};
+use serde::Serialize;
+
+pub use chart::svg;
+pub use demand::Demand;
+pub use text::{csv, text};
+
+use crate::failure::Failure;
+use crate::load::Load;
+
+/// Version of [`Scaling`]: a key that goes away or changes its meaning changes it, a new key does not.
+pub const SCHEMA: &str = "lancer-cores-1";
+
+/// A load on several machines, each with several numbers of cores.
+#[derive(Clone, Debug, Serialize)]
+pub struct Scaling {
+    /// [`SCHEMA`].
+    pub schema: &'static str,
+    /// Name of the scene, or `annex`.
+    pub scene: String,
+    /// Pixels.
+    pub pixels: u64,
+    /// C / M of the report, 203,000 / 49,600.
+    pub report_quotient: f64,
+    /// The machines.
+    pub machines: Vec<Curve>,
+}
+
+/// A machine with several numbers of cores.
+#[derive(Clone, Debug, Serialize)]
+pub struct Curve {
+    /// Name of the machine.
+    pub machine: String,
+    /// Its arbiter.
+    pub arbiter: String,
+    /// Clock rate in hertz.
+    pub clock_hz: u64,
+    /// What a pixel took with one core: of the core, and of the bus, messages and the main processor's share included.
+    pub demand: Demand,
+    /// C / M.
+    pub quotient: Option<f64>,
+    /// (C + M) / M.
+    pub closed_form: Option<f64>,
+    /// Where more cores bring no more, as measured.
+    pub saturation: Option<Saturation>,
+    /// One number of cores each, the fewest first; the first is one core.
+    pub points: Vec<Point>,
+}
+
+/// Where more cores bring no more.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Saturation {
+    /// Number of cores at which the straight line of the first cores reaches the highest speed-up.
+    pub cores: f64,
+    /// What is used up.
+    pub limit: Limit,
+}
+
+/// What keeps more cores from bringing more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Limit {
+    /// The bus is busy.
+    Bus,
+    /// The main processor is at work or waits for its own transfers.
+    MainProcessor,
+    /// Neither: the pixels do not go round, or messages take their time.
+    Other,
+}
+
+/// A machine with one number of cores.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Cores.
+    pub cores: u32,
+    /// Length of the frame in clocks.
+    pub clocks: u64,
+    /// The same in seconds.
+    pub seconds: f64,
+    /// Seconds a pixel.
+    pub pixel_seconds: f64,
+    /// How many times as fast as one core.
+    pub speed_up: f64,
+    /// Share of the frame in which the bus was busy.
+    pub utilisation: f64,
+    /// Share of the cores' clocks in which they waited for the bus.
+    pub waiting: f64,
+    /// Share of the cores' clocks in which they had nothing to do.
+    pub idle: f64,
+    /// Longest wait from a request to its grant, in clocks.
+    pub longest_wait: u64,
+    /// Share of the frame in which the main processor was not idle.
+    pub main_load: f64,
+    /// Seconds a pixel that no arbiter could beat.
+    pub bound_pixel_seconds: f64,
+    /// Seconds a pixel by the queueing estimate.
+    pub queueing_pixel_seconds: f64,
+    /// `replayed`, or `stepped`.
+    pub method: &'static str,
+    /// Whether the machine is saturated from this number of cores on.
+    pub is_saturated: bool,
+}
+
+/// Gain in speed-up by one more core below which a curve counts as level.
+const LEVEL: f64 = 0.1;
+
+/// Measures a load: each machine with one core and with each of the numbers of cores. Whatever only differs in time is
+/// computed once.
+///
+/// # Errors
+/// A machine out of its ranges, or a trap.
+pub fn measure(
+    scene: &str,
+    load: &Load,
+    machines: &[(String, Config)],
+    cores: &[u32],
+    progress: &mut dyn FnMut(u64),
+) -> Result<Scaling, Failure> {
+    let mut cores: Vec<u32> = std::iter::once(1).chain(cores.iter().copied()).collect();
+    cores.sort_unstable();
+    cores.dedup();
+    let with = |config: &Config| cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>();
+    let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
+    let Some(first) = configs.first() else { return Err(no_machine()) };
+    let setup = load.setup(first, Options::default());
+    let frames = machine::run_all(&setup, &configs, &load.memory, progress);
+    let frames = frames.into_iter().collect::<Result<Vec<Frame>, _>>()?;
+    let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
+        let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();
+        curve(name, config, &points)
+    });
+    Ok(Scaling {
+        schema: SCHEMA,
+        scene: scene.to_owned(),
+        pixels: frames[0].item_count,
+        report_quotient: Demand::REPORT.quotient().unwrap_or_default(),
+        machines: curves.collect(),
+    })
+}
+
+fn no_machine() -> Failure {
+    Failure::usage(isa::diagnostic::Diagnostic::error("no machine was named"))
+}
+
+fn share(part: u64, whole: u64) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
+/// The curve of a machine from its frames, that of one core first.
+fn curve(name: &str, config: &Config, frames: &[(u32, &Frame)]) -> Curve {
+    let (_, alone) = frames[0];
+    let pixels = alone.item_count.max(1) as f64;
+    let demand =
+        Demand { computing: alone.processors[0].busy.0 as f64 / pixels, transfer: alone.bus.busy.0 as f64 / pixels };
+    let mut points: Vec<Point> =
+        frames.iter().map(|&(cores, frame)| point(cores, frame, alone, &demand, config.clock_hz)).collect();
+    let saturation = saturation(&points);
+    for point in &mut points {
+        point.is_saturated = saturation.is_some_and(|saturation| f64::from(point.cores) >= saturation.cores);
+    }
+    Curve {
+        machine: name.to_owned(),
+        arbiter: config.bus.arbiter.name().to_owned(),
+        clock_hz: config.clock_hz,
+        demand,
+        quotient: demand.quotient(),
+        closed_form: demand.saturation(),
+        saturation,
+        points,
+    }
+}
+
+fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u64) -> Point {
+    let (workers, main) = frame.processors.split_at(cores as usize);
+    let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
+    let whole = frame.clocks.0 * u64::from(cores);
+    let seconds = |clocks: f64| clocks / clock_hz as f64;
+    let main_work = main.iter().map(|main| main.busy.0 + main.waiting.0).sum();
+    Point {
+        cores,
+        clocks: frame.clocks.0,
+        seconds: frame.seconds(clock_hz),
+        pixel_seconds: frame.seconds(clock_hz) / frame.item_count.max(1) as f64,
+        speed_up: share(alone.clocks.0, frame.clocks.0),
+        utilisation: frame.utilisation(),
+        waiting: share(sum(|used| used.waiting.0), whole),
+        idle: share(sum(|used| used.idle.0), whole),
+        longest_wait: frame.bus.longest_wait.0,
+        main_load: share(main_work, frame.clocks.0),
+        bound_pixel_seconds: seconds(demand.bound(cores)),
+        queueing_pixel_seconds: seconds(demand.queueing(cores)),
+        method: match frame.method {
+            Method::Replayed => "replayed",
+            Method::Stepped { .. } => "stepped",
+        },
+        is_saturated: false,
+    }
+}
+
+/// Where the curve levels off; `None` where it still rises at its end, or has no end to speak of.
+fn saturation(points: &[Point]) -> Option<Saturation> {
+    let [.., before, last] = points else { return None };
+    let gain = (last.speed_up - before.speed_up) / f64::from(last.cores - before.cores);
+    if gain >= LEVEL {
+        return None;
+    }
+    let highest = points.iter().max_by(|one, other| one.speed_up.total_cmp(&other.speed_up))?;
+    let limit = match (last.utilisation, last.main_load) {
+        (busy, main) if busy >= 0.95 && busy >= main => Limit::Bus,
+        (_, main) if main >= 0.9 => Limit::MainProcessor,
+        (busy, _) if busy >= 0.9 => Limit::Bus,
+        _ => Limit::Other,
+    };
+    Some(Saturation { cores: highest.speed_up, limit })
+}

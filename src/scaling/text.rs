@@ -1,0 +1,130 @@
+//! A scaling as a table for people, and as comma-separated values for other programs.
+
+use super::{Curve, Limit, Point, Scaling};
+use crate::table::{grouped, row, table};
+
+/// The tables of all machines.
+pub fn text(scaling: &Scaling) -> String {
+    let parts: Vec<String> = scaling.machines.iter().map(|curve| one(scaling, curve)).collect();
+    parts.join("\n")
+}
+
+fn one(scaling: &Scaling, curve: &Curve) -> String {
+    let head = [
+        "cores",
+        "a pixel",
+        "no waiting",
+        "queueing",
+        "speed-up",
+        "bus busy",
+        "waiting",
+        "idle",
+        "longest",
+        "main",
+        "",
+    ];
+    let mut rows = vec![row(head)];
+    let mut was_saturated = false;
+    for point in &curve.points {
+        let is_knee = point.is_saturated && !was_saturated;
+        was_saturated = point.is_saturated;
+        rows.push(cells(point, is_knee));
+    }
+    format!(
+        "{}: {} pixels on machine `{}`, arbiter {}\n{}{}",
+        scaling.scene,
+        grouped(scaling.pixels),
+        curve.machine,
+        curve.arbiter,
+        table(rows),
+        verdict(scaling, curve),
+    )
+}
+
+fn cells(point: &Point, is_knee: bool) -> Vec<String> {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    vec![
+        point.cores.to_string(),
+        milliseconds(point.pixel_seconds),
+        milliseconds(point.bound_pixel_seconds),
+        milliseconds(point.queueing_pixel_seconds),
+        format!("{:.2}", point.speed_up),
+        percent(point.utilisation),
+        percent(point.waiting),
+        percent(point.idle),
+        grouped(point.longest_wait),
+        percent(point.main_load),
+        if is_knee { "<- knee" } else { "" }.to_owned(),
+    ]
+}
+
+fn milliseconds(seconds: f64) -> String {
+    format!("{:.4} ms", 1e3 * seconds)
+}
+
+/// What the curve says of the number of cores, beside what others say.
+fn verdict(scaling: &Scaling, curve: &Curve) -> String {
+    let clocks = |clocks: f64| grouped(clocks.round() as u64);
+    let number = |cores: Option<f64>| cores.map_or("none".to_owned(), |cores| format!("{cores:.2}"));
+    let measured = match curve.saturation {
+        None => "more cores than these still bring more".to_owned(),
+        Some(saturation) => format!(
+            "{:.2} cores, {}",
+            saturation.cores,
+            match saturation.limit {
+                Limit::Bus => "where the bus is full",
+                Limit::MainProcessor => "where the main processor has no time left",
+                Limit::Other => "though neither bus nor main processor is full",
+            }
+        ),
+    };
+    format!(
+        "a pixel on one core: C = {} clocks of computing, M = {} of the bus\n\
+         saturation: {measured}; (C + M) / M = {}; C / M = {}; the report's C / M = {:.2}\n",
+        clocks(curve.demand.computing),
+        clocks(curve.demand.transfer),
+        number(curve.closed_form),
+        number(curve.quotient),
+        scaling.report_quotient,
+    )
+}
+
+/// What a column of the comma-separated values holds.
+type Column = (&'static str, fn(&Curve, &Point) -> String);
+
+const COLUMNS: [Column; 15] = [
+    ("machine", |curve, _| quoted(&curve.machine)),
+    ("arbiter", |curve, _| curve.arbiter.clone()),
+    ("cores", |_, point| point.cores.to_string()),
+    ("clocks", |_, point| point.clocks.to_string()),
+    ("seconds", |_, point| point.seconds.to_string()),
+    ("pixel_seconds", |_, point| point.pixel_seconds.to_string()),
+    ("speed_up", |_, point| point.speed_up.to_string()),
+    ("utilisation", |_, point| point.utilisation.to_string()),
+    ("waiting", |_, point| point.waiting.to_string()),
+    ("idle", |_, point| point.idle.to_string()),
+    ("longest_wait", |_, point| point.longest_wait.to_string()),
+    ("main_load", |_, point| point.main_load.to_string()),
+    ("bound_pixel_seconds", |_, point| point.bound_pixel_seconds.to_string()),
+    ("queueing_pixel_seconds", |_, point| point.queueing_pixel_seconds.to_string()),
+    ("method", |_, point| point.method.to_owned()),
+];
+
+/// A text as a comma-separated value (RFC 4180).
+fn quoted(text: &str) -> String {
+    match text.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+/// One line a point, with a head; the columns have the names of the JSON's keys.
+pub fn csv(scaling: &Scaling) -> String {
+    let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
+    for curve in &scaling.machines {
+        for point in &curve.points {
+            text += &(COLUMNS.map(|(_, value)| value(curve, point)).join(",") + "\n");
+        }
+    }
+    text
+}

@@ -4,7 +4,7 @@ use isa::Class;
 use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
-use crate::result::{Processor, Region, Render, RunMethod};
+use crate::result::{Processor, Region, Render};
 use crate::table::{count, grouped, percent, row, short, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -115,10 +115,7 @@ pub fn processors(result: &Render) -> String {
         seconds(result.seconds),
         result.clock_hz as f64 / 1e6,
         seconds(result.pixel_seconds),
-        match result.method {
-            RunMethod::Replayed => "pixels replayed".to_owned(),
-            RunMethod::Stepped { why } => format!("stepped: {why}"),
-        },
+        result.stepped_because.map_or(result.method.to_owned(), |why| format!("{}: {why}", result.method)),
         table(rows),
         percent(bus.busy, result.clocks),
         grouped(bus.moved),

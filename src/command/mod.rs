@@ -2,6 +2,7 @@
 
 mod assemble;
 mod completions;
+mod cores;
 mod demo;
 mod disassemble;
 mod explain;
@@ -13,6 +14,7 @@ mod run_arguments;
 mod run_result;
 mod scene;
 mod schema;
+mod trace;
 
 use clap::{Parser, Subcommand};
 
@@ -50,6 +52,8 @@ enum Command {
     Disassemble(disassemble::DisassembleArguments),
     Scene(scene::SceneArguments),
     Machine(machine::MachineArguments),
+    Cores(Box<cores::CoresArguments>),
+    Trace(Box<trace::TraceArguments>),
     Manual(manual::ManualArguments),
     Explain(explain::ExplainArguments),
     Schema(schema::SchemaArguments),
@@ -69,6 +73,8 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
+        Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
+        Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),
         Some(Command::Schema(arguments)) => schema::execute(arguments, terminal),

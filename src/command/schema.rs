@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::run_result::{self, RunResult};
 use crate::failure::{Exit, Failure};
 use crate::result::{self, Render};
+use crate::scaling::{self, Scaling};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -38,6 +39,7 @@ struct Known {
 const SCHEMAS: &[Known] = &[
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
+    Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
 ];
 

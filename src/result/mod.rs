@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use emu::machine::waits::Waits;
-use emu::machine::{Method, ProcessorUse};
+use emu::machine::ProcessorUse;
 use emu::profile::{Profile, RegionProfile};
 use isa::{Class, Counts};
 use kernels::Function;
@@ -97,8 +97,11 @@ pub struct Render {
     pub seconds: f64,
     /// Seconds a pixel.
     pub pixel_seconds: f64,
-    /// How the frame was run; nothing else depends on it.
-    pub method: RunMethod,
+    /// How the frame was run: `replayed` (pixels ran by themselves, and what they did was put on the machine's clock) or
+    /// `stepped` (everything happened in the order of the clock). Nothing else depends on it.
+    pub method: &'static str,
+    /// Why it could not be replayed; `None` when it was.
+    pub stepped_because: Option<&'static str>,
     /// Where the clocks of each core went.
     pub cores: Vec<Processor>,
     /// Functions of the cores' program.
@@ -120,28 +123,6 @@ pub struct Render {
     /// Seconds of the host; only when asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub host: Option<Host>,
-}
-
-/// How a frame was run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum RunMethod {
-    /// Pixels ran by themselves, and what they did was replayed on the machine's clock.
-    Replayed,
-    /// Everything happened in the order of the machine's clock.
-    Stepped {
-        /// Why it could not be replayed.
-        why: &'static str,
-    },
-}
-
-impl From<Method> for RunMethod {
-    fn from(method: Method) -> RunMethod {
-        match method {
-            Method::Replayed => RunMethod::Replayed,
-            Method::Stepped { why } => RunMethod::Stepped { why },
-        }
-    }
 }
 
 /// Rays by kind, counted from calls of the kernels' functions.
@@ -316,7 +297,8 @@ impl Render {
             clocks: frame.clocks.0,
             seconds: frame.seconds(job.machine.clock_hz),
             pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
-            method: frame.method.into(),
+            method: frame.method.name(),
+            stepped_because: frame.method.reason(),
             cores: (0..).zip(cores).map(|(number, core)| Processor::new(core, frame.waits.get(number))).collect(),
             functions: regions(frame.profile.as_ref(), true),
             regions: regions(frame.profile.as_ref(), false),

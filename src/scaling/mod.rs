@@ -5,7 +5,8 @@ mod chart;
 mod demand;
 mod text;
 
-use emu::machine::{self, Config, Frame, Method, Options};
+use emu::machine::{self, Config, Frame, Options};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use chart::svg;
@@ -19,9 +20,10 @@ use crate::load::Load;
 pub const SCHEMA: &str = "lancer-cores-1";
 
 /// A load on several machines, each with several numbers of cores.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Scaling {
-    /// [`SCHEMA`].
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Name of the scene, or `annex`.
     pub scene: String,
@@ -34,7 +36,7 @@ pub struct Scaling {
 }
 
 /// A machine with several numbers of cores.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Curve {
     /// Name of the machine.
     pub machine: String,
@@ -55,28 +57,16 @@ pub struct Curve {
 }
 
 /// Where more cores bring no more.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Saturation {
     /// Number of cores at which the straight line of the first cores reaches the highest speed-up.
     pub cores: f64,
-    /// What is used up.
-    pub limit: Limit,
-}
-
-/// What keeps more cores from bringing more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Limit {
-    /// The bus is busy.
-    Bus,
-    /// The main processor is at work or waits for its own transfers.
-    MainProcessor,
-    /// Neither: the pixels do not go round, or messages take their time.
-    Other,
+    /// What is used up: `bus`, `main-processor`, or `other` when neither is and the pixels or the messages set the pace.
+    pub limit: &'static str,
 }
 
 /// A machine with one number of cores.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Point {
     /// Cores.
     pub cores: u32,
@@ -196,10 +186,7 @@ fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u6
         main_load: share(main_work, frame.clocks.0),
         bound_pixel_seconds: seconds(demand.bound(cores)),
         queueing_pixel_seconds: seconds(demand.queueing(cores)),
-        method: match frame.method {
-            Method::Replayed => "replayed",
-            Method::Stepped { .. } => "stepped",
-        },
+        method: frame.method.name(),
         is_saturated: false,
     }
 }
@@ -213,10 +200,10 @@ fn saturation(points: &[Point]) -> Option<Saturation> {
     }
     let highest = points.iter().max_by(|one, other| one.speed_up.total_cmp(&other.speed_up))?;
     let limit = match (last.utilisation, last.main_load) {
-        (busy, main) if busy >= 0.95 && busy >= main => Limit::Bus,
-        (_, main) if main >= 0.9 => Limit::MainProcessor,
-        (busy, _) if busy >= 0.9 => Limit::Bus,
-        _ => Limit::Other,
+        (busy, main) if busy >= 0.95 && busy >= main => "bus",
+        (_, main) if main >= 0.9 => "main-processor",
+        (busy, _) if busy >= 0.9 => "bus",
+        _ => "other",
     };
     Some(Saturation { cores: highest.speed_up, limit })
 }

@@ -1,6 +1,6 @@
 //! A scaling as a table for people, and as comma-separated values for other programs.
 
-use super::{Curve, Limit, Point, Scaling};
+use super::{Curve, Point, Scaling};
 use crate::table::{grouped, row, table};
 
 /// The tables of all machines.
@@ -72,9 +72,9 @@ fn verdict(scaling: &Scaling, curve: &Curve) -> String {
             "{:.2} cores, {}",
             saturation.cores,
             match saturation.limit {
-                Limit::Bus => "where the bus is full",
-                Limit::MainProcessor => "where the main processor has no time left",
-                Limit::Other => "though neither bus nor main processor is full",
+                "bus" => "where the bus is full",
+                "main-processor" => "where the main processor has no time left",
+                _ => "though neither bus nor main processor is full",
             }
         ),
     };

@@ -1,10 +1,10 @@
-//! Help texts and messages, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test --test cli` renews them.
+//! Help texts, messages and the examples of `docs/machine.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test --test cli` renews them.
 
 use crate::session::Session;
 
 #[test]
 fn help_and_messages_say_what_they_said() {
-    trycmd::TestCases::new().case("tests/cmd/*.trycmd");
+    trycmd::TestCases::new().case("tests/cmd/*.trycmd").case("docs/machine.md");
 }
 
 /// A command and all commands below it, from what their help lists.

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program, its streams, its exit codes and the files that it leaves.
 
 mod convert;
+mod cores;
 mod demo;
 mod files;
 mod help;
@@ -10,3 +11,4 @@ mod scene;
 mod schema;
 mod session;
 mod streams;
+mod trace;

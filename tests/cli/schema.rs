@@ -16,6 +16,8 @@ const RESULTS: &[(&str, &str)] = &[
     ("render triangle --size 4x4 --no-error --crop 1,1,2,2", "lancer-render-1"),
     ("render empty --size 4x4", "lancer-render-1"),
     ("run sum.s --dump 0:4 --dump regs --reg v2=1:2:3", "lancer-run-1"),
+    ("cores annex --cores 4", "lancer-cores-1"),
+    ("cores triangle --size 4x4 --cores 1,2 --machine node_cache", "lancer-cores-1"),
     ("scene info cornell", "lancer-scene-1"),
     ("scene info empty", "lancer-scene-1"),
 ];

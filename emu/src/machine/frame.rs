@@ -68,6 +68,24 @@ pub enum Method {
     },
 }
 
+impl Method {
+    /// In a word: `replayed` or `stepped`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Replayed => "replayed",
+            Method::Stepped { .. } => "stepped",
+        }
+    }
+
+    /// Why it was stepped; `None` when it was not.
+    pub fn reason(self) -> Option<&'static str> {
+        match self {
+            Method::Replayed => None,
+            Method::Stepped { why } => Some(why),
+        }
+    }
+}
+
 /// The result of a run of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {

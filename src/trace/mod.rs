@@ -1,0 +1,89 @@
+//! A window of a machine's clocks as files that viewers of waves and of traces read. What happened is gathered by the
+//! machine; here it gets names and formats.
+
+mod perfetto;
+mod wave;
+
+use emu::machine::trace::{Burst, Cargo, Doing, Span, Trace};
+use emu::machine::{Frame, Item};
+use emu::quantity::Clocks;
+
+pub use perfetto::perfetto;
+pub use wave::wave;
+
+use crate::load::Load;
+
+/// What is shown, with what gives it names.
+pub struct Scene<'a> {
+    /// Name of the scene.
+    pub name: &'a str,
+    /// Programs and memory.
+    pub load: &'a Load,
+    /// Clock rate in hertz.
+    pub clock_hz: u64,
+    /// What happened.
+    pub trace: &'a Trace,
+    /// All work items of the frame, in the order of their start.
+    pub items: &'a [Item],
+}
+
+impl<'a> Scene<'a> {
+    /// What a frame's window shows; `None` for a frame without one.
+    pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a Frame) -> Option<Scene<'a>> {
+        Some(Scene { name, load, clock_hz, trace: frame.trace.as_ref()?, items: &frame.items })
+    }
+
+    /// Number of cores.
+    fn cores(&self) -> usize {
+        self.trace.processors.len() - 1
+    }
+
+    /// Name of a processor.
+    pub fn processor(&self, number: usize) -> String {
+        if number == self.cores() { "main".to_owned() } else { format!("core {number}") }
+    }
+
+    /// Clocks of each processor that it was busy, waiting and idle, from the window's start to `end`.
+    pub fn shares(&self, end: Clocks) -> Vec<[u64; 3]> {
+        let share = |spans: &[Span], doing: Doing| {
+            let spans = spans.iter().filter(|span| span.doing == doing && span.start < end);
+            spans.map(|span| (span.end.min(end) - span.start).0).sum()
+        };
+        let shares = |spans: &Vec<Span>| [Doing::Busy, Doing::Waiting, Doing::Idle].map(|doing| share(spans, doing));
+        self.trace.processors.iter().map(shares).collect()
+    }
+
+    /// Clocks that the bus was busy, from the window's start to `end`.
+    pub fn bus_busy(&self, end: Clocks) -> u64 {
+        let start = self.trace.window.start;
+        let clip = |burst: &Burst| (burst.start.clamp(start, end), burst.end.clamp(start, end));
+        self.trace.bursts.iter().map(clip).map(|(start, end)| (end - start).0).sum()
+    }
+
+    /// Work items of which a part lies in the window.
+    fn items(&self) -> impl Iterator<Item = &Item> {
+        let window = self.trace.window;
+        self.items.iter().filter(move |item| item.start < window.end && item.end > window.start)
+    }
+
+    /// What a burst carries, in words.
+    fn cargo(&self, cargo: Cargo) -> String {
+        let kind = |address: u32| {
+            let found = self.load.kinds.iter().find(|(range, _)| range.contains(&address));
+            found.map_or("other", |(_, kind)| kind.as_str())
+        };
+        match cargo {
+            Cargo::Read(address) => format!("reads {}", kind(address)),
+            Cargo::Write(address) => format!("writes {}", kind(address)),
+            Cargo::Message(to) => format!("message to {}", self.processor(to as usize)),
+        }
+    }
+}
+
+/// The address of what a burst carries, where it has one.
+fn address(cargo: Cargo) -> Option<u32> {
+    match cargo {
+        Cargo::Read(address) | Cargo::Write(address) => Some(address),
+        Cargo::Message(_) => None,
+    }
+}

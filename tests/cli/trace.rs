@@ -1,0 +1,131 @@
+//! `lancer trace`: the files are read back by the readers of others.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+use fst_reader::{FstFilter, FstHierarchyEntry, FstReader, FstSignalValue};
+use serde_json::Value;
+
+use crate::session::Session;
+
+/// What signals of a wave are at each clock of a window, by their names.
+struct Wave {
+    start: u64,
+    signals: BTreeMap<String, Vec<String>>,
+}
+
+impl Wave {
+    fn read(octets: Vec<u8>, end: u64) -> Wave {
+        let mut reader = FstReader::open(Cursor::new(octets)).expect("it is an FST file");
+        let header = reader.get_header();
+        assert_eq!((header.timescale_exponent, header.end_time), (-8, end), "a clock of 100 MHz is 10 ns");
+        let (mut names, mut scope) = (BTreeMap::new(), Vec::new());
+        reader
+            .read_hierarchy(|entry| match entry {
+                FstHierarchyEntry::Scope { name, .. } => scope.push(name),
+                FstHierarchyEntry::UpScope => drop(scope.pop()),
+                FstHierarchyEntry::Var { name, handle, .. } => {
+                    names.insert(handle.get_index(), format!("{}.{name}", scope.join(".")));
+                }
+                _ => {}
+            })
+            .expect("it has signals");
+        let start = header.start_time;
+        let mut changes: BTreeMap<String, BTreeMap<u64, String>> = BTreeMap::new();
+        let note = |time: u64, handle: fst_reader::FstSignalHandle, value: FstSignalValue| {
+            let FstSignalValue::String(value) = value else { panic!("all signals have bits") };
+            let value = String::from_utf8(value.to_vec()).unwrap();
+            changes.entry(names[&handle.get_index()].clone()).or_default().insert(time, value);
+            Ok::<(), ()>(())
+        };
+        reader.read_signals(&FstFilter::all(), note).expect("it has changes");
+        let signals = changes.into_iter().map(|(name, changes)| {
+            let at = |clock: u64| changes.range(..=clock).next_back().expect("it has a first value").1.clone();
+            (name, (start..end).map(at).collect())
+        });
+        Wave { start, signals: signals.collect() }
+    }
+
+    fn count(&self, signal: &str, value: &str) -> usize {
+        self.signals[signal].iter().filter(|now| *now == value).count()
+    }
+}
+
+#[test]
+fn a_wave_shows_the_bus_and_every_processor() {
+    let session = Session::new();
+    let scene = "trace cornell --size 12x9 --shift 0.137,0.071 --cores 3";
+    let text = session.succeed(&format!("{scene} --clocks 20000..26000 --fst a.fst --perfetto a.json"));
+    assert!(text.contains("clocks 20,000 to 26,000 of ") && text.contains("files: a.fst, a.json"), "{text}");
+    let wave = Wave::read(session.read("a.fst"), 26_000);
+    assert_eq!((wave.start, wave.signals.len()), (20_000, 5 + 3 * 4 + 3));
+    let number = |number: u32| format!("{number:032b}");
+    let masters = ["core0", "core1", "core2", "main"];
+    for clock in 0..6_000 {
+        let at = |signal: &str| wave.signals[signal][clock].as_str();
+        let granted: Vec<usize> = (0..4).filter(|&n| at(&format!("{}.grant", masters[n])) == "1").collect();
+        // At most one has the bus, and it is who owns it; who waits for a grant or a transfer is waiting.
+        assert!(granted.len() <= 1, "clock {clock}: {granted:?}");
+        assert_eq!(at("bus.busy") == "1", granted.len() == 1, "clock {clock}");
+        let owner = granted.first().map_or("z".repeat(32), |&master| number(master as u32));
+        assert_eq!(at("bus.owner"), owner, "clock {clock}");
+        for master in masters {
+            let is_asking = at(&format!("{master}.request")) == "1" || at(&format!("{master}.grant")) == "1";
+            assert_eq!(at(&format!("{master}.state")) == "10", is_asking, "clock {clock} {master}");
+        }
+    }
+    // The trace has the same clocks.
+    let trace: Value = serde_json::from_slice(&session.read("a.json")).unwrap();
+    let events = trace["traceEvents"].as_array().unwrap();
+    let named = |track: u64| {
+        let is_name = |event: &&Value| event["name"] == "thread_name" && event["tid"] == track;
+        events.iter().find(is_name).unwrap()["args"]["name"].as_str().unwrap().to_owned()
+    };
+    assert_eq!((0..5).map(named).collect::<Vec<_>>(), ["core 0", "core 1", "core 2", "main", "bus"]);
+    let clocks = |track: u64, name: &str| {
+        let is_it = |event: &&Value| {
+            event["tid"] == track && event["ph"] == "X" && event["name"].as_str().unwrap().starts_with(name)
+        };
+        let length = |event: &Value| (event["dur"].as_f64().unwrap() * 100.0).round() as usize;
+        events.iter().filter(is_it).map(length).sum::<usize>()
+    };
+    assert_eq!(clocks(4, ""), wave.count("bus.busy", "1"));
+    assert_eq!(clocks(4, "core 1 "), wave.count("core1.grant", "1"));
+    for (track, core) in masters.iter().enumerate() {
+        for (name, state) in [("idle", "00"), ("busy", "01"), ("waiting", "10")] {
+            assert_eq!(clocks(track as u64, name), wave.count(&format!("{core}.state"), state), "{core} {name}");
+        }
+    }
+    assert!(clocks(0, "pixel ") > 5_000 && clocks(4, "core 0 reads triangles") > 0);
+}
+
+#[test]
+fn a_pixel_is_shown_from_its_message_to_its_end() {
+    let session = Session::new();
+    let text = session.succeed("trace cornell --size 12x9 --shift 0.137,0.071 --cores 2 --pixel 5,4");
+    assert_eq!(session.names(), ["cornell.fst", "cornell.trace.json"]);
+    assert!(text.contains("files: cornell.fst, cornell.trace.json"), "{text}");
+    let trace: Value = serde_json::from_slice(&session.read("cornell.trace.json")).unwrap();
+    let events = trace["traceEvents"].as_array().unwrap();
+    let pixel = events.iter().find(|event| event["name"] == format!("pixel {}", 4 * 12 + 5)).expect("it is there");
+    let (first, after) = (&pixel["args"]["first clock"], &pixel["args"]["clock after"]);
+    assert_eq!(pixel["dur"].as_f64().unwrap() * 100.0, (after.as_u64().unwrap() - first.as_u64().unwrap()) as f64);
+    let own = |event: &&Value| event["tid"] == pixel["tid"] && event["ph"] == "X" && event["name"] != pixel["name"];
+    let parts: f64 = events.iter().filter(own).map(|event| event["dur"].as_f64().unwrap()).sum();
+    assert!((parts - pixel["dur"].as_f64().unwrap()).abs() < 1e-6, "busy, waiting and idle make up the pixel");
+}
+
+#[test]
+fn equal_runs_write_equal_files_and_mistakes_are_told() {
+    let session = Session::new();
+    for name in ["a", "b"] {
+        session.succeed(&format!("trace annex --clocks 100000..200000 --fst {name}.fst --perfetto {name}.json"));
+    }
+    assert_eq!(session.read("a.fst"), session.read("b.fst"));
+    assert_eq!(session.read("a.json"), session.read("b.json"));
+    session.fail("trace cornell", 2, "--clocks");
+    session.fail("trace cornell --clocks 3..1", 2, "no clock in 3..1");
+    session.fail("trace cornell --clocks 1..2 --pixel 1,1", 2, "cannot be used with");
+    session.fail("trace cornell --size 4x4 --pixel 4,0", 2, "lies outside the 4 x 4");
+    session.fail("trace cornell --size 4x4 --clocks 40000000..40000001", 2, "the frame is over after");
+}

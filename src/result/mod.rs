@@ -8,8 +8,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use emu::machine::waits::Waits;
 use emu::machine::ProcessorUse;
+use emu::machine::waits::Waits;
 use emu::profile::{Profile, RegionProfile};
 use isa::{Class, Counts};
 use kernels::Function;

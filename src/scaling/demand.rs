@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Demand {
     /// Clocks of computing; C.
     pub computing: f64,
-    /// Clocks of the bus; M.
+    /// Clocks of the bus, the main processor's transfers included; M.
     pub transfer: f64,
 }
 
@@ -29,7 +29,8 @@ impl Demand {
         Some(self.quotient()? + 1.0)
     }
 
-    /// Clocks a pixel that so many cores cannot beat: (C + M) / N as long as the bus has room, M beyond that.
+    /// Clocks a pixel without any waiting: (C + M) / N as long as the bus has room, M beyond that. Where the main processor
+    /// uses the bus while a core computes, one core may be a little faster.
     pub fn bound(&self, cores: u32) -> f64 {
         ((self.computing + self.transfer) / f64::from(cores)).max(self.transfer)
     }
@@ -65,11 +66,11 @@ mod tests {
     fn a_queue_makes_it_longer_and_vanishes_at_both_ends() {
         let demand = Demand::REPORT;
         assert_eq!(demand.queueing(1), demand.bound(1));
-        for cores in 2..40 {
+        for cores in 2..20 {
             assert!(demand.queueing(cores) > demand.bound(cores), "{cores}");
             assert!(demand.queueing(cores) < demand.queueing(cores - 1), "{cores}");
         }
-        assert!(demand.queueing(40) < 1.001 * demand.transfer);
+        assert!((demand.queueing(40) / demand.transfer - 1.0).abs() < 1e-9);
         // Two cores with C = M = 1: X = N / (C + R), R = M (1 + Q), Q(1) = 1/2, so R = 1.5 and X = 2 / 2.5.
         assert_eq!(Demand { computing: 1.0, transfer: 1.0 }.queueing(2), 1.25);
     }

@@ -88,7 +88,7 @@ pub struct Point {
     pub longest_wait: u64,
     /// Share of the frame in which the main processor was not idle.
     pub main_load: f64,
-    /// Seconds a pixel that no arbiter could beat.
+    /// Seconds a pixel without any waiting: max((C + M) / N, M).
     pub bound_pixel_seconds: f64,
     /// Seconds a pixel by the queueing estimate.
     pub queueing_pixel_seconds: f64,

@@ -10,19 +10,7 @@ pub fn text(scaling: &Scaling) -> String {
 }
 
 fn one(scaling: &Scaling, curve: &Curve) -> String {
-    let head = [
-        "cores",
-        "a pixel",
-        "no waiting",
-        "queueing",
-        "speed-up",
-        "bus busy",
-        "waiting",
-        "idle",
-        "longest",
-        "main",
-        "",
-    ];
+    let head = ["cores", "a pixel", "no waiting", "queueing", "speed-up", "bus", "waiting", "idle", "main", ""];
     let mut rows = vec![row(head)];
     let mut was_saturated = false;
     for point in &curve.points {
@@ -52,9 +40,8 @@ fn cells(point: &Point, is_knee: bool) -> Vec<String> {
         percent(point.utilisation),
         percent(point.waiting),
         percent(point.idle),
-        grouped(point.longest_wait),
         percent(point.main_load),
-        if is_knee { "<- knee" } else { "" }.to_owned(),
+        if is_knee { "knee" } else { "" }.to_owned(),
     ]
 }
 
@@ -80,7 +67,8 @@ fn verdict(scaling: &Scaling, curve: &Curve) -> String {
     };
     format!(
         "a pixel on one core: C = {} clocks of computing, M = {} of the bus\n\
-         saturation: {measured}; (C + M) / M = {}; C / M = {}; the report's C / M = {:.2}\n",
+         saturation: {measured}\n\
+         expected: (C + M) / M = {}, C / M = {}, the report's C / M = {:.2}\n",
         clocks(curve.demand.computing),
         clocks(curve.demand.transfer),
         number(curve.closed_form),

@@ -228,3 +228,42 @@ fn a_machine_file_is_a_machine() {
     session.write("none.toml", "cores = 0\n");
     session.fail(&format!("{TINY} --machine none.toml"), 1, "`cores` is 0");
 }
+
+#[test]
+fn a_packet_larger_than_the_buffer_goes_through_in_pieces() {
+    // One packet of all triangles, 64 octets each; the buffer holds them one at a time, or all at once.
+    let session = Session::new();
+    session.write("large.toml", "buffer_octets = 1_000_000\n");
+    let scene = "render sphereflake --size 6x4 --shift 0.137,0.071 --kd-depth 0 --no-error";
+    let (small, large) = (session.json(scene), session.json(&format!("{scene} --machine large.toml")));
+    assert!(number(&small["triangles"]) * 62 > 18_525, "they do not fit at once");
+    assert_eq!((&small["image_hash"], &small["clocks"]), (&large["image_hash"], &large["clocks"]));
+    let tree = session.json("render sphereflake --size 6x4 --shift 0.137,0.071 --no-error");
+    assert_eq!(small["image_hash"], tree["image_hash"]);
+}
+
+#[test]
+fn a_kernel_that_outgrows_its_buffer_names_the_pixel() {
+    let session = Session::new();
+    let kernel = include_str!("../../kernels/asm/report/sqrt.s");
+    session.write("sqrt.s", &kernel.replacen(".func sqrt\n", ".func sqrt\n    sw s0, 18522(s0)\n", 1));
+    let run = session.run("render cornell --size 4x4 --kernel sqrt=sqrt.s --no-error");
+    assert_eq!(run.code, 3, "{}", run.messages);
+    for part in ["18525", "sqrt.s", "in the work item whose first message began with"] {
+        assert!(run.messages.contains(part), "{part}\n{}", run.messages);
+    }
+}
+
+#[test]
+fn threads_of_the_host_and_the_way_to_run_change_nothing() {
+    let session = Session::new();
+    let out = |threads: &str, machine: &str| {
+        let mut command = session.command(&format!("{TINY} --json --no-error --machine {machine}"));
+        String::from_utf8(command.env("RAYON_NUM_THREADS", threads).output().unwrap().stdout).unwrap()
+    };
+    for machine in ["report", "wide32", "double_buffer", "node_cache"] {
+        let one = out("1", machine);
+        assert!(one.contains("\"image_hash\""), "{one}");
+        assert_eq!(one, out("3", machine));
+    }
+}

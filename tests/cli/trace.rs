@@ -10,12 +10,11 @@ use crate::session::Session;
 
 /// What signals of a wave are at each clock of a window, by their names.
 struct Wave {
-    start: u64,
     signals: BTreeMap<String, Vec<String>>,
 }
 
 impl Wave {
-    fn read(octets: Vec<u8>, end: u64) -> Wave {
+    fn read(octets: Vec<u8>, start: u64, end: u64) -> Wave {
         let mut reader = FstReader::open(Cursor::new(octets)).expect("it is an FST file");
         let header = reader.get_header();
         assert_eq!((header.timescale_exponent, header.end_time), (-8, end), "a clock of 100 MHz is 10 ns");
@@ -30,7 +29,6 @@ impl Wave {
                 _ => {}
             })
             .expect("it has signals");
-        let start = header.start_time;
         let mut changes: BTreeMap<String, BTreeMap<u64, String>> = BTreeMap::new();
         let note = |time: u64, handle: fst_reader::FstSignalHandle, value: FstSignalValue| {
             let FstSignalValue::String(value) = value else { panic!("all signals have bits") };
@@ -43,7 +41,7 @@ impl Wave {
             let at = |clock: u64| changes.range(..=clock).next_back().expect("it has a first value").1.clone();
             (name, (start..end).map(at).collect())
         });
-        Wave { start, signals: signals.collect() }
+        Wave { signals: signals.collect() }
     }
 
     fn count(&self, signal: &str, value: &str) -> usize {
@@ -57,8 +55,8 @@ fn a_wave_shows_the_bus_and_every_processor() {
     let scene = "trace cornell --size 12x9 --shift 0.137,0.071 --cores 3";
     let text = session.succeed(&format!("{scene} --clocks 20000..26000 --fst a.fst --perfetto a.json"));
     assert!(text.contains("clocks 20,000 to 26,000 of ") && text.contains("files: a.fst, a.json"), "{text}");
-    let wave = Wave::read(session.read("a.fst"), 26_000);
-    assert_eq!((wave.start, wave.signals.len()), (20_000, 5 + 3 * 4 + 3));
+    let wave = Wave::read(session.read("a.fst"), 20_000, 26_000);
+    assert_eq!(wave.signals.len(), 5 + 3 * 4 + 3);
     let number = |number: u32| format!("{number:032b}");
     let masters = ["core0", "core1", "core2", "main"];
     for clock in 0..6_000 {

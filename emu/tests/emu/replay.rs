@@ -17,7 +17,7 @@ const NODES: i64 = 400;
 const TRIANGLES: i64 = 700;
 
 fn memory() -> Memory {
-    Memory::new((0..2000u32).map(|at| (at * 37 >> 3) as u8).collect())
+    Memory::new((0..2000u32).map(|at| ((at * 37) >> 3) as u8).collect())
 }
 
 fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Program) -> Setup<'a> {

@@ -1,5 +1,6 @@
 //! The commands, one a file. Each is a function from its arguments and the terminal to its exit code.
 
+mod annex;
 mod assemble;
 mod completions;
 mod cores;
@@ -50,6 +51,7 @@ enum Command {
     Run(run::RunArguments),
     Assemble(assemble::AssembleArguments),
     Disassemble(disassemble::DisassembleArguments),
+    Annex(annex::AnnexArguments),
     Scene(scene::SceneArguments),
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
@@ -71,6 +73,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Run(arguments)) => run::execute(arguments, terminal),
         Some(Command::Assemble(arguments)) => assemble::execute(arguments, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
+        Some(Command::Annex(arguments)) => annex::execute(arguments, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),

@@ -8,6 +8,8 @@ use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
 use super::run_result::{self, RunResult};
+use crate::annex;
+use crate::annex::result::Annexes;
 use crate::failure::{Exit, Failure};
 use crate::result::{self, Render};
 use crate::scaling::{self, Scaling};
@@ -37,6 +39,7 @@ struct Known {
 }
 
 const SCHEMAS: &[Known] = &[
+    Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: schema_of::<Annexes> },
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
     Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },

@@ -1,0 +1,16 @@
+; Driver for the first packet: a camera ray from outside the scene's box, a tree of 16 levels.
+.entry driver
+.func driver
+    store_path
+    lv    origin, START(s0)
+    lv    direction, WAY(s0)
+    call  link_packet, first_packet
+    halt
+.endfunc
+.buffer
+START: .fixed pos, -0.5, -0.25, 1.25
+WAY:   .fixed dir, 0.28571428571, 0.42857142857, -0.85714285714
+PATH_NODE: .space node.x1
+       .half 9 * ONE / 10
+       .space sizeof(node) - node.x1 - 2
+.text

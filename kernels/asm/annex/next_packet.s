@@ -1,0 +1,24 @@
+; Driver for the next packet: the ray has hit nothing yet and does not leave the scene, a tree of 16 levels.
+.entry driver
+.func driver
+    store_path
+    lv    origin, START(s0)
+    lv    direction, WAY(s0)
+    lv    box_low, LOW(s0)
+    lv    box_high, HIGH(s0)
+    li    near_t, NEVER
+    mov   near, s0
+    mov   any_hit, s0
+    movi  steps, 2
+    call  link_packet, next_packet
+    halt
+.endfunc
+.buffer
+LOW:   .fixed pos, -0.5, -0.25, -0.75
+HIGH:  .fixed pos, 0.5, 0.75, 0.25
+START: .fixed pos, -0.125, 0.0625, -0.3125
+WAY:   .fixed dir, 0.28571428571, 0.42857142857, 0.85714285714
+PATH_NODE: .space node.x1
+       .half 9 * ONE / 10
+       .space sizeof(node) - node.x1 - 2
+.text

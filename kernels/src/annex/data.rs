@@ -1,0 +1,134 @@
+//! Reads `annex.toml`. A term names its source line by a piece of it, so that it is found again when lines move.
+
+use std::collections::BTreeMap;
+
+use isa::{Class, Counts};
+use serde::Deserialize;
+
+use super::{Row, Term, world};
+
+/// A figure that the report derives.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Figure {
+    /// Short name.
+    pub id: String,
+    /// What it is.
+    pub label: String,
+    /// Where it is printed.
+    pub source: String,
+    /// Its value as printed; `None` where the report leaves it out.
+    pub printed: Option<f64>,
+    /// Its unit; empty for a pure number.
+    #[serde(default)]
+    pub unit: String,
+}
+
+/// Something odd in the printed figures.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Erratum {
+    /// Short name.
+    pub id: String,
+    /// Where it is printed.
+    pub source: String,
+    /// What is printed.
+    pub printed: String,
+    /// What it should be.
+    pub correct: String,
+    /// What it changes.
+    pub effect: String,
+}
+
+/// A machine of table 3.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Peer {
+    /// Its name.
+    pub name: String,
+    /// Servers that work in parallel.
+    pub servers: u32,
+    /// Width and height of a picture in pixels.
+    pub resolution: [u32; 2],
+    /// What rays are tested against.
+    pub primitive: String,
+    /// Time of a pixel in microseconds.
+    pub pixel_us: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    row: Vec<RawRow>,
+    figure: Vec<Figure>,
+    erratum: Vec<Erratum>,
+    peer: Vec<Peer>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawRow {
+    id: String,
+    label: String,
+    source: String,
+    printed: BTreeMap<String, u64>,
+    driver: String,
+    region: String,
+    #[serde(default)]
+    term: Vec<RawTerm>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawTerm {
+    /// File below the kernels' folder.
+    at: String,
+    /// A piece of the line, found in one line of the file.
+    text: String,
+    n: BTreeMap<String, i64>,
+    reason: String,
+}
+
+/// All that the file says.
+pub(super) struct Data {
+    pub rows: Vec<Row>,
+    pub figures: Vec<Figure>,
+    pub errata: Vec<Erratum>,
+    pub peers: Vec<Peer>,
+}
+
+impl Data {
+    /// The file as it is part of the program.
+    pub fn read() -> Data {
+        let file: File = toml::from_str(include_str!("../../annex.toml")).expect("a test reads the file");
+        Data {
+            rows: file.row.into_iter().map(row).collect(),
+            figures: file.figure,
+            errata: file.erratum,
+            peers: file.peer,
+        }
+    }
+}
+
+fn class(name: &str) -> Class {
+    Class::from_name(name).unwrap_or_else(|| panic!("annex.toml: `{name}` is no class"))
+}
+
+fn row(raw: RawRow) -> Row {
+    let mut printed = Counts::ZERO;
+    for (name, count) in &raw.printed {
+        printed[class(name)] = *count;
+    }
+    let terms = raw.term.into_iter().map(|term| self::term(&raw.id, term)).collect();
+    Row { id: raw.id, label: raw.label, source: raw.source, printed, driver: raw.driver, region: raw.region, terms }
+}
+
+fn term(row: &str, raw: RawTerm) -> Term {
+    let RawTerm { at, text, n, reason } = raw;
+    let (_, source) = world::file(&at).unwrap_or_else(|| panic!("annex.toml, {row}: there is no file `{at}`"));
+    let mut lines = (1..).zip(source.lines()).filter(|(_, line)| line.contains(&text)).map(|(number, _)| number);
+    let number: u32 = lines.next().unwrap_or_else(|| panic!("annex.toml, {row}: no line of {at} has `{text}`"));
+    assert!(lines.next().is_none(), "annex.toml, {row}: several lines of {at} have `{text}`");
+    let counts = n.iter().map(|(name, &n)| (class(name), n)).collect();
+    Term { line: format!("kernels/asm/{at}:{number}"), counts, reason }
+}

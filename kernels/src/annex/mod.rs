@@ -1,0 +1,85 @@
+//! The rows of the report's annexes, each with the driver that sets its assumptions, the region of the `report` kernels that it counts, and
+//! the terms that the kernels differ by. What is printed and why it differs are data, in `annex.toml`; running the drivers is the caller's.
+
+mod data;
+pub mod load;
+mod world;
+
+use std::sync::LazyLock;
+
+use isa::{Class, Counts};
+
+pub use data::{Erratum, Figure, Peer};
+pub use world::MEMORY;
+
+use data::Data;
+
+/// A row of the annexes.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Short name: `kd.` for Annex I, `rt.` for Annex II.
+    pub id: String,
+    /// The label as printed.
+    pub label: String,
+    /// Where it is printed.
+    pub source: String,
+    /// Operations as printed, those of called rows included.
+    pub printed: Counts,
+    /// Name of the driver, a file of `kernels/asm/annex`.
+    pub driver: String,
+    /// The function or region of the kernels that is measured: its calls' inclusive counts.
+    pub region: String,
+    /// What the kernels do more or less than is printed; by class the terms sum to the difference.
+    pub terms: Vec<Term>,
+}
+
+/// A reason for a part of a difference.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// The source line that does more, or whose printed counterpart does what it does not: `file:line`.
+    pub line: String,
+    /// By how many operations of each class it exceeds what is printed.
+    pub counts: Vec<(Class, i64)>,
+    /// Why.
+    pub reason: String,
+}
+
+impl Row {
+    /// The classes that the row's annex prints: Annex II leaves accesses to memory out.
+    pub fn classes(&self) -> impl Iterator<Item = Class> {
+        let has_memory = self.printed[Class::Mem] != 0;
+        Class::ALL.iter().copied().filter(move |class| class.is_elementary() || has_memory && *class == Class::Mem)
+    }
+
+    /// How many operations of a class a count exceeds the printed ones by.
+    pub fn difference(&self, counted: &Counts, class: Class) -> i64 {
+        counted[class] as i64 - self.printed[class] as i64
+    }
+
+    /// What the terms say that the difference is.
+    pub fn explained(&self, class: Class) -> i64 {
+        self.terms.iter().flat_map(|term| &term.counts).filter(|(of, _)| *of == class).map(|(_, n)| n).sum()
+    }
+}
+
+static DATA: LazyLock<Data> = LazyLock::new(Data::read);
+
+/// The rows, in the order of the report.
+pub fn rows() -> &'static [Row] {
+    &DATA.rows
+}
+
+/// What the report derives from the rows (6.1, 6.2, 6.4, Annex I).
+pub fn figures() -> &'static [Figure] {
+    &DATA.figures
+}
+
+/// What is odd in the printed figures.
+pub fn errata() -> &'static [Erratum] {
+    &DATA.errata
+}
+
+/// The other machines of table 3.
+pub fn peers() -> &'static [Peer] {
+    &DATA.peers
+}

@@ -1,0 +1,82 @@
+//! The programs that measure the rows: the kernels of the profile `report` as a small scene in the report's layout asks for them, and a
+//! driver instead of the main program.
+
+use std::sync::Arc;
+
+use isa::diagnostic::{Report, Source};
+use isa::{Isa, Program};
+use scenes::image::{self, Image};
+use scenes::layout::Layout;
+use scenes::model::{Light, Material, Scene, Triangle, View};
+
+use super::Row;
+use crate::build::{Crop, Features};
+use crate::function::{Function, Profile};
+use crate::prelude;
+
+/// Octets of global memory that every driver is content with.
+pub const MEMORY: usize = 128 << 10;
+
+macro_rules! files {
+    ($($path:literal)*) => {
+        &[$(($path, include_str!(concat!("../../asm/", $path)))),*]
+    };
+}
+
+/// The drivers, and what they share.
+const DRIVERS: &[(&str, &str)] = files! {
+    "annex/world.inc" "annex/sqrt.s" "annex/triangle.s" "annex/packet.s" "annex/normal.s" "annex/exit_face.s" "annex/descend.s"
+    "annex/first_packet.s" "annex/next_packet.s" "annex/node.s" "annex/pixel.s" "report.inc" "scalar.inc"
+};
+
+/// The functions that a driver may call.
+fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let core = Function::of_program(false, true, true).filter(|&function| function != Function::Pixel);
+    core.chain([Function::FirstPacket]).filter_map(|function| function.file(Profile::Report, &[]))
+}
+
+/// A file of the kernels, path and text, by its path below their folder.
+pub(super) fn file(path: &str) -> Option<(&'static str, &'static str)> {
+    functions().chain(DRIVERS.iter().copied()).find(|(name, _)| *name == path)
+}
+
+/// One light, one material that reflects and lets light through, a triangle that fills the box from -1 to 1: its coordinates have 29
+/// fraction bits, of which 13 are stored.
+fn scene() -> Scene {
+    Scene {
+        name: "annex".into(),
+        size: (1, 1),
+        materials: vec![Material { colour: [1.0; 3], reflection: 0.25, intensity: 0.5, index: 1.5 }],
+        lights: vec![Light { position: [0.25, 0.5, 1.5], colour: [1.0; 3] }],
+        vertices: vec![[-1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 0.0]],
+        triangles: vec![Triangle { vertices: [0, 1, 2], material: 0 }],
+    }
+}
+
+fn image(scene: &Scene, view: &View) -> Result<Image, Report> {
+    image::build(scene, view, &image::Options { layout: Layout::Report, ..image::Options::default() })
+}
+
+impl Row {
+    /// The program that measures the row, and the global memory that it starts with. It needs no other core.
+    ///
+    /// # Errors
+    /// What the assembler finds; our own kernels have no errors.
+    pub fn program(&self, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
+        let scene = scene();
+        let view = View::new(scene.size);
+        let mut image = image(&scene, &view)?;
+        let features = Features::new(&scene, &view, 0);
+        let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
+        let text = prelude::text(&image, &features, &crop, Profile::Report.walk(&[]), false);
+        let mut files: Vec<Arc<Source>> = vec![Source::new("<assumptions>", text)];
+        files.extend(prelude::included(Layout::Report));
+        let driver = format!("annex/{}.s", self.driver);
+        for (path, text) in functions().chain(file("annex/world.inc")).chain(file(&driver)) {
+            files.push(Source::new(format!("kernels/asm/{path}"), text));
+        }
+        let program = prelude::assemble("<annex>", &files, isa)?.program;
+        image.bytes.resize(MEMORY, 0);
+        Ok((program, image.bytes))
+    }
+}

@@ -1,0 +1,114 @@
+//! The rows of the report's annexes, measured: the kernels of the `report` profile under the assumptions of each row's
+//! driver, and on scenes. Nothing here prints.
+
+pub mod figures;
+pub mod result;
+pub mod scene;
+pub mod text;
+
+use emu::machine::Config;
+use emu::machine::single::{self, Single};
+use emu::octets::Memory;
+use emu::registers::Registers;
+use isa::diagnostic::Diagnostic;
+use isa::{Class, Counts, Isa, Program};
+use kernels::annex::{Row, rows};
+
+use crate::failure::Failure;
+
+/// A row with what its region's calls took under its assumptions.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// The row.
+    pub row: &'static Row,
+    /// The program that was measured.
+    pub program: Program,
+    /// Calls that were measured.
+    pub calls: u64,
+    /// Least of each class in a call.
+    pub least: Counts,
+    /// Most of each class in a call.
+    pub most: Counts,
+}
+
+impl Measurement {
+    /// Whether every call took the same.
+    pub fn is_certain(&self) -> bool {
+        self.calls != 0 && self.row.classes().all(|class| self.least[class] == self.most[class])
+    }
+
+    /// Whether every call took exactly what is printed.
+    pub fn is_met(&self) -> bool {
+        self.is_certain() && self.row.classes().all(|class| self.most[class] == self.row.printed[class])
+    }
+
+    /// Whether the row's terms are the difference.
+    pub fn is_explained(&self) -> bool {
+        let is_sum = |&class: &Class| match self.row.classes().any(|printed| printed == class) {
+            true => self.row.difference(&self.most, class) == self.row.explained(class),
+            false => self.row.explained(class) == 0,
+        };
+        self.is_certain() && Class::ALL.iter().all(is_sum)
+    }
+}
+
+/// Measures all rows on the report's machine.
+///
+/// # Errors
+/// A row whose program does not assemble or traps; ours do neither.
+pub fn measure() -> Result<Vec<Measurement>, Failure> {
+    let isa = Isa::base();
+    rows().iter().map(|row| measure_row(row, &isa)).collect()
+}
+
+fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
+    let config = Config::default();
+    let (program, memory) = row.program(isa)?;
+    let registers = Registers::default();
+    let single =
+        Single { config: &config, isa, program: &program, registers, step_limit: config.step_limit, has_profile: true };
+    let run = single::run(&single, Memory::new(memory))?;
+    if let Some(trap) = run.trap {
+        return Err(emu::machine::Failure::from(trap).into());
+    }
+    let regions = run.profile.into_iter().flat_map(|profile| profile.regions);
+    let found = regions.into_iter().find(|region| region.name == row.region);
+    let missing = || Diagnostic::error(format!("the row `{}` has no region `{}`", row.id, row.region));
+    let region = found.ok_or_else(missing)?;
+    Ok(Measurement { row, calls: region.calls, least: region.least, most: region.most, program })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_rows_are_met_exactly() {
+        // Square root 96/132/32/32 = 292; triangle 9/15/27/3/7 = 61; 40 triangles in 2,561 operations.
+        let measured = measure().unwrap();
+        let met = measured.iter().filter(|measurement| measurement.is_met());
+        let sums: Vec<(&str, u64)> = met.map(|met| (met.row.id.as_str(), met.most.elementary())).collect();
+        assert_eq!(sums, [("rt.sqrt", 292), ("rt.triangle", 61), ("rt.packet", 2561)]);
+        assert_eq!(text::demo(&measured).matches("equal").count(), 3);
+    }
+
+    #[test]
+    fn terms_sum_to_the_differences() {
+        let mut text = String::new();
+        for measurement in measure().unwrap() {
+            let Measurement { row, least, most, calls, .. } = &measurement;
+            if !measurement.is_explained() {
+                text += &format!("{}: {calls} calls\n", row.id);
+                for class in Class::ALL.iter().filter(|class| class.is_elementary() || **class == Class::Mem) {
+                    let (difference, explained) = (row.difference(most, *class), row.explained(*class));
+                    let name = class.name();
+                    text += &format!(
+                        "  {name}: {}..{}, printed {}, difference {difference}, explained {explained}\n",
+                        least[*class], most[*class], row.printed[*class]
+                    );
+                }
+            }
+        }
+        assert_eq!(text, "");
+    }
+}

@@ -1,0 +1,64 @@
+//! The rows of the annexes on a scene: what a call of each row's region takes where nothing is assumed.
+
+use emu::profile::{Profile, RegionProfile};
+use kernels::Profile as Kernels;
+use kernels::annex::rows;
+use scenes::image::Options;
+
+use crate::drawing::Drawing;
+use crate::job::{Job, result_name};
+use scenes::model::Scene;
+
+/// Shift of the samples: parallel rays through pixel centres would run along edges of axis-aligned scenes.
+const SHIFT: [f64; 2] = [0.137, 0.071];
+
+/// The rows' regions on a scene, and what a pixel took.
+#[derive(Clone, Debug)]
+pub struct OnScene {
+    /// Name of the scene.
+    pub scene: String,
+    /// The regions in the order of the rows; `None` where the scene's programs do not have it.
+    pub regions: Vec<Option<RegionProfile>>,
+    /// Pixels.
+    pub pixels: u64,
+    /// Elementary operations of all cores.
+    pub operations: u64,
+    /// Octets that the cores moved.
+    pub octets: u64,
+    /// Clocks of the frame.
+    pub clocks: u64,
+    /// Triangles, nodes of the kd tree and references.
+    pub stored: [u64; 3],
+}
+
+/// The job that draws a scene as the annexes assume: the report's kernels, layout and machine.
+pub fn job(scene: Scene, size: (u32, u32)) -> Job {
+    let mut job = Job::new(scene);
+    job.view.size = size;
+    job.view.shift = SHIFT;
+    job.kernels.profile = Kernels::Report;
+    job.memory = Options { layout: Kernels::Report.layout(), ..job.memory };
+    job
+}
+
+impl OnScene {
+    /// What a drawing of such a job found.
+    pub fn new(job: &Job, drawing: &Drawing) -> OnScene {
+        let frame = &drawing.frame;
+        let profiles: Vec<&Profile> = [&frame.profile, &frame.main_profile].into_iter().flatten().collect();
+        let find = |name: &str| {
+            let mut regions = profiles.iter().flat_map(|profile| &profile.regions);
+            regions.find(|region| region.name == name && region.calls != 0).cloned()
+        };
+        let tree = drawing.image.tree.statistics();
+        OnScene {
+            scene: result_name(&job.scene),
+            regions: rows().iter().map(|row| find(&row.region)).collect(),
+            pixels: drawing.words.len() as u64,
+            operations: frame.profile.as_ref().map(Profile::total).unwrap_or_default().elementary(),
+            octets: frame.processors.iter().take(job.machine.cores as usize).map(|core| core.octets.0).sum(),
+            clocks: frame.clocks.0,
+            stored: [drawing.image.counts.triangles.into(), tree.nodes as u64, tree.references as u64],
+        }
+    }
+}

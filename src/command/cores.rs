@@ -51,7 +51,7 @@ pub struct CoresArguments {
     /// Arbiter instead of the machine's; may be repeated.
     #[arg(long = "arbiter", value_name = "NAME", value_parser = arbiter())]
     arbiters: Vec<ArbiterKind>,
-    /// Structures of global memory [default: wide].
+    /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = arguments::layout())]
     layout: Option<Layout>,
     /// Writes the points as comma-separated values.

@@ -101,6 +101,9 @@ pub struct Point {
 /// Gain in speed-up by one more core below which a curve counts as level.
 const LEVEL: f64 = 0.1;
 
+/// Share of the frame from which the bus counts as full.
+const FULL: f64 = 0.98;
+
 /// Measures a load: each machine with one core and with each of the numbers of cores. Whatever only differs in time is
 /// computed once.
 ///
@@ -191,11 +194,11 @@ fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u6
     }
 }
 
-/// Where the curve levels off; `None` where it still rises at its end, or has no end to speak of.
+/// Where the curve levels off; `None` where it still rises at its end though the bus has room, or has no end to speak of.
 fn saturation(points: &[Point]) -> Option<Saturation> {
     let [.., before, last] = points else { return None };
     let gain = (last.speed_up - before.speed_up) / f64::from(last.cores - before.cores);
-    if gain >= LEVEL {
+    if gain >= LEVEL && last.utilisation < FULL {
         return None;
     }
     let highest = points.iter().max_by(|one, other| one.speed_up.total_cmp(&other.speed_up))?;

@@ -34,6 +34,11 @@ fn the_reports_estimate_fills_the_bus_at_five_cores_and_not_at_four() {
         assert!(point["queueing_pixel_seconds"].as_f64() >= point["bound_pixel_seconds"].as_f64(), "{point}");
         assert_eq!((&point["method"], &point["main_load"]), (&"replayed".into(), &point["main_load"]));
     }
+    // Two points are enough where the second one fills the bus, and three are not where none does.
+    let saturation =
+        |cores: &str| Session::new().json(&format!("cores annex --cores {cores}"))["machines"][0]["saturation"].clone();
+    assert_eq!(shown(&saturation("16")["cores"]), "5.09");
+    assert!(saturation("2,3").is_null());
     // Four cores: 0.6315 ms a pixel without waiting, with the bus 78.5 % busy.
     let four = points(machine).iter().find(|point| point["cores"] == 4).unwrap();
     assert_eq!(format!("{:.4}", 1e3 * figure(&four["bound_pixel_seconds"])), "0.6315");

@@ -12,7 +12,7 @@ use crate::trap::{Fault, Stop};
 const LONGEST: usize = 5;
 
 /// A few vectors on their way from one core to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message {
     vectors: [Vector; LONGEST],
     length: u8,

@@ -51,6 +51,8 @@ struct Pending {
 pub struct Bus {
     config: BusConfig,
     longest_burst: Octets,
+    /// Binary logarithm of the octets of a beat, where it is whole.
+    beat_shift: Option<u32>,
     arbiter: Box<dyn Arbiter>,
     free_at: Clocks,
     not_before: Clocks,
@@ -66,6 +68,7 @@ impl Bus {
         Bus {
             arbiter: config.arbiter.build(config, masters),
             longest_burst: config.longest_burst(),
+            beat_shift: config.octets_per_beat.is_power_of_two().then(|| config.octets_per_beat.trailing_zeros()),
             config: config.clone(),
             free_at: Clocks(0),
             not_before: Clocks(0),
@@ -84,16 +87,23 @@ impl Bus {
         self.ask(master, arrival, octets);
     }
 
+    #[inline]
     fn ask(&mut self, master: u32, arrival: Clocks, octets: Octets) {
         let burst = octets.min(self.longest_burst);
-        self.claims.ask(master, arrival, self.config.length(burst));
+        // Dividing takes longer than all the rest.
+        let beats = match self.beat_shift {
+            Some(shift) => (burst.0 + self.config.octets_per_beat - 1) >> shift,
+            None => burst.0.div_ceil(self.config.octets_per_beat),
+        };
+        let length = Clocks(self.config.setup_clocks + beats * self.config.clocks_per_beat);
+        self.claims.ask(master, arrival, length);
         self.pending[master as usize] = Pending { burst, rest: octets - burst };
     }
 
     /// When the arbiter has something to decide, if nobody else begins to ask before.
     #[inline]
     pub fn next_decision(&self) -> Option<Clocks> {
-        Some(self.claims.earliest()?.max(self.free_at).max(self.not_before))
+        self.claims.first_at(self.free_at.max(self.not_before))
     }
 
     /// Lets the arbiter decide at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
@@ -135,5 +145,23 @@ impl Bus {
     /// How long each master waited, burst by burst.
     pub fn waits(&self) -> &[Waits] {
         &self.waits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_burst_is_as_long_with_a_shift_as_with_a_division() {
+        for octets_per_beat in 1..10 {
+            let config = BusConfig { octets_per_beat, setup_clocks: 3, ..BusConfig::default() };
+            for octets in 0..70 {
+                let mut bus = Bus::new(&config, 1);
+                bus.request(0, Clocks(5), Octets(octets));
+                let grant = bus.decide(Clocks(5)).expect("it is alone");
+                assert_eq!(grant.end - grant.start, config.length(Octets(octets)), "{octets_per_beat} {octets}");
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Recorded work items on their way from those who run them to a machine that replays them, a batch at a time.
 
-use std::collections::HashMap;
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
@@ -24,8 +24,8 @@ pub struct Library {
     /// Number of cores of this machine.
     cores: u32,
     batches: Receiver<Arc<Batch>>,
-    held: HashMap<Message, Vec<Arc<Recording>>>,
-    count: usize,
+    /// In the order in which they were recorded.
+    held: VecDeque<Arc<Recording>>,
     /// Why the replay is worth nothing.
     pub lost: Option<Reason>,
 }
@@ -33,21 +33,20 @@ pub struct Library {
 impl Library {
     /// The recordings that come through a channel.
     pub fn new(prefix: Prefix, recorded_cores: u32, cores: u32, batches: Receiver<Arc<Batch>>) -> Library {
-        Library { prefix, recorded_cores, cores, batches, held: HashMap::new(), count: 0, lost: None }
+        Library { prefix, recorded_cores, cores, batches, held: VecDeque::new(), lost: None }
     }
 
     /// Takes the recording of the work item that begins with a message; `None` when the replay is lost.
     pub fn take(&mut self, message: &Message) -> Option<Arc<Recording>> {
+        // Mostly it is the first: work is handed out in the order in which it was recorded.
+        let mut from = 0;
         loop {
-            if let Some(same) = self.held.get_mut(message) {
-                let recording = same.pop();
-                if same.is_empty() {
-                    self.held.remove(message);
-                }
-                self.count -= 1;
-                return recording;
+            let is_it = |recording: &Arc<Recording>| recording.message == *message;
+            if let Some(place) = self.held.range(from..).position(is_it) {
+                return self.held.remove(from + place);
             }
-            let batch = self.batches.recv().ok().filter(|_| self.count < MOST_HELD);
+            from = self.held.len();
+            let batch = self.batches.recv().ok().filter(|_| from < MOST_HELD);
             match batch.as_deref() {
                 Some(Ok(batch)) => self.hold(batch)?,
                 Some(Err(reason)) => return self.lose(reason),
@@ -57,13 +56,10 @@ impl Library {
     }
 
     fn hold(&mut self, batch: &[Arc<Recording>]) -> Option<()> {
-        for recording in batch {
-            if recording.depends_on_cores && self.recorded_cores != self.cores {
-                return self.lose("the work items depend on the number of cores");
-            }
-            self.held.entry(recording.message).or_default().push(recording.clone());
-            self.count += 1;
+        if self.recorded_cores != self.cores && batch.iter().any(|recording| recording.depends_on_cores) {
+            return self.lose("the work items depend on the number of cores");
         }
+        self.held.extend(batch.iter().cloned());
         Some(())
     }
 
@@ -75,6 +71,6 @@ impl Library {
 
     /// Whether each recording was used; waits for the last one.
     pub fn is_used_up(&mut self) -> bool {
-        self.count == 0 && self.batches.recv().is_err()
+        self.held.is_empty() && self.batches.recv().is_err()
     }
 }

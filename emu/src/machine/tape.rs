@@ -19,6 +19,13 @@ pub struct Tape {
     next: usize,
 }
 
+impl Tape {
+    /// What the last segment asked for. Where a core has rolled on, that is noted nowhere else.
+    fn asked(&self, main: u32) -> Option<Request> {
+        Some(self.recording.as_ref()?.segments.get(self.next.checked_sub(1)?)?.request(main))
+    }
+}
+
 /// Whether two ranges have an octet in common.
 fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
     one.start < other.end && other.start < one.end
@@ -40,7 +47,6 @@ impl<O> Processor<'_, O> {
         }
         let (clocks, octets) = (next.clocks, next.octets());
         tape.next += 1;
-        self.request = Some(next.request(self.seat.cores));
         self.state.pc = next.pc;
         self.spend(clocks.into(), 0, true);
         Some(octets)
@@ -50,7 +56,8 @@ impl<O> Processor<'_, O> {
     pub(super) fn replay(&mut self, mut tape: Tape, shared: &mut Shared, has_leave: bool) -> Advance {
         let main = self.seat.cores;
         let mut taken = None;
-        let asked = self.request.take();
+        let noted = self.request.take();
+        let asked = tape.asked(main).or(noted);
         if has_leave {
             match asked {
                 Some(Request::Receive) => {

@@ -19,9 +19,13 @@ use crate::quantity::Clocks;
 
 /// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
 #[derive(Clone, Debug)]
-pub struct Claims {
-    arrivals: Vec<Clocks>,
-    lengths: Vec<Clocks>,
+pub struct Claims(Vec<Claim>);
+
+/// A master's burst.
+#[derive(Clone, Copy, Debug)]
+struct Claim {
+    arrival: Clocks,
+    length: Clocks,
 }
 
 /// When a master begins to ask that does not ask.
@@ -30,53 +34,63 @@ pub const NEVER: Clocks = Clocks(u64::MAX);
 impl Claims {
     /// Nobody asks.
     pub fn new(masters: u32) -> Claims {
-        Claims { arrivals: vec![NEVER; masters as usize], lengths: vec![Clocks(0); masters as usize] }
+        Claims(vec![Claim { arrival: NEVER, length: Clocks(0) }; masters as usize])
     }
 
     /// A master asks, from a clock on, for a burst that holds the bus for that long.
     #[inline]
     pub fn ask(&mut self, master: u32, arrival: Clocks, length: Clocks) {
-        (self.arrivals[master as usize], self.lengths[master as usize]) = (arrival, length);
+        self.0[master as usize] = Claim { arrival, length };
     }
 
     /// A master asks no more.
     #[inline]
     pub fn withdraw(&mut self, master: u32) {
-        self.arrivals[master as usize] = NEVER;
+        self.0[master as usize].arrival = NEVER;
     }
 
     /// Number of masters, whether they ask or not.
+    #[inline]
     pub fn masters(&self) -> u32 {
-        self.arrivals.len() as u32
+        self.0.len() as u32
     }
 
     /// When a master began, or begins, to ask for its burst; beyond every clock for one that does not.
     #[inline]
     pub fn arrival(&self, master: u32) -> Clocks {
-        self.arrivals[master as usize]
+        self.0[master as usize].arrival
     }
 
     /// How long a master's burst will hold the bus.
     #[inline]
     pub fn length(&self, master: u32) -> Clocks {
-        self.lengths[master as usize]
+        self.0[master as usize].length
     }
 
-    /// When the first master began, or begins, to ask; `None` when nobody asks.
+    /// The first clock, not before `floor`, at which anybody asks; `None` when nobody ever does.
     #[inline]
-    pub fn earliest(&self) -> Option<Clocks> {
-        self.arrivals.iter().copied().min().filter(|&arrival| arrival != NEVER)
+    pub fn first_at(&self, floor: Clocks) -> Option<Clocks> {
+        // On a busy bus somebody waits already, mostly one of the first that are looked at.
+        if self.0.iter().any(|claim| claim.arrival <= floor) {
+            return Some(floor);
+        }
+        self.0.iter().map(|claim| claim.arrival).min().filter(|&arrival| arrival != NEVER)
     }
 
     /// Masters that ask at a clock, by number.
     pub fn asking(&self, clock: Clocks) -> impl Iterator<Item = u32> {
-        (0..self.masters()).filter(move |&master| self.arrival(master) <= clock)
+        (0..).zip(&self.0).filter(move |(_, claim)| claim.arrival <= clock).map(|(master, _)| master)
     }
 
     /// The first master from `turn` on, round the circle, that asks at a clock.
     #[inline]
     pub fn first_from(&self, turn: u32, clock: Clocks) -> Option<u32> {
-        (turn..self.masters()).chain(0..turn).find(|&master| self.arrival(master) <= clock)
+        let (before, after) = self.0.split_at(turn as usize);
+        let asks = |claim: &Claim| claim.arrival <= clock;
+        match after.iter().position(asks) {
+            Some(place) => Some(turn + place as u32),
+            None => before.iter().position(asks).map(|place| place as u32),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A picture to be drawn: everything that decides its bits, its counts and its clocks, put together from what the user
 //! says. Nothing here runs anything.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use emu::machine::Config;
 use isa::diagnostic::{Diagnostic, Report};
@@ -36,6 +36,8 @@ pub struct Job {
     pub machine: Config,
     /// What is likely a mistake in the scene's files.
     pub warnings: Report,
+    /// All files that were read for it.
+    pub files: Vec<PathBuf>,
 }
 
 /// The options that decide a picture.
@@ -45,7 +47,7 @@ pub struct JobArguments {
     pub scene: String,
     /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
     #[arg(long, value_name = "FILE")]
-    pub mesh: Option<std::path::PathBuf>,
+    pub mesh: Option<PathBuf>,
     #[command(flatten)]
     #[allow(missing_docs, reason = "the group has its own")]
     pub view: ViewArguments,
@@ -75,6 +77,7 @@ impl Job {
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
             warnings: Report::default(),
+            files: Vec::new(),
         }
     }
 
@@ -87,6 +90,9 @@ impl Job {
         let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), arguments.view.size)?;
         let mut job = Job::new(loaded.scene);
         job.warnings = loaded.warnings;
+        job.files = loaded.files;
+        job.files.extend(arguments.kernels.replaced.iter().map(|(_, path)| path.clone()));
+        job.files.push(PathBuf::from(&arguments.machine.machine));
         job.view = View {
             size: arguments.view.size.unwrap_or(job.scene.size),
             camera,

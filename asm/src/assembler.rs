@@ -14,7 +14,7 @@ use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
 use crate::explain;
 use crate::expression::{Expression, Step};
-use crate::frame::{Frame, Origin, file_lines};
+use crate::frame::Frame;
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
 use crate::line::Line;
@@ -147,7 +147,7 @@ impl Assembler<'_> {
             self.messages.add(Problem::new(explain::SIZE, message, At::default(), "starts here"));
             return;
         }
-        self.frames.push(Frame::new(file_lines(&source.text, 0), Origin::File(0)));
+        self.enter_file(0, At::default());
         while let Some(line) = self.fetch() {
             self.line(&line);
         }

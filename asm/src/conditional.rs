@@ -3,6 +3,7 @@
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
+use crate::macros::arguments;
 use crate::message::{At, Parsed, Problem};
 
 /// What an open `.if` does with the lines that follow.
@@ -32,7 +33,7 @@ impl Condition {
 }
 
 /// How a condition is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Test {
     /// `.if expression`.
     Expression,
@@ -44,6 +45,20 @@ pub(crate) enum Test {
     Blank,
     /// `.ifnb text`.
     NotBlank,
+    /// `.ifeq expression` and its like: how the number compares with 0.
+    Compared(fn(&i64, &i64) -> bool),
+    /// `.ifc text, text`.
+    Same,
+    /// `.ifnc text, text`.
+    Different,
+}
+
+/// The texts around the only comma of a line, without their quotation marks.
+fn two_texts(cursor: &mut Cursor) -> Parsed<[String; 2]> {
+    match arguments(cursor)[..] {
+        [ref first, ref second] => Ok([first.to_string(), second.to_string()]),
+        _ => Err(cursor.expected("two texts with a comma between them")),
+    }
 }
 
 impl Assembler<'_> {
@@ -71,6 +86,14 @@ impl Assembler<'_> {
         result.map(|_| ())
     }
 
+    /// An unknown directive that begins like a condition: its `.endif` belongs to it. Whether it
+    /// stands where nothing is read.
+    pub(crate) fn open_unknown_condition(&mut self, at: At) -> bool {
+        let is_skipping = self.is_skipping();
+        self.push_condition(if is_skipping { State::Done } else { State::Taking }, at);
+        is_skipping
+    }
+
     fn test(&mut self, test: Test, cursor: &mut Cursor) -> Parsed<bool> {
         match test {
             Test::Blank => return Ok(cursor.is_at_end()),
@@ -80,11 +103,20 @@ impl Assembler<'_> {
                 cursor.end()?;
                 return Ok(self.value_now(&expression)?.is_none_or(|value| value != 0));
             }
+            Test::Compared(holds) => {
+                let expression = self.expression(cursor)?;
+                cursor.end()?;
+                return Ok(self.value_now(&expression)?.is_none_or(|value| holds(&value, &0)));
+            }
+            Test::Same | Test::Different => {
+                let [first, second] = two_texts(cursor)?;
+                return Ok((first == second) == matches!(test, Test::Same));
+            }
             Test::Defined | Test::Undefined => {}
         }
         let (text, _) = cursor.name("a name")?;
         cursor.end()?;
-        Ok(self.is_defined(text) == (test == Test::Defined))
+        Ok(self.is_defined(text) == matches!(test, Test::Defined))
     }
 
     /// `.elseif`, or `.else` without an expression.

@@ -132,10 +132,14 @@ impl Assembler<'_> {
                 return Err(cursor.expected("a text in quotation marks"));
             };
             let mut octets = self.text_value(cursor, token)?;
+            cursor.skip();
+            while let Some(token) = cursor.peek().filter(|token| token.kind == Kind::Text) {
+                octets.extend(self.text_value(cursor, token)?);
+                cursor.skip();
+            }
             if ends_with_zero {
                 octets.push(0);
             }
-            cursor.skip();
             self.put(&octets, cursor)?;
             if cursor.is_at_end() {
                 return Ok(());
@@ -149,7 +153,7 @@ impl Assembler<'_> {
         text_octets(cursor.text(token)).map_err(|(start, end)| {
             let at = cursor.line.at(token.start as usize + start, token.start as usize + end);
             Problem::new(explain::TEXT, "this escape means nothing", at, "no such escape")
-                .hint("escapes are \\n \\t \\r \\0 \\\\ \\' \\\" and \\x41")
+                .hint("escapes are \\n \\t \\r \\b \\f \\\\ \\' \\\", \\x41 and up to three octal digits as in \\012")
         })
     }
 
@@ -185,10 +189,16 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    /// The octets of an `.align`: a power of two.
-    pub(crate) fn alignment(&mut self, cursor: &mut Cursor) -> Parsed<Option<i64>> {
+    /// The octets of an `.align`, a power of two, or of a `.p2align`, by their logarithm.
+    pub(crate) fn alignment(&mut self, is_power: bool, cursor: &mut Cursor) -> Parsed<Option<i64>> {
         let expression = self.expression(cursor)?;
-        let Some(octets) = self.value_now(&expression)? else { return Ok(None) };
+        let Some(number) = self.value_now(&expression)? else { return Ok(None) };
+        let most = BUFFER.ilog2();
+        if is_power && !(0..=i64::from(most)).contains(&number) {
+            let message = format!("2^{number} octets are no alignment");
+            return Err(Problem::new(explain::PLACE, message, expression.at, format!("0 to {most}")));
+        }
+        let octets = if is_power { 1 << number } else { number };
         if octets < 1 || octets & (octets - 1) != 0 || octets > BUFFER as i64 {
             let message = format!("{octets} octets are no alignment");
             let label = format!("a power of two from 1 to {BUFFER}");
@@ -198,12 +208,12 @@ impl Assembler<'_> {
     }
 
     /// `.align octets, fill`: in the buffer with `fill` or 0, in the code with `nop`.
-    pub(crate) fn align(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
+    pub(crate) fn align(&mut self, is_power: bool, at: At, cursor: &mut Cursor) -> Parsed<()> {
         if self.structure.is_some() {
-            self.align_structure(cursor)?;
+            self.align_structure(is_power, cursor)?;
             return cursor.end();
         }
-        let Some(octets) = self.alignment(cursor)? else { return Ok(()) };
+        let Some(octets) = self.alignment(is_power, cursor)? else { return Ok(()) };
         let fill = if cursor.accept(",") {
             let expression = self.expression(cursor)?;
             self.value_now(&expression)?.unwrap_or(0) as u8

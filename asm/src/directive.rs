@@ -6,10 +6,11 @@ use crate::assembler::{Assembler, Section};
 use crate::conditional::Test;
 use crate::cursor::Cursor;
 use crate::explain;
+use crate::macros::REPETITIONS;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::token::Kind;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 enum Action {
     Section(Section),
     Entry,
@@ -26,7 +27,7 @@ enum Action {
     Fixed,
     Texts { ends_with_zero: bool },
     Space,
-    Align,
+    Align { is_power: bool },
     Org,
     Open { is_function: bool },
     Close { is_function: bool },
@@ -38,7 +39,10 @@ enum Action {
     ExitMacro,
     Local,
     Repeat,
-    Each,
+    Each { by_character: bool },
+    Purge,
+    End,
+    Ignored,
     Stray(&'static str),
     Say(Severity),
     Assert,
@@ -89,11 +93,13 @@ directives! {
     ".wide" [".quad"] "number, ..." Action::Numbers(8), "Numbers of 8 octets, little-endian.";
     ".fixed" "format, number, ..." Action::Fixed,
         "Numbers of 4 octets, each rounded to the nearest of the format, ties up; a number that is no decimal literal is raw.";
-    ".ascii" "\"text\", ..." Action::Texts { ends_with_zero: false }, "The octets of texts, in UTF-8.";
+    ".ascii" "\"text\", ..." Action::Texts { ends_with_zero: false },
+        "The octets of texts, in UTF-8; texts without a comma between them are one text.";
     ".asciz" [".string"] "\"text\", ..." Action::Texts { ends_with_zero: true }, "The octets of texts, each with a 0 behind it.";
     ".space" [".skip", ".zero"] "octets, fill" Action::Space, "That many octets of `fill` or 0.";
-    ".align" [".balign"] "octets, fill" Action::Align,
+    ".align" [".balign"] "octets, fill" Action::Align { is_power: false },
         "Goes on at the next multiple of that power of two in octets, over `fill` or 0, over `nop` in the code.";
+    ".p2align" "bits, fill" Action::Align { is_power: true }, "The same, at the next multiple of 2^bits octets.";
     ".org" "address" Action::Org, "Goes on at a later address: in words over `nop` in the code, in octets over 0 in the buffer.";
     ".func" "name" Action::Open { is_function: true }, "A label and the beginning of a function that counts are reported for.";
     ".endfunc" "" Action::Close { is_function: true }, "Ends a function.";
@@ -101,22 +107,35 @@ directives! {
     ".endregion" "" Action::Close { is_function: false }, "Ends a region.";
     ".if" "expression" Action::If(Test::Expression), "Reads what follows when the number is not 0.";
     ".ifdef" "name" Action::If(Test::Defined), "Reads what follows when the name is defined above.";
-    ".ifndef" "name" Action::If(Test::Undefined), "Reads what follows when the name is not defined above.";
+    ".ifndef" [".ifnotdef"] "name" Action::If(Test::Undefined), "Reads what follows when the name is not defined above.";
     ".ifb" "text" Action::If(Test::Blank), "Reads what follows when the text is blank.";
     ".ifnb" "text" Action::If(Test::NotBlank), "Reads what follows when the text is not blank.";
+    ".ifc" "text, text" Action::If(Test::Same), "Reads what follows when the texts are the same.";
+    ".ifnc" "text, text" Action::If(Test::Different), "Reads what follows when the texts differ.";
+    ".ifeq" "expression" Action::If(Test::Compared(i64::eq)), "Reads what follows when the number is 0.";
+    ".ifne" "expression" Action::If(Test::Compared(i64::ne)), "Reads what follows when the number is not 0.";
+    ".ifgt" "expression" Action::If(Test::Compared(i64::gt)), "Reads what follows when the number is greater than 0.";
+    ".ifge" "expression" Action::If(Test::Compared(i64::ge)), "Reads what follows when the number is 0 or greater.";
+    ".iflt" "expression" Action::If(Test::Compared(i64::lt)), "Reads what follows when the number is less than 0.";
+    ".ifle" "expression" Action::If(Test::Compared(i64::le)), "Reads what follows when the number is 0 or less.";
     ".elseif" "expression" Action::ElseIf, "Reads what follows when nothing before was read and the number is not 0.";
     ".else" "" Action::Else, "Reads what follows when nothing before was read.";
     ".endif" "" Action::EndIf, "Ends a condition.";
     ".macro" "name a, b=default, rest..." Action::Macro,
-        "Begins a macro: `\\a` is an argument, `\\@` the number of the call, `\\()` nothing; `a:req` and `rest:vararg` as in GNU as.";
+        "Begins a macro: `\\a` is an argument, `\\@` the number of the call, `\\()` nothing; a parameter that is not given and has no default is empty, `a:req` must be given, `rest:vararg` is the same as `rest...`.";
     ".endm" "" Action::Stray(".macro"), "Ends a macro.";
+    ".purgem" "name" Action::Purge, "Forgets a macro.";
     ".exitm" "" Action::ExitMacro, "Leaves the macro that is being read.";
     ".local" "name, ..." Action::Local, "Names that each call of a macro has for itself.";
     ".rept" "count, counter" Action::Repeat, "Repeats what follows; the counter goes from 0.";
-    ".irp" "name, text, ..." Action::Each, "Repeats what follows for each text, which stands where `\\name` is.";
+    ".irp" "name, text, ..." Action::Each { by_character: false },
+        "Repeats what follows for each text, which stands where `\\name` is.";
+    ".irpc" "name, text" Action::Each { by_character: true }, "The same for each character of the text.";
     ".endr" "" Action::Stray(".rept"), "Ends a repetition.";
-    ".error" "\"text\"" Action::Say(Severity::Error), "An error of the program's own.";
+    ".error" [".err"] "\"text\"" Action::Say(Severity::Error), "An error of the program's own; the text may be left out.";
     ".warning" "\"text\"" Action::Say(Severity::Warning), "A warning of the program's own.";
+    ".end" "" Action::End, "Ends the program; what follows is not read.";
+    ".global" [".globl"] "name, ..." Action::Ignored, "Nothing: all names are known everywhere.";
     ".assert" "expression, \"text\"" Action::Assert, "An error when the number is 0, once all names are known.";
 }
 
@@ -125,10 +144,29 @@ pub fn find(name: &str) -> Option<&'static Directive> {
     DIRECTIVES.iter().find(|directive| directive.name == name || directive.also.contains(&name))
 }
 
+/// Names between commas.
+fn names(cursor: &mut Cursor) -> Parsed<()> {
+    loop {
+        cursor.name("a name")?;
+        if cursor.is_at_end() {
+            return Ok(());
+        }
+        cursor.expect(",")?;
+    }
+}
+
 impl Assembler<'_> {
     /// Carries out a directive; the cursor stands behind its name.
     pub(crate) fn directive(&mut self, name: &str, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let Some(directive) = find(name) else {
+            // What closes it must not be another error.
+            if name.starts_with(".if") {
+                if self.open_unknown_condition(at) {
+                    return Ok(());
+                }
+            } else if REPETITIONS.iter().any(|opening| name.starts_with(opening)) {
+                self.capture(&REPETITIONS, ".endr", at);
+            }
             let message = format!("`{name}` is not a directive");
             return Err(
                 Problem::new(explain::DIRECTIVE, message, at, "unknown directive").suggest(name, Among::Directives)
@@ -137,7 +175,7 @@ impl Assembler<'_> {
         if let Some(open) = &self.structure {
             let belongs = matches!(
                 directive.action,
-                Action::Field | Action::EndStruct | Action::Struct | Action::Space | Action::Align
+                Action::Field | Action::EndStruct | Action::Struct | Action::Space | Action::Align { .. }
             );
             let adds_code = matches!(
                 directive.action,
@@ -174,7 +212,7 @@ impl Assembler<'_> {
             Action::Fixed => self.fixed_numbers(at, cursor),
             Action::Texts { ends_with_zero } => self.texts(ends_with_zero, at, cursor),
             Action::Space => self.space(at, cursor),
-            Action::Align => self.align(at, cursor),
+            Action::Align { is_power } => self.align(is_power, at, cursor),
             Action::Org => self.origin(cursor),
             Action::Open { is_function } => self.open_region(is_function, at, cursor),
             Action::Close { is_function } => self.close_region(is_function, at, cursor),
@@ -186,7 +224,13 @@ impl Assembler<'_> {
             Action::ExitMacro => self.exit_macro(at),
             Action::Local => self.local(at, cursor),
             Action::Repeat => self.repeat_count(at, cursor),
-            Action::Each => self.repeat_texts(at, cursor),
+            Action::Each { by_character } => self.repeat_texts(by_character, at, cursor),
+            Action::Purge => self.remove_macro(cursor),
+            Action::End => {
+                self.frames.clear();
+                cursor.end()
+            }
+            Action::Ignored => names(cursor),
             Action::Stray(opening) => {
                 let message = format!("`{name}` without `{opening}`");
                 Err(Problem::new(explain::UNOPENED, message, at, "nothing is open"))
@@ -201,13 +245,7 @@ impl Assembler<'_> {
         if !cursor.line.is_substituted() {
             return Err(Problem::new(explain::UNOPENED, "`.local` stands outside of macros", at, "not in a macro"));
         }
-        loop {
-            cursor.name("a name")?;
-            if cursor.is_at_end() {
-                return Ok(());
-            }
-            cursor.expect(",")?;
-        }
+        names(cursor)
     }
 
     fn text_operand(&mut self, cursor: &mut Cursor) -> Parsed<String> {
@@ -221,7 +259,10 @@ impl Assembler<'_> {
     }
 
     fn say(&mut self, severity: Severity, at: At, cursor: &mut Cursor) -> Parsed<()> {
-        let text = self.text_operand(cursor)?;
+        let text = match cursor.is_at_end() && severity == Severity::Error {
+            true => "the program says that this is an error".to_owned(),
+            false => self.text_operand(cursor)?,
+        };
         let code = if severity == Severity::Error { explain::SAID } else { explain::WARNED };
         let mut problem = Problem::new(code, text, at, "said here");
         problem.severity = severity;

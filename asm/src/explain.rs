@@ -35,7 +35,7 @@ Names are written in small letters. A label needs a colon behind it.
     DIRECTIVE "E002" "unknown directive"
 "Words that begin with a point are directives; the manual lists them.
 
-    .globl start            ; there is no such directive: all labels are known everywhere";
+    .section data           ; there is no such directive: `.buffer` is where data stand";
     UNDEFINED "E003" "undefined symbol"
 "The name is used but nowhere defined: no label, no `.equ` or `.set`, no field of a structure, no constant given from
 outside. Capital and small letters differ.
@@ -84,8 +84,8 @@ the point.
 
     movi s1, 012            ; write 12 or 0o12";
     TEXT "E012" "malformed text or character"
-"A text stands between quotation marks on one line, a character between apostrophes. Escapes are \\n \\t \\r \\0 \\\\ \\'
-\\\" and \\x with two hexadecimal digits.
+"A text stands between quotation marks on one line, a character between apostrophes. Escapes are \\n \\t \\r \\b \\f
+\\\\ \\' \\\", \\x with two hexadecimal digits, and a backslash with up to three octal digits, at most \\377.
 
     .buffer
     .ascii \"open           ; the closing quotation mark is missing";
@@ -151,10 +151,10 @@ the limit. A macro that calls itself needs a condition that ends it.
     .region test
     .endfunc                ; `.endregion` comes first";
     MACRO "E024" "wrong macro arguments"
-"The call has too many arguments, or one without a default is missing. Arguments are separated by commas, and may be
-named as in `copy to=s1`.
+"The call has too many arguments, one with the name of no parameter, or lacks one that `:req` asks for. Arguments are
+separated by commas, or by blanks between operands, and may be named as in `copy to=s1`. One that is not given is empty.
 
-    .macro copy to, from
+    .macro copy to, from:req
     mov \\to, \\from
     .endm
     copy s1                 ; `from` is missing";

@@ -1,5 +1,6 @@
 //! Where lines come from: files, macro calls and repetitions, each inside another.
 
+use std::borrow::Cow;
 use std::rc::Rc;
 
 use crate::assembler::Assembler;
@@ -7,17 +8,17 @@ use crate::conditional::Condition;
 use crate::explain;
 use crate::limits::{EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
 use crate::line::{Line, Substitution};
-use crate::message::{At, Problem};
+use crate::message::{At, Call, Problem, Via};
 use crate::symbol::{Meaning, Name};
-use crate::token::{continues_name, starts_name};
+use crate::token::{continues_name, starts_comment, starts_name};
 
 /// What a frame repeats.
 #[derive(Debug)]
 pub(crate) enum Repeat {
     /// `.rept`: passes that follow, the counter and its number.
-    Count { remaining: i64, counter: Option<Name>, index: i64 },
+    Count { remaining: i64, counter: Option<Name>, index: i64, at: At },
     /// `.irp`: the parameter and the texts that follow, last one first.
-    Texts { parameter: Rc<str>, remaining: Vec<Rc<str>> },
+    Texts { parameter: Rc<str>, remaining: Vec<Rc<str>>, at: At },
 }
 
 /// What kind of text a frame reads.
@@ -51,8 +52,46 @@ impl Frame {
     }
 }
 
-/// The lines of a file.
-pub(crate) fn file_lines(text: &str, source: u16) -> Rc<[Line]> {
+/// The text with blanks in the place of its `/* */` comments, octet by octet; the offset of one without end.
+fn without_comments(text: &str) -> (Cow<'_, str>, Option<usize>) {
+    if !text.contains("/*") {
+        return (text.into(), None);
+    }
+    let mut new = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let length = if rest.starts_with("/*") {
+            let end = rest[2..].find("*/").map(|end| end + 4);
+            new.extend(rest[..end.unwrap_or(rest.len())].bytes().map(|octet| if octet == b'\n' { '\n' } else { ' ' }));
+            let Some(end) = end else { return (new.into(), Some(text.len() - rest.len())) };
+            rest = &rest[end..];
+            continue;
+        } else if starts_comment(rest) {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if first == '"' {
+            // Up to its end, or that of the line.
+            let mut is_escaped = false;
+            let end = rest[1..].find(|c| {
+                let ends = c == '\n' || (c == '"' && !is_escaped);
+                is_escaped = c == '\\' && !is_escaped;
+                ends
+            });
+            end.map_or(rest.len(), |end| end + if rest[1 + end..].starts_with('"') { 2 } else { 1 })
+        } else if rest.starts_with("'\"'") {
+            3
+        } else {
+            first.len_utf8()
+        };
+        new.push_str(&rest[..length]);
+        rest = &rest[length..];
+    }
+    (new.into(), None)
+}
+
+/// The lines of a file, and the place of a comment that is not closed.
+pub(crate) fn file_lines(text: &str, source: u16) -> (Rc<[Line]>, Option<At>) {
+    let (text, unclosed) = without_comments(text);
+    let unclosed = unclosed.map(|at| At { source, context: 0, start: at as u32, end: at as u32 + 2 });
     let mut start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     let mut lines = Vec::new();
     for (number, line) in text[start..].split_inclusive('\n').enumerate() {
@@ -60,7 +99,7 @@ pub(crate) fn file_lines(text: &str, source: u16) -> Rc<[Line]> {
         lines.push(Line::of_file(shown, source, number as u32 + 1, start, 0));
         start += line.len();
     }
-    lines.into()
+    (lines.into(), unclosed)
 }
 
 /// The directive of a line behind its labels, without looking at the rest.
@@ -83,6 +122,17 @@ pub(crate) fn leading_directive(text: &str) -> Option<&str> {
 }
 
 impl Assembler<'_> {
+    /// Starts reading a file of the program's sources.
+    pub(crate) fn enter_file(&mut self, index: u16, at: At) {
+        let text = self.program.sources[usize::from(index)].clone();
+        let (lines, unclosed) = file_lines(&text.text, index);
+        if let Some(opened) = unclosed {
+            self.is_incomplete = true;
+            self.messages.add(Problem::new(explain::UNCLOSED, "`*/` is missing", opened, "opened here"));
+        }
+        self.enter(Frame::new(lines, Origin::File(index)), at);
+    }
+
     /// The next line to assemble.
     pub(crate) fn fetch(&mut self) -> Option<Line> {
         loop {
@@ -149,16 +199,20 @@ impl Assembler<'_> {
         match &mut frame.repeat {
             None => return false,
             Some(Repeat::Count { remaining: 0, .. }) => return false,
-            Some(Repeat::Count { remaining, counter, index }) => {
+            Some(Repeat::Count { remaining, counter, index, at: header }) => {
                 *remaining -= 1;
                 *index += 1;
                 if let Some(name) = *counter {
                     let (index, at) = (*index, self.names.get(name).and_then(|symbol| symbol.at));
                     self.names.set(name, Meaning::Variable(index, 2), at);
+                    let via = Via::Pass(self.names.text(name).clone(), index.to_string().into());
+                    frame.context = Some(self.messages.enter(Call { at: *header, via }));
                 }
             }
-            Some(Repeat::Texts { parameter, remaining }) => {
+            Some(Repeat::Texts { parameter, remaining, at: header }) => {
                 let Some(text) = remaining.pop() else { return false };
+                let via = Via::Pass(parameter.clone(), text.clone());
+                frame.context = Some(self.messages.enter(Call { at: *header, via }));
                 let arguments = [(parameter.clone(), text)].into();
                 frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
             }
@@ -168,7 +222,8 @@ impl Assembler<'_> {
         true
     }
 
-    /// Reads a block of the innermost frame up to its end, which is taken and left out.
+    /// Reads a block of the innermost frame up to its end, which is taken and left out. Blocks inside begin with words
+    /// that begin like `openings`.
     pub(crate) fn capture(&mut self, openings: &[&str], closing: &str, at: At) -> Option<Rc<[Line]>> {
         let mut depth = 0;
         let mut lines = Vec::new();
@@ -179,7 +234,7 @@ impl Assembler<'_> {
                     return Some(lines.into());
                 }
                 Some(word) if word == closing => depth -= 1,
-                Some(word) if openings.contains(&word) => depth += 1,
+                Some(word) if openings.iter().any(|opening| word.starts_with(opening)) => depth += 1,
                 _ => {}
             }
             self.record(&line);
@@ -235,8 +290,23 @@ mod tests {
     }
 
     #[test]
+    fn comments_become_blanks_outside_of_texts_and_other_comments() {
+        for (text, expected) in [
+            ("a /* b\n c */ d", "a     \n      d"),
+            ("\"/*\" /*\"*/ 1", "\"/*\"       1"),
+            ("# /* a\nb // /*\n; /*", "# /* a\nb // /*\n; /*"),
+            ("'\"' /*é*/ x", "'\"'        x"),
+            ("\"a\\\"/*\" y", "\"a\\\"/*\" y"),
+            ("\"open /* \nz/**/", "\"open /* \nz    "),
+        ] {
+            assert_eq!(without_comments(text), (expected.into(), None), "{text}");
+        }
+        assert_eq!(without_comments("ab /* c").1, Some(3));
+    }
+
+    #[test]
     fn lines_keep_their_places() {
-        let lines = file_lines("\u{feff}a\r\nbc", 0);
+        let (lines, _) = file_lines("\u{feff}a\r\nbc", 0);
         let places: Vec<_> = lines.iter().map(|line| (&*line.text, line.number, line.at(0, 1).start)).collect();
         assert_eq!(places, [("a", 1, 3), ("bc", 2, 6)]);
     }

@@ -2,7 +2,7 @@
 
 use crate::assembler::Assembler;
 use crate::explain;
-use crate::frame::{Frame, Origin, file_lines};
+use crate::frame::Origin;
 use crate::limits::{SOURCES, TEXT_OCTETS};
 use crate::message::{At, Parsed, Problem};
 
@@ -43,8 +43,7 @@ impl Assembler<'_> {
             let message = format!("`{name}` includes itself");
             return refuse(self, explain::DEPTH, message, "it is being read already".into());
         }
-        let text = self.program.sources[index as usize].clone();
-        self.enter(Frame::new(file_lines(&text.text, index), Origin::File(index)), at);
+        self.enter_file(index, at);
         Ok(())
     }
 }

@@ -105,6 +105,26 @@ impl Attempt {
     }
 }
 
+/// Whether a name may be defined from outside, as a constant or a format.
+///
+/// # Errors
+/// Why not, in one line: no name of the language, or the name of something else.
+pub fn check_outside_name(text: &str, isa: &Isa) -> Result<(), String> {
+    let is_name = text.starts_with(token::starts_name) && text.chars().all(token::continues_name);
+    let what = if !is_name || text.contains('$') {
+        return Err(format!("`{text}` is no name: letters, digits and `_`, no digit first"));
+    } else if operand::looks_like_register(text) {
+        "a register"
+    } else if function::is_function(text) {
+        "a function of expressions"
+    } else if isa.ops().any(|op| *isa.row(op).name == *text) || pseudo::find(text).is_some() {
+        "an instruction"
+    } else {
+        return Ok(());
+    };
+    Err(format!("`{text}` is {what}: choose another name"))
+}
+
 /// Assembles `source`.
 ///
 /// # Errors

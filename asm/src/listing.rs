@@ -102,6 +102,7 @@ fn line_messages(attempt: &Attempt) -> Vec<(At, String)> {
         let severity = match message.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
+            Severity::Note { .. } => "note",
         };
         let code = message.code.map_or(String::new(), |code| format!("[{code}]"));
         (at.unwrap_or((u16::MAX, 0)), format!("{severity}{code}: {}", message.message))

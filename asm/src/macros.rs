@@ -8,15 +8,16 @@ use crate::explain;
 use crate::frame::{Frame, Origin, Repeat, leading_directive};
 use crate::limits::LINES;
 use crate::line::{Line, Substitution};
-use crate::message::{At, Call, Parsed, Problem};
+use crate::message::{At, Call, Parsed, Problem, Via};
 use crate::symbol::Meaning;
-use crate::token::{Kind, tokens};
+use crate::token::{Kind, Token, tokens};
 
 /// A parameter of a macro.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameter {
     name: Rc<str>,
-    default: Option<Rc<str>>,
+    default: Rc<str>,
+    is_required: bool,
     takes_rest: bool,
 }
 
@@ -40,12 +41,31 @@ fn text_of<'t>(cursor: &Cursor<'t>, from: usize, to: usize) -> &'t str {
     }
 }
 
-/// Splits the rest of a line at the commas outside of parentheses: token ranges.
+/// The text of an argument: a text alone stands for what is between its quotation marks.
+fn argument_of(cursor: &Cursor, from: usize, to: usize) -> Rc<str> {
+    let text = text_of(cursor, from, to);
+    match cursor.tokens.get(from..to) {
+        Some([only]) if only.kind == Kind::Text => text[1..text.len() - 1].replace("\\\"", "\"").into(),
+        _ => text.into(),
+    }
+}
+
+/// Whether a blank between two tokens separates arguments: between two operands, which no expression has side by side.
+fn is_separated(before: Token, after: Token) -> bool {
+    let is_word = |kind| !matches!(kind, Kind::Mark(_));
+    before.end < after.start && is_word(after.kind) && (is_word(before.kind) || before.kind == Kind::Mark(")"))
+}
+
+/// Splits the rest of a line at the commas, and the blanks between operands, outside of parentheses: token ranges.
 fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
     let mut parts = Vec::new();
     let mut start = cursor.position;
     let mut depth = 0usize;
     for (place, token) in cursor.tokens.iter().enumerate().skip(start) {
+        if depth == 0 && place > start && is_separated(cursor.tokens[place - 1], *token) {
+            parts.push((start, place));
+            start = place;
+        }
         match token.kind {
             Kind::Mark("(") => depth += 1,
             Kind::Mark(")") => depth = depth.saturating_sub(1),
@@ -62,21 +82,46 @@ fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
     parts
 }
 
-/// What may stand behind a parameter's name: `:req`, which each parameter without a default is anyway, or `:vararg`.
-/// Whether it is the latter.
-fn qualifier(cursor: &mut Cursor) -> Parsed<bool> {
+/// The texts of the rest of a line, as a macro gets its arguments.
+pub(crate) fn arguments(cursor: &Cursor) -> Vec<Rc<str>> {
+    split(cursor).into_iter().map(|(start, end)| argument_of(cursor, start, end)).collect()
+}
+
+/// What may stand behind a parameter's name: `:req` or `:vararg`, also written `...`.
+fn qualifier(parameter: &mut Parameter, cursor: &mut Cursor) -> Parsed<()> {
     if !cursor.accept(":") {
-        return Ok(false);
+        parameter.takes_rest = cursor.accept("...");
+        return Ok(());
     }
     match cursor.name("`req` or `vararg`")? {
-        ("vararg", _) => Ok(true),
-        ("req", _) => Ok(false),
+        ("vararg", _) => {
+            parameter.takes_rest = true;
+            Ok(())
+        }
+        ("req", _) => {
+            parameter.is_required = true;
+            Ok(())
+        }
         (other, at) => {
             let message = format!("a parameter cannot be `{other}`");
             let problem = Problem::new(explain::MACRO, message, at, "`req` or `vararg` is expected");
             Err(problem)
         }
     }
+}
+
+/// What the names of directives begin with that `.endr` closes.
+pub(crate) const REPETITIONS: [&str; 2] = [".rep", ".irp"];
+
+fn no_parameter(definition: &Macro, text: &str, at: At) -> Box<Problem> {
+    let names: Vec<String> = definition.parameters.iter().map(|parameter| format!("`{}`", parameter.name)).collect();
+    let hint = match names.is_empty() {
+        true => "it has none".to_owned(),
+        false => format!("its parameters: {}; quotation marks around an argument keep its `=`", names.join(", ")),
+    };
+    let message = format!("the macro `{}` has no parameter `{text}`", definition.name);
+    let problem = Problem::new(explain::MACRO, message, at, "no such parameter");
+    problem.also(Some(definition.at), "defined here").hint(hint)
 }
 
 impl Assembler<'_> {
@@ -117,14 +162,13 @@ impl Assembler<'_> {
                     "too late",
                 ));
             }
-            let mut parameter = Parameter { name: text.into(), default: None, takes_rest: false };
-            if qualifier(cursor)? || cursor.accept("...") {
-                parameter.takes_rest = true;
-                parameter.default = Some("".into());
-            } else if cursor.accept("=") {
+            let mut parameter =
+                Parameter { name: text.into(), default: "".into(), is_required: false, takes_rest: false };
+            qualifier(&mut parameter, cursor)?;
+            if !parameter.takes_rest && !parameter.is_required && cursor.accept("=") {
                 let start = cursor.position;
                 let end = split(cursor).first().map_or(start, |&(_, end)| end);
-                parameter.default = Some(text_of(cursor, start, end).into());
+                parameter.default = argument_of(cursor, start, end);
                 cursor.position = end;
             }
             parameters.push(parameter);
@@ -159,8 +203,8 @@ impl Assembler<'_> {
         match self.macro_arguments(definition, at, cursor) {
             Err(problem) => self.messages.add(problem),
             Ok(substitution) => {
-                self.messages.calls.push(Call { at: cursor.line.at_all(), name: definition.name.clone() });
-                let context = self.messages.calls.len() as u32;
+                let via = Via::Macro(definition.name.clone());
+                let context = self.messages.enter(Call { at: cursor.line.at_all(), via });
                 let mut frame = Frame::new(definition.lines.clone(), Origin::Macro);
                 frame.substitution = Some(Rc::new(substitution));
                 frame.context = Some(context);
@@ -181,7 +225,9 @@ impl Assembler<'_> {
             }
             let named = match cursor.tokens.get(start..end) {
                 Some([name, equals, ..]) if name.kind == Kind::Name && equals.kind == Kind::Mark("=") => {
-                    parameters.iter().position(|parameter| *parameter.name == *cursor.text(*name))
+                    let text = cursor.text(*name);
+                    let slot = parameters.iter().position(|parameter| *parameter.name == *text);
+                    Some(slot.ok_or_else(|| no_parameter(definition, text, cursor.at(*name)))?)
                 }
                 _ => None,
             };
@@ -198,8 +244,7 @@ impl Assembler<'_> {
                 let message = format!("the argument `{}` is there twice", parameters[slot].name);
                 return Err(Problem::new(explain::MACRO, message, place, "second one"));
             }
-            let text = text_of(cursor, start, end);
-            *value = (!text.is_empty()).then(|| text.into());
+            *value = (start < end).then(|| argument_of(cursor, start, end));
             next += usize::from(named.is_none());
         }
         cursor.position = cursor.tokens.len();
@@ -207,17 +252,28 @@ impl Assembler<'_> {
         let number = self.expansions;
         let mut substitution = Substitution { number: Some(number), ..Substitution::default() };
         for (parameter, value) in parameters.iter().zip(values) {
-            let Some(text) = value.or_else(|| parameter.default.clone()) else {
+            if value.is_none() && parameter.is_required {
                 let message = format!("the macro `{}` needs an argument `{}`", definition.name, parameter.name);
                 return Err(Problem::new(explain::MACRO, message, at, "argument missing")
                     .also(Some(definition.at), "defined here"));
-            };
+            }
+            let text = value.unwrap_or_else(|| parameter.default.clone());
             substitution.arguments.insert(parameter.name.clone(), text);
         }
         for name in &definition.locals {
             substitution.locals.insert(name.clone(), format!("{name}${number}").into());
         }
         Ok(substitution)
+    }
+
+    /// `.purgem name`
+    pub(crate) fn remove_macro(&mut self, cursor: &mut Cursor) -> Parsed<()> {
+        let (text, at) = cursor.name("the name of a macro")?;
+        cursor.end()?;
+        match self.macros.remove(text) {
+            Some(_) => Ok(()),
+            None => Err(Problem::new(explain::MACRO, format!("there is no macro `{text}`"), at, "nothing to forget")),
+        }
     }
 
     /// `.exitm`
@@ -232,7 +288,7 @@ impl Assembler<'_> {
     /// `.rept count, counter`
     pub(crate) fn repeat_count(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let header = self.repeat_header(cursor);
-        let Some(lines) = self.capture(&[".rept", ".irp"], ".endr", at) else { return header.map(|_| ()) };
+        let Some(lines) = self.capture(&REPETITIONS, ".endr", at) else { return header.map(|_| ()) };
         let Some((count, count_at, counter)) = header? else { return Ok(()) };
         if count < 0 {
             return Err(Problem::new(explain::RANGE, format!("{count} repetitions"), count_at, "negative"));
@@ -247,9 +303,13 @@ impl Assembler<'_> {
         if let Some((text, counter_at)) = &counter {
             self.set_variable(text, *counter_at, 0)?;
         }
-        let counter = counter.map(|(text, _)| self.names.intern(&text));
         let mut frame = Frame::new(lines, Origin::Repetition);
-        frame.repeat = Some(Repeat::Count { remaining: count - 1, counter, index: 0 });
+        let counter = counter.map(|(text, _)| {
+            let via = Via::Pass(text.clone(), "0".into());
+            frame.context = Some(self.messages.enter(Call { at, via }));
+            self.names.intern(&text)
+        });
+        frame.repeat = Some(Repeat::Count { remaining: count - 1, counter, index: 0, at });
         self.enter(frame, at);
         Ok(())
     }
@@ -267,23 +327,29 @@ impl Assembler<'_> {
         Ok(value.map(|value| (value, count.at, counter)))
     }
 
-    /// `.irp parameter, text, text`
-    pub(crate) fn repeat_texts(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
+    /// `.irp parameter, text, text`, or `.irpc parameter, text` for the characters of the text.
+    pub(crate) fn repeat_texts(&mut self, by_character: bool, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let header = cursor.name("a parameter").and_then(|(text, _)| {
             if !cursor.is_at_end() {
                 cursor.expect(",")?;
             }
             Ok(Rc::<str>::from(text))
         });
-        let Some(lines) = self.capture(&[".rept", ".irp"], ".endr", at) else { return header.map(|_| ()) };
+        let Some(lines) = self.capture(&REPETITIONS, ".endr", at) else { return header.map(|_| ()) };
         let parameter = header?;
-        let mut texts: Vec<Rc<str>> =
-            split(cursor).into_iter().rev().map(|(start, end)| text_of(cursor, start, end).into()).collect();
+        let mut texts: Vec<Rc<str>> = if by_character {
+            let text = argument_of(cursor, cursor.position, cursor.tokens.len());
+            text.chars().rev().map(|letter| letter.to_string().into()).collect()
+        } else {
+            arguments(cursor).into_iter().rev().collect()
+        };
         let Some(first) = texts.pop() else { return Ok(()) };
         let mut frame = Frame::new(lines, Origin::Repetition);
+        let via = Via::Pass(parameter.clone(), first.clone());
+        frame.context = Some(self.messages.enter(Call { at, via }));
         let arguments = [(parameter.clone(), first)].into();
         frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
-        frame.repeat = Some(Repeat::Texts { parameter, remaining: texts });
+        frame.repeat = Some(Repeat::Texts { parameter, remaining: texts, at });
         self.enter(frame, at);
         Ok(())
     }

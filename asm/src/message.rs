@@ -30,13 +30,31 @@ impl At {
     }
 }
 
-/// A macro call.
+/// A macro call, or a pass of a repetition.
 #[derive(Clone, Debug)]
 pub(crate) struct Call {
     /// Where the call stands; its context is the call around it.
     pub at: At,
-    /// Name of the macro.
-    pub name: Rc<str>,
+    /// What is called.
+    pub via: Via,
+}
+
+/// What leads to lines that are read again.
+#[derive(Clone, Debug)]
+pub(crate) enum Via {
+    /// A macro of that name.
+    Macro(Rc<str>),
+    /// A pass of a repetition: its counter or parameter, and what that is.
+    Pass(Rc<str>, Rc<str>),
+}
+
+impl Via {
+    fn label(&self) -> String {
+        match self {
+            Via::Macro(name) => format!("in this call of `{name}`"),
+            Via::Pass(name, value) => format!("in the pass with {name} = {value}"),
+        }
+    }
 }
 
 /// What kind of name was meant, for suggestions.
@@ -104,7 +122,7 @@ pub(crate) struct Messages {
     kept: Vec<Problem>,
     seen: HashSet<(&'static str, u16, u32, u32, String)>,
     unkept: usize,
-    errors: usize,
+    unkept_errors: usize,
     /// Set while a statement whose text was refused is still carried out.
     pub is_muted: bool,
     /// Macro calls, by [`At::context`].
@@ -112,18 +130,22 @@ pub(crate) struct Messages {
 }
 
 impl Messages {
+    /// The context of what a call leads to.
+    pub fn enter(&mut self, call: Call) -> u32 {
+        self.calls.push(call);
+        self.calls.len() as u32
+    }
+
     /// Adds a message, unless the same one stands at the same place of the text already.
     #[allow(clippy::boxed_local, reason = "problems travel boxed, as errors of results")]
     pub fn add(&mut self, problem: Box<Problem>) {
         if self.is_muted {
             return;
         }
-        if problem.severity == Severity::Error {
-            self.errors += 1;
-        }
         let at = problem.at.unwrap_or_default();
         if self.kept.len() >= KEPT_MESSAGES {
             self.unkept += 1;
+            self.unkept_errors += usize::from(problem.severity == Severity::Error);
         } else if self.seen.insert((problem.code, at.source, at.start, at.end, problem.message.clone())) {
             self.kept.push(*problem);
         }
@@ -132,14 +154,15 @@ impl Messages {
     /// The report; `known` gives the names that a suggestion may come from.
     pub fn report<'a>(mut self, sources: &[Arc<Source>], known: impl Fn(Among) -> Vec<&'a str>) -> Report {
         self.kept.sort_by_key(|problem| problem.at.map(|at| (at.source, at.start, at.end)));
-        let beyond = self.unkept + self.kept.len().saturating_sub(MESSAGES);
         let calls = std::mem::take(&mut self.calls);
-        let has_errors = self.errors > 0;
+        let is_error = |problem: &&Problem| problem.severity == Severity::Error;
+        let beyond = self.unkept + self.kept.len().saturating_sub(MESSAGES);
+        let errors = self.unkept_errors + self.kept.iter().skip(MESSAGES).filter(is_error).count();
         let mut shown: Vec<Diagnostic> =
             self.kept.into_iter().take(MESSAGES).map(|problem| diagnostic(problem, sources, &calls, &known)).collect();
         if beyond > 0 {
-            let text = format!("... and {beyond} more");
-            shown.push(if has_errors { Diagnostic::error(text) } else { Diagnostic::warning(text) });
+            let text = if beyond == 1 { "message is" } else { "messages are" };
+            shown.push(Diagnostic::note(format!("{beyond} more {text} not shown"), errors));
         }
         Report(shown)
     }
@@ -174,6 +197,7 @@ fn diagnostic<'a>(
     let mut message = match problem.severity {
         Severity::Error => Diagnostic::error(problem.message),
         Severity::Warning => Diagnostic::warning(problem.message),
+        Severity::Note { errors } => Diagnostic::note(problem.message, errors),
     };
     message = message.code(problem.code);
     if let Some(at) = problem.at {
@@ -183,7 +207,7 @@ fn diagnostic<'a>(
         message = message.also(place(at), label);
     }
     for call in shown_calls(problem.at.map_or(0, |at| at.context), calls) {
-        message = message.also(place(call.at), format!("in this call of `{}`", call.name));
+        message = message.also(place(call.at), call.via.label());
     }
     let suggestion = problem.suggest.as_ref().and_then(|(name, among)| did_you_mean(name, known(*among)));
     let is_same = problem.suggest.as_ref().is_some_and(|(name, _)| suggestion == Some(name.as_str()));

@@ -88,8 +88,7 @@ impl Assembler<'_> {
         let Some(first) = cursor.peek() else { return Ok(()) };
         let (text, at) = (cursor.text(first), cursor.at(first));
         if is_skipping {
-            let steers =
-                matches!(text, ".if" | ".ifdef" | ".ifndef" | ".ifb" | ".ifnb" | ".elseif" | ".else" | ".endif");
+            let steers = text.starts_with(".if") || matches!(text, ".elseif" | ".else" | ".endif");
             if !steers {
                 return Ok(());
             }

@@ -104,8 +104,8 @@ impl Assembler<'_> {
     }
 
     /// `.align octets` inside a structure.
-    pub(crate) fn align_structure(&mut self, cursor: &mut Cursor) -> Parsed<()> {
-        let Some(octets) = self.alignment(cursor)? else { return Ok(()) };
+    pub(crate) fn align_structure(&mut self, is_power: bool, cursor: &mut Cursor) -> Parsed<()> {
+        let Some(octets) = self.alignment(is_power, cursor)? else { return Ok(()) };
         if let Some(open) = &mut self.structure {
             open.size = next_multiple(open.size, octets).min(STRUCTURE);
         }

@@ -106,8 +106,9 @@ fn text(input: &str) -> IResult<&str, Kind> {
 
 fn character(input: &str) -> IResult<&str, Kind> {
     let hex = recognize((tag("\\x"), take_while_m_n(2, 2, |c: char| c.is_ascii_hexdigit())));
+    let octal = recognize((char('\\'), take_while_m_n(1, 3, |c: char| c.is_digit(8))));
     let escape = recognize((char('\\'), anychar));
-    value(Kind::Character, (char('\''), alt((hex, escape, recognize(none_of("'\\")))), char('\''))).parse(input)
+    value(Kind::Character, (char('\''), alt((hex, octal, escape, recognize(none_of("'\\")))), char('\''))).parse(input)
 }
 
 fn mark(input: &str) -> IResult<&str, Kind> {
@@ -207,7 +208,13 @@ pub(crate) fn text_octets(literal: &str) -> Result<Vec<u8>, (usize, usize)> {
             'n' => b'\n',
             't' => b'\t',
             'r' => b'\r',
-            '0' => 0,
+            'b' => 0x08,
+            'f' => 0x0c,
+            '0'..='7' => {
+                let digits: String = rest[1..].chars().take(3).take_while(|digit| digit.is_digit(8)).collect();
+                length = 1 + digits.len();
+                u8::from_str_radix(&digits, 8).map_err(|_| (start, start + length))?
+            }
             '\\' | '"' | '\'' => escaped as u8,
             'x' => {
                 let octet = rest.get(2..4).and_then(|hex| u8::from_str_radix(hex, 16).ok());
@@ -288,7 +295,12 @@ mod tests {
     #[test]
     fn escapes_of_texts() {
         assert_eq!(text_octets(r#""a\n\x41\0é""#).unwrap(), b"a\nA\0\xc3\xa9");
+        assert_eq!(text_octets(r#""\012\1\0128\b\f\19""#).unwrap(), b"\n\x01\n8\x08\x0c\x019");
         assert_eq!(text_octets(r#""a\q""#), Err((2, 4)));
-        assert_eq!(character_value("'\\n'"), Some(10));
+        assert_eq!(text_octets(r#""\400""#), Err((1, 5)));
+        for (literal, value) in [("'\\n'", 10), ("'\\0'", 0), ("'\\033'", 27), ("'\\b'", 8)] {
+            assert_eq!(character_value(literal), Some(value), "{literal}");
+        }
+        assert_eq!(tokens("'\\033' '\\7'").0.len(), 2);
     }
 }

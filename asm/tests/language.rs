@@ -251,6 +251,48 @@ fn macros_take_arguments_defaults_and_the_rest() {
 }
 
 #[test]
+fn macro_arguments_are_those_of_gnu_as() {
+    // The example of the manual of GNU as.
+    let sum = ".macro sum from=0, to=5\n.long \\from\n.if \\to-\\from\nsum \"(\\from+1)\",\\to\n.endif\n.endm\n";
+    assert_eq!(program(&format!("{sum}sum 0, 5")).words, [0, 1, 2, 3, 4, 5]);
+    assert_eq!(program(&format!("{sum}sum 3 5")).words, [3, 4, 5]);
+    let put = ".macro put a, b, c=7\n.byte \\a+0\n.ifnb \\b\n.byte \\b\n.endif\n.byte \\c\n.endm\n.buffer\n";
+    for (call, octets) in [
+        ("put", vec![0, 7]),
+        ("put 1", vec![1, 7]),
+        ("put , 2", vec![0, 2, 7]),
+        ("put 1 2 3", vec![1, 2, 3]),
+        ("put (1) 2", vec![1, 2, 7]),
+        ("put 1 -2, 3", vec![255, 3, 7]),
+        ("put c=9", vec![0, 9]),
+        ("put \"1\", \"2\" c=\"3\"", vec![1, 2, 3]),
+    ] {
+        assert_eq!(program(&format!("{put}{call}")).buffer, octets, "{call}");
+    }
+    assert_eq!(program(".buffer\n.macro t s\n.ascii \"<\\s>\"\n.endm\nt \"a, b\"\nt c").buffer, b"<a, b><c>");
+    assert_eq!(code(".macro a\nnop\n.endm\na\n.purgem a\n.macro a\nhalt\n.endm\na"), "mov s0, s0; halt");
+}
+
+#[test]
+fn what_gnu_as_has_too() {
+    for (text, octets) in [
+        (".byte 1\n.p2align 2\n.byte 2\n.p2align 1, 9\n", vec![1, 0, 0, 0, 2, 9]),
+        (".irpc d, 123\n.byte \\d\n.endr", vec![1, 2, 3]),
+        (".irpc d, \"12\"\n.byte \\d\n.endr", vec![1, 2]),
+        (".ascii \"a\" \"b\", \"c\"\n.asciz \"d\" \"e\"", b"abcde\0".to_vec()),
+        (".ascii \"\\012\\b\"", vec![10, 8]),
+        (".ifc a, a\n.byte 1\n.endif\n.ifnc a, \"b\"\n.endif", vec![1]),
+        (".ifeq 1-1\n.byte 1\n.else\n.byte 2\n.endif", vec![1]),
+        (".ifne 0\n.elseif 1\n.byte 3\n.endif\n.ifgt 1\n.byte 1\n.endif\n.ifle 1\n.byte 2\n.endif", vec![3, 1]),
+        (".iflt -1\n.byte 1\n.endif\n.ifge 0\n.byte 2\n.endif\n.ifnotdef x\n.byte 3\n.endif", vec![1, 2, 3]),
+        (".byte 1 /* 2\n3 */\n.byte /* , */ 4", vec![1, 4]),
+        (".globl a, b\n.global c\n.byte 1\n.end\n.byte frobnicate (", vec![1]),
+    ] {
+        assert_eq!(program(&format!(".buffer\n{text}")).buffer, octets, "{text}");
+    }
+}
+
+#[test]
 fn local_names_of_macros_do_not_clash() {
     let text = "
         .macro spin register
@@ -393,6 +435,27 @@ fn defines_and_formats_come_from_outside() {
     let options = options_with(&[("mirrors", 1)], &[("pos", 20), ("dir", 30)]);
     let text = ".if mirrors\nmul s1, s2, s3, pos + dir - pos\n.endif\n.format pos, 20\n.ifndef mirrors\n.equ mirrors, 0\n.endif";
     assert_eq!(lines(&program_with(text, &options)), "mul s1, s2, s3, 30");
+}
+
+#[test]
+fn names_from_outside_are_names() {
+    let isa = Isa::base();
+    for (name, why) in [
+        ("3x", "is no name"),
+        ("", "is no name"),
+        (".foo", "is no name"),
+        ("a b", "is no name"),
+        ("a$1", "is no name"),
+        ("s1", "is a register"),
+        ("mov", "is an instruction"),
+        ("nop", "is an instruction"),
+        ("min", "is a function"),
+    ] {
+        assert!(asm::check_outside_name(name, &isa).is_err_and(|text| text.contains(why)), "{name}");
+    }
+    for name in ["WIDTH", "_x1", "pos"] {
+        assert_eq!(asm::check_outside_name(name, &isa), Ok(()), "{name}");
+    }
 }
 
 #[test]

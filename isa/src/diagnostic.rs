@@ -56,6 +56,11 @@ pub enum Severity {
     Error,
     /// The input is used, but something in it is likely a mistake.
     Warning,
+    /// Says how many messages were left out, that many errors among them.
+    Note {
+        /// Errors that no message of the report shows.
+        errors: usize,
+    },
 }
 
 /// One message about an input.
@@ -93,6 +98,20 @@ impl Diagnostic {
         Diagnostic { severity: Severity::Warning, ..Diagnostic::error(message) }
     }
 
+    /// A note on what is not shown, with that many errors in it.
+    pub fn note(message: impl Into<String>, errors: usize) -> Diagnostic {
+        Diagnostic { severity: Severity::Note { errors }, ..Diagnostic::error(message) }
+    }
+
+    /// How many errors it stands for.
+    pub fn errors(&self) -> usize {
+        match self.severity {
+            Severity::Error => 1,
+            Severity::Warning => 0,
+            Severity::Note { errors } => errors,
+        }
+    }
+
     /// The same with a stable code.
     pub fn code(mut self, code: &'static str) -> Diagnostic {
         self.code = Some(code);
@@ -122,24 +141,31 @@ impl Diagnostic {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
+            Severity::Note { .. } => Level::NOTE,
         };
         let mut title = level.primary_title(self.message.as_str());
         if let Some(code) = self.code {
             title = title.id(code);
         }
         let mut group = Group::with_title(title);
+        let mut columns = Vec::new();
         if let Some((place, label)) = &self.place {
-            group = group.element(snippet(place, label, AnnotationKind::Primary));
+            let (with, cut) = with_snippet(group, place, label, AnnotationKind::Primary);
+            group = with;
+            columns.extend(cut);
         }
         for (place, label) in &self.others {
-            group = group.element(snippet(place, label, AnnotationKind::Context));
+            let (with, cut) = with_snippet(group, place, label, AnnotationKind::Context);
+            group = with;
+            columns.extend(cut);
         }
         let mut groups = vec![group];
         if let Some(hint) = &self.hint {
             groups.push(Group::with_title(Level::HELP.secondary_title(hint.as_str())));
         }
         let renderer = if is_coloured { Renderer::styled() } else { Renderer::plain() };
-        renderer.decor_style(DecorStyle::Ascii).render(&groups)
+        let text = renderer.decor_style(DecorStyle::Ascii).render(&groups);
+        columns.into_iter().fold(text, |text, (wrong, right)| text.replacen(&wrong, &right, 1))
     }
 }
 
@@ -156,13 +182,14 @@ pub struct Report(pub Vec<Diagnostic>);
 impl Report {
     /// Whether any message is an error.
     pub fn has_errors(&self) -> bool {
-        self.0.iter().any(|message| message.severity == Severity::Error)
+        self.0.iter().any(|message| message.errors() > 0)
     }
 
-    /// All messages, a blank line between them, and a closing count when there are several errors.
+    /// All messages, a blank line between them, and a closing count when there are several errors, with those that are
+    /// not shown.
     pub fn render(&self, is_coloured: bool) -> String {
         let mut parts: Vec<String> = self.0.iter().map(|message| message.render(is_coloured)).collect();
-        let errors = self.0.iter().filter(|message| message.severity == Severity::Error).count();
+        let errors: usize = self.0.iter().map(Diagnostic::errors).sum();
         if errors > 1 {
             parts.push(format!("{errors} errors"));
         }
@@ -198,11 +225,19 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
 /// Longest part of a source line that a message shows, in octets; longer lines are cut around the place.
 const SHOWN: usize = 160;
 
-fn snippet<'a>(
+/// What stands where a line was cut.
+const CUT: &str = "...";
+
+/// Marks the name of a file whose line was cut; nobody's text has this character of the private area.
+const STAND_IN: char = '\u{f8fd}';
+
+/// The group with a part of a source, and what to replace in the text that is made of it by what.
+fn with_snippet<'a>(
+    group: Group<'a>,
     place: &'a Place,
     label: &'a str,
     kind: AnnotationKind,
-) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+) -> (Group<'a>, Option<(String, String)>) {
     let text = &place.source.text;
     let from = floor_boundary(text, place.span.start);
     let line_start = text[..from].rfind('\n').map_or(0, |at| at + 1);
@@ -212,11 +247,21 @@ fn snippet<'a>(
     let to = floor_boundary(text, place.span.end.clamp(from, cut_end)).max(from);
     let line = text[..line_start].bytes().filter(|&octet| octet == b'\n').count() + 1;
     let shown = text[cut_start..cut_end].trim_end_matches('\r');
-    let clamp = |at: usize| (at - cut_start).min(shown.len());
-    Snippet::source(shown)
-        .path(place.source.name.as_str())
+    let before = if cut_start > line_start { CUT } else { "" };
+    let behind = if cut_end < line_end { CUT } else { "" };
+    let clamp = |at: usize| before.len() + (at - cut_start).min(shown.len());
+    let name = place.source.name.as_str();
+    let snippet = Snippet::source(format!("{before}{shown}{behind}"))
         .line_start(line)
-        .annotation(kind.span(clamp(from)..clamp(to)).label(label))
+        .annotation(kind.span(clamp(from)..clamp(to)).label(label));
+    if before.is_empty() {
+        return (group.element(snippet.path(name)), None);
+    }
+    // The renderer knows the part alone: its column becomes that of the file afterwards.
+    let column = |start: usize| text[start..from].chars().count() + 1;
+    let wrong = format!("{name}{STAND_IN}:{line}:{}", before.len() + column(cut_start));
+    let right = format!("{name}:{line}:{}", column(line_start));
+    (group.element(snippet.path(format!("{name}{STAND_IN}"))), Some((wrong, right)))
 }
 
 fn floor_boundary(text: &str, offset: usize) -> usize {
@@ -253,6 +298,25 @@ mod tests {
                 assert!(shown.contains("error: m"), "{text:?} {at}");
             }
         }
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place_and_keeps_its_column() {
+        let source = Source::new("t", format!("a\n{}here{}\nb", "x ".repeat(500), " y".repeat(500)));
+        let text = Diagnostic::error("m").at(Place::new(&source, 1002..1006), "label").to_string();
+        assert!(text.contains("t:2:1001\n"), "{text}");
+        assert!(text.contains("| ...x x") && text.contains("y...\n") && text.contains(" ^^^^ label"), "{text}");
+        let (code, carets) = (text.lines().find(|line| line.contains("here")), text.lines().last());
+        assert_eq!(code.and_then(|line| line.find("here")), carets.and_then(|line| line.find("^^^^")), "{text}");
+    }
+
+    #[test]
+    fn errors_that_are_not_shown_are_counted() {
+        let report = Report(vec![Diagnostic::warning("w"), Diagnostic::note("7 more messages are not shown", 5)]);
+        assert!(
+            report.has_errors() && report.render(false).ends_with("note: 7 more messages are not shown\n\n5 errors")
+        );
+        assert!(!Report(vec![Diagnostic::note("n", 0)]).has_errors());
     }
 
     #[test]

@@ -64,6 +64,7 @@ pub(super) struct SourceArguments {
 
 fn definition(text: &str) -> Result<(String, i64), String> {
     let (name, value) = arguments::setting::<String>(text)?;
+    asm::check_outside_name(&name, &Isa::base())?;
     Ok((name, arguments::numbered(&value)?))
 }
 
@@ -110,11 +111,13 @@ fn included(wanted: &str, from: &str, folders: &[PathBuf]) -> Result<Arc<Source>
 pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let outputs = [&arguments.output, &arguments.data, &arguments.list, &arguments.map];
     let all = outputs.into_iter().flatten().map(PathBuf::as_path).filter(|path| *path != Path::new(PRINTED));
-    files::check_distinct(all.clone().chain([arguments.file.as_path()])).map_err(Failure::usage)?;
-    for output in all {
+    files::check_distinct(all.clone()).map_err(Failure::usage)?;
+    files::check_spared(all.clone(), [&arguments.file]).map_err(Failure::usage)?;
+    for output in all.clone() {
         files::check_target(output)?;
     }
     let attempt = attempted(&arguments.file, &arguments.source, &Isa::base())?;
+    files::check_spared(all, attempt.program.sources.iter().map(|source| &source.name)).map_err(Failure::usage)?;
     if let Some(path) = &arguments.list {
         write_or_print(path, &asm::listing(&attempt), terminal)?;
     }

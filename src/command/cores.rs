@@ -114,6 +114,8 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
     }
+    let machines = arguments.machines.iter().map(PathBuf::from);
+    files::check_spared(targets.into_iter().flatten(), machines).map_err(Failure::usage)?;
     let scaling = match arguments.scene == ANNEX && !Path::new(ANNEX).exists() {
         true => annex(arguments, terminal)?,
         false => picture(arguments, terminal)?,
@@ -154,6 +156,8 @@ fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, Fai
 fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, Failure> {
     let jobs = arguments.machines.iter().map(|machine| Job::from_arguments(&job(arguments, machine)));
     let jobs = jobs.collect::<Result<Vec<Job>, Failure>>()?;
+    let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()].into_iter().flatten();
+    files::check_spared(targets, jobs.iter().flat_map(|job| &job.files)).map_err(Failure::usage)?;
     terminal.show(&jobs[0].warnings);
     let mut whole: Option<Scaling> = None;
     // Machines with words of the same length share the picture in memory and the programs.

@@ -30,8 +30,7 @@ pub struct DisassembleArguments {
 
 /// Reads, disassembles and prints.
 pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let both = [Some(arguments.file.as_path()), arguments.output.as_deref()];
-    files::check_distinct(both.into_iter().flatten()).map_err(Failure::usage)?;
+    files::check_spared(arguments.output.as_deref(), [&arguments.file]).map_err(Failure::usage)?;
     let program = match load_any(&arguments.file)? {
         Some(program) => program,
         None => ProgramFile::Binary.load(&arguments.file)?,

@@ -26,14 +26,14 @@ Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 5 step l
 
 /// Draws a scene on the emulated coprocessor and says what it took.
 ///
-/// Files are written when the whole picture is done. Without -o and --json, the picture goes to NAME.png in the current
+/// Files are written when the whole picture is done. Without -o, --json and --pixel, the picture goes to NAME.png in the current
 /// folder and a summary to standard output. PNG and PPM have the sRGB transfer curve, PFM is linear.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct RenderArguments {
     #[command(flatten)]
     job: JobArguments,
-    /// Picture file: .png, .ppm or .pfm [default: NAME.png in the current folder, unless --json].
+    /// Picture file: .png, .ppm or .pfm [default: NAME.png in the current folder, unless --json or --pixel].
     #[arg(short, long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     output: Option<PathBuf>,
     /// Prints the results as JSON instead of tables.
@@ -64,13 +64,15 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let job = Job::from_arguments(&arguments.job)?;
     let load = start.elapsed();
     terminal.show(&job.warnings);
-    let is_default = arguments.output.is_none() && !arguments.json;
+    // One pixel is looked at in the tables; it must not replace the picture.
+    let is_default = arguments.output.is_none() && !arguments.json && arguments.job.view.pixel.is_none();
     let output = match is_default {
         true => Some(PathBuf::from(format!("{}.png", result_name(&job.scene)))),
         false => arguments.output.clone(),
     };
     let targets = [&output, &arguments.heat, &arguments.error].map(|path| path.as_deref());
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
+    files::check_spared(targets.into_iter().flatten(), &job.files).map_err(Failure::usage)?;
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
     }

@@ -70,7 +70,7 @@ fn clocks(text: &str) -> Result<Range<u64>, String> {
 
 /// Runs, writes and prints.
 pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let (name, load, config, width) = load(arguments, terminal)?;
+    let (name, load, config, width, read) = load(arguments, terminal)?;
     let is_default = arguments.fst.is_none() && arguments.perfetto.is_none();
     let target = |given: &Option<PathBuf>, ending: &str| match is_default {
         true => Some(PathBuf::from(format!("{name}.{ending}"))),
@@ -79,6 +79,7 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     let targets = [target(&arguments.fst, "fst"), target(&arguments.perfetto, "trace.json")];
     let paths = || targets.iter().flatten().map(PathBuf::as_path);
     files::check_distinct(paths()).map_err(Failure::usage)?;
+    files::check_spared(paths(), &read).map_err(Failure::usage)?;
     for path in paths() {
         files::check_target(path)?;
     }
@@ -105,8 +106,8 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     Ok(Exit::Done)
 }
 
-/// Name, load, machine, and columns of the picture.
-fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load, Config, u32), Failure> {
+/// Name, load, machine, columns of the picture, and the files that were read.
+fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load, Config, u32, Vec<PathBuf>), Failure> {
     let mut job = arguments.job.clone();
     if job.scene == ANNEX && !Path::new(ANNEX).exists() {
         let (_, mut config) = machines::find(&job.machine.machine)?;
@@ -114,7 +115,7 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
         config.cores = job.machine.cores.unwrap_or(config.cores);
         let load = Load::annex()?;
         let width = load.build.crop.width;
-        return Ok((ANNEX.to_owned(), load, config, width));
+        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.machine)]));
     }
     job.view.pixel = None;
     let job = Job::from_arguments(&job)?;
@@ -122,7 +123,7 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
     let (load, _) = Load::picture(&job)?;
     terminal.show(&load.build.warnings);
     let width = load.build.crop.width;
-    Ok((result_name(&job.scene), load, job.machine, width))
+    Ok((result_name(&job.scene), load, job.machine, width, job.files))
 }
 
 fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<Frame, Failure> {

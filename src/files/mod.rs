@@ -147,17 +147,28 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
+/// One path for each file however it is spelt: links are followed, and a file that is not there yet has the path of its
+/// folder. `None` for what cannot be overwritten, such as a pipe or a terminal.
+fn identity(path: &Path) -> Option<PathBuf> {
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        return None;
+    }
+    let in_folder = || Some(fs::canonicalize(folder_of(path)).ok()?.join(path.file_name()?));
+    Some(fs::canonicalize(path).ok().or_else(in_folder).unwrap_or_else(|| path.to_owned()))
+}
+
 /// Refuses two results for the same file.
 ///
 /// # Errors
-/// The path that is named twice.
+/// The path that is named twice, in whatever spelling.
 pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), Report> {
-    let mut seen: Vec<&Path> = Vec::new();
+    let mut seen: Vec<PathBuf> = Vec::new();
     for path in paths {
-        if seen.contains(&path) {
+        let Some(file) = identity(path) else { continue };
+        if seen.contains(&file) {
             return Err(Diagnostic::error(format!("{} would be written twice", path.display())).into());
         }
-        seen.push(path);
+        seen.push(file);
     }
     Ok(())
 }
@@ -165,11 +176,14 @@ pub fn check_distinct<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(
 /// Refuses results in the place of files that were read.
 ///
 /// # Errors
-/// The first such path.
-pub fn check_spared(results: &[PathBuf], read: &[PathBuf]) -> Result<(), Report> {
-    let inputs: Vec<PathBuf> = read.iter().filter_map(|path| fs::canonicalize(path).ok()).collect();
-    let is_input = |path: &&PathBuf| fs::canonicalize(path).is_ok_and(|path| inputs.contains(&path));
-    let Some(path) = results.iter().find(is_input) else { return Ok(()) };
+/// The first such path, in whatever spelling.
+pub fn check_spared<'a>(
+    results: impl IntoIterator<Item = &'a Path>,
+    read: impl IntoIterator<Item = impl AsRef<Path>>,
+) -> Result<(), Report> {
+    let inputs: Vec<PathBuf> = read.into_iter().filter_map(|path| identity(path.as_ref())).collect();
+    let is_input = |path: &&Path| identity(path).is_some_and(|file| inputs.contains(&file));
+    let Some(path) = results.into_iter().find(is_input) else { return Ok(()) };
     let message = Diagnostic::error(format!("{} is read, and would be overwritten", path.display()));
     Err(message.hint("choose another name for the result").into())
 }
@@ -223,5 +237,23 @@ mod tests {
     fn two_results_do_not_share_a_file() {
         assert!(check_distinct([Path::new("a"), Path::new("b")]).is_ok());
         assert!(check_distinct([Path::new("a"), Path::new("b"), Path::new("a")]).is_err());
+        assert!(check_distinct([Path::new("a"), Path::new("./a")]).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_read_is_spared_in_every_spelling() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("a.s"), folder.path().join("link"));
+        fs::write(&file, "nop").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let name = folder.path().file_name().unwrap();
+        for result in [file.clone(), link, folder.path().join("./a.s"), folder.path().join("..").join(name).join("a.s")]
+        {
+            assert!(check_spared([result.as_path()], [&file]).is_err(), "{}", result.display());
+        }
+        assert!(check_spared([folder.path().join("b.s").as_path()], [&file]).is_ok());
+        assert!(check_spared([Path::new("/dev/null")], [Path::new("/dev/null")]).is_ok());
+        assert!(check_distinct([Path::new("/dev/null"), Path::new("/dev/null")]).is_ok());
     }
 }

@@ -100,13 +100,13 @@ fn nothing_that_is_read_is_overwritten() {
         ("lib.obj a.obj", "a.mtl"),
         ("house.dsc house.ply --dsc", "house.dsc"),
     ] {
-        session.fail(&format!("scene convert {arguments}"), 1, &format!("{name} is read, and would be overwritten"));
+        session.fail(&format!("scene convert {arguments}"), 2, &format!("{name} is read, and would be overwritten"));
     }
     assert_eq!((session.names(), session.read("house.off")), (before, MESH.as_bytes().to_vec()));
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(session.path("house.off"), session.path("link.off")).unwrap();
-        session.fail("scene convert house.off link.off", 1, "would be overwritten");
+        session.fail("scene convert house.off link.off", 2, "would be overwritten");
         assert_eq!(session.read("house.off"), MESH.as_bytes());
     }
 }

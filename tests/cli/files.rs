@@ -26,6 +26,45 @@ fn names_of_results_are_checked_first() {
     assert_eq!(session.names(), ["b.png"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn what_is_read_is_never_overwritten_however_it_is_spelt() {
+    let session = Session::new();
+    session.write("a.s", "nop\n.include \"b.inc\"\n");
+    session.write("b.inc", "halt\n");
+    std::os::unix::fs::symlink(session.path("a.s"), session.path("link")).unwrap();
+    std::fs::create_dir(session.path("d")).unwrap();
+    let absolute = session.path("a.s").display().to_string();
+    for option in ["--list=./a.s", "--map=d/../a.s", "--data=link", "--list=b.inc", "--map=./b.inc"] {
+        session.fail(&format!("assemble a.s {option}"), 2, "is read, and would be overwritten");
+    }
+    session.fail(&format!("assemble a.s --list={absolute}"), 2, "is read, and would be overwritten");
+    session.fail("assemble a.s -o n.o --map=./n.o", 2, "./n.o would be written twice");
+    session.succeed("assemble a.s -o n.o");
+    let object = session.read("n.o");
+    session.fail("disassemble n.o -o ./n.o", 2, "is read, and would be overwritten");
+    session.succeed("scene generate triangle --size 6x4");
+    session.fail("render triangle.off -o a.png --heat ./a.png", 2, "would be written twice");
+    let mesh = session.read("triangle.off");
+    session.write("t.png", &String::from_utf8(mesh.clone()).unwrap());
+    session.fail("render t.png", 2, "t.png is read, and would be overwritten");
+    assert_eq!((session.read("t.png"), session.read("n.o")), (mesh, object));
+    assert_eq!(session.read("a.s"), b"nop\n.include \"b.inc\"\n");
+}
+
+#[test]
+fn a_definition_has_a_name() {
+    let session = Session::new();
+    session.write("a.s", "nop\n");
+    for (name, why) in
+        [("3x", "is no name"), ("s1", "is a register"), ("mov", "is an instruction"), (".foo", "is no name")]
+    {
+        session.fail(&format!("assemble a.s -D {name}=4"), 2, why);
+        session.fail(&format!("assemble a.s --format {name}=4"), 2, why);
+    }
+    session.succeed("assemble a.s -D x3=4 --format pos=16");
+}
+
 #[test]
 fn an_old_file_survives_a_command_that_fails() {
     let session = Session::new();

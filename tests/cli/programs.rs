@@ -159,7 +159,7 @@ fn includes_definitions_and_data() {
     session.succeed("assemble main.s -D SIZE=0x10 -I parts -o main.bin --data main.dat");
     assert_eq!(session.read("main.dat"), [1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]);
     assert_eq!(session.json("run main.s -D SIZE=0x10 -I parts")["registers"]["s1"], 19);
-    session.fail("assemble main.s -o main.s.bin --data main.s", 2, "written twice");
+    session.fail("assemble main.s -o main.s.bin --data main.s", 2, "would be overwritten");
 }
 
 #[test]
@@ -210,5 +210,5 @@ fn files_of_other_kinds_are_refused() {
     session.fail("disassemble odd.bin", 1, "no whole words");
     session.fail("disassemble wrong.hex", 1, "wrong.hex:2:1");
     session.write("a.bin", "");
-    session.fail("disassemble a.bin -o a.bin", 2, "written twice");
+    session.fail("disassemble a.bin -o a.bin", 2, "would be overwritten");
 }

@@ -212,7 +212,7 @@ impl<'a> Words<'a> {
                 self.hidden_errors += 1;
                 self.is_lost |= self.hidden_errors == HOPELESS;
             }
-            Severity::Warning => self.hidden_warnings += 1,
+            Severity::Warning | Severity::Note { .. } => self.hidden_warnings += 1,
         }
     }
 
@@ -240,11 +240,11 @@ impl<'a> Words<'a> {
         if self.hidden_errors > 0 {
             let hidden = counted(self.hidden_errors, "more error is", "more errors are");
             let rest = if self.hidden_errors >= HOPELESS { ", and the rest of the file is not read" } else { "" };
-            self.messages.push(Diagnostic::error(format!("{hidden} not shown{rest}")));
+            self.messages.push(Diagnostic::note(format!("{hidden} not shown{rest}"), self.hidden_errors));
         }
         if self.hidden_warnings > 0 {
             let hidden = counted(self.hidden_warnings, "more warning is", "more warnings are");
-            self.messages.push(Diagnostic::warning(format!("{hidden} not shown")));
+            self.messages.push(Diagnostic::note(format!("{hidden} not shown"), 0));
         }
         Report(self.messages)
     }

@@ -92,7 +92,7 @@ pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> 
         files::check_target(path)?;
     }
     let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
-    files::check_spared(&paths, &loaded.files)?;
+    files::check_spared(paths.iter().map(PathBuf::as_path), &loaded.files).map_err(Failure::usage)?;
     terminal.show(&loaded.warnings);
     let scene = &loaded.scene;
     let contents = contents(scene, target, has_description, &paths)

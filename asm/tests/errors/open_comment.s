@@ -1,0 +1,3 @@
+        nop
+        nop /* what follows is
+        not read

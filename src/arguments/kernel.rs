@@ -31,7 +31,7 @@ fn replacement(text: &str) -> Result<(Function, PathBuf), String> {
 }
 
 /// A message in one line, for errors of usage.
-pub(super) fn plain(message: &Diagnostic) -> String {
+pub fn plain(message: &Diagnostic) -> String {
     match &message.hint {
         Some(hint) => format!("{}; {hint}", message.message),
         None => message.message.clone(),

@@ -10,7 +10,7 @@ mod value;
 mod view;
 
 pub use effort::EffortArguments;
-pub use kernel::KernelArguments;
+pub use kernel::{KernelArguments, plain};
 pub use machine::{MachineArguments, layout};
 pub use numbers::NumberArguments;
 pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};

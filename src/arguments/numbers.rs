@@ -16,8 +16,9 @@ pub struct NumberArguments {
     /// Rounding mode, by its IEEE 1666 name [default: the machine's, RND].
     #[arg(long, value_name = "MODE", ignore_case = true, value_parser = rounding())]
     pub rounding: Option<Quantization>,
-    /// Overflow mode, by its IEEE 1666 name [default: the machine's, SAT].
-    #[arg(long, value_name = "MODE", ignore_case = true, value_parser = overflow())]
+    /// Overflow mode, by its IEEE 1666 name: SAT, SAT_ZERO, SAT_SYM, WRAP or WRAP_SM; WRAP:3 saturates three bits
+    /// [default: the machine's, SAT].
+    #[arg(long, value_name = "MODE", value_parser = overflow)]
     pub overflow: Option<Overflow>,
     /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
     #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
@@ -29,7 +30,10 @@ fn rounding() -> impl TypedValueParser<Value = Quantization> {
     names.map(|name| Quantization::from_name(&name).expect("the parser lets only names pass"))
 }
 
-fn overflow() -> impl TypedValueParser<Value = Overflow> {
-    let names = PossibleValuesParser::new(Overflow::ALL.iter().map(|mode| mode.name()));
-    names.map(|name| Overflow::from_name(&name).expect("the parser lets only names pass"))
+fn overflow(text: &str) -> Result<Overflow, String> {
+    let names: Vec<&str> = Overflow::ALL.iter().map(|mode| mode.name()).collect();
+    Overflow::from_name(text).ok_or_else(|| {
+        let most = Overflow::MOST_SATURATED;
+        format!("it is one of {}, the last two also with 1 to {most} saturated bits as in WRAP:3", names.join(", "))
+    })
 }

@@ -1,6 +1,7 @@
 //! The commands, one a file. Each is a function from its arguments and the terminal to its exit code.
 
 mod annex;
+mod arithmetic;
 mod assemble;
 mod completions;
 mod cores;
@@ -56,6 +57,7 @@ enum Command {
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
     Trace(Box<trace::TraceArguments>),
+    Arithmetic(arithmetic::ArithmeticArguments),
     Manual(manual::ManualArguments),
     Explain(explain::ExplainArguments),
     Schema(schema::SchemaArguments),
@@ -78,6 +80,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
+        Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),
         Some(Command::Schema(arguments)) => schema::execute(arguments, terminal),

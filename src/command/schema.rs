@@ -7,6 +7,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
+use super::arithmetic::{self, Checked};
 use super::run_result::{self, RunResult};
 use crate::annex;
 use crate::annex::result::Annexes;
@@ -44,6 +45,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
     Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
+    Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
 ];
 
 fn schema_of<T: JsonSchema>() -> Schema {

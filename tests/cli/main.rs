@@ -6,6 +6,7 @@ mod cores;
 mod demo;
 mod files;
 mod help;
+mod numbers;
 mod programs;
 mod render;
 mod scene;

@@ -21,6 +21,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("cores triangle --size 4x4 --cores 1,2 --machine node_cache", "lancer-cores-1"),
     ("scene info cornell", "lancer-scene-1"),
     ("scene info empty", "lancer-scene-1"),
+    ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];
 
 fn schema(session: &Session, name: &str) -> Value {
@@ -36,6 +37,7 @@ fn session() -> Session {
     let session = Session::new();
     session.write("sum.s", ".func f\n    imul s1, s2, s3\n.endfunc\n    halt\n");
     session.write("trap.s", "    trap 7\n");
+    session.write("vectors.csv", &format!("{}\n", isa::number::conformance::HEADER));
     session
 }
 

@@ -89,7 +89,7 @@ impl Oracle<'_> {
     fn arithmetics(&self) -> Vec<Modes> {
         let all = [
             Modes::default(),
-            Modes { word: 16, quantization: Quantization::Trn, overflow: Overflow::Wrap },
+            Modes { word: 16, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) },
             Modes { word: 24, quantization: Quantization::RndConv, overflow: Overflow::SatSym },
             Modes { word: 12, quantization: Quantization::TrnZero, overflow: Overflow::SatZero },
         ];

@@ -5,6 +5,7 @@ mod bench;
 mod functions;
 mod operands;
 mod pictures;
+mod ray_unit;
 mod report;
 mod surfaces;
 mod vectors;

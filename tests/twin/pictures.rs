@@ -168,7 +168,7 @@ fn pictures_in_the_reports_layout_with_rays_on_edges() {
 
 #[test]
 fn pictures_that_are_rounded_down_and_wrap() {
-    let modes = Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap };
+    let modes = Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) };
     assert_eq!(check_all(&Setting { modes, is_perspective: true, background: 0.2, ..PLAIN }), 0);
     let modes = Modes { word: 18, quantization: Quantization::RndConv, overflow: Overflow::SatSym };
     assert_eq!(check_all(&Setting { modes, bounces: 2, ..PLAIN }), 0);
@@ -188,7 +188,7 @@ fn pictures_of_the_ray_unit_in_fewer_bits() {
     assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, ..ray }), 0);
     assert_eq!(check_all(&Setting { modes: word(16), shift: 0.0, bounces: 2, ..ray }), 0);
     assert_eq!(check_all(&Setting { modes: word(8), background: 1.0, ..ray }), 0);
-    let modes = Modes { word: 21, quantization: Quantization::Trn, overflow: Overflow::Wrap };
+    let modes = Modes { word: 21, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) };
     assert_eq!(check_all(&Setting { modes, is_perspective: true, layout: Layout::Report, ..ray }), 0);
 }
 
@@ -206,7 +206,7 @@ fn pictures_as_the_report_draws_them_in_fewer_bits() {
     assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, background: 0.7, ..report }), 0);
     assert_eq!(check_all(&Setting { modes: word(16), layout: Layout::Report, bounces: 2, ..report }), 0);
     assert_eq!(check_all(&Setting { modes: word(8), ..report }), 0);
-    let modes = Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap };
+    let modes = Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) };
     assert_eq!(check_all(&Setting { modes, is_perspective: true, ..report }), 0);
 }
 
@@ -229,7 +229,7 @@ fn pictures_of_long_packets_in_short_words() {
     let mut scene = small("triangle");
     let first = scene.triangles[0];
     scene.triangles.extend([first; 300]);
-    for overflow in [Overflow::Sat, Overflow::Wrap, Overflow::SatZero] {
+    for overflow in [Overflow::Sat, Overflow::Wrap(0), Overflow::SatZero] {
         let modes = Modes { overflow, ..word(8) };
         let subject =
             Subject::new(scene.clone(), View::new(SIZE), modes, image::Options::default()).expect("a small scene");

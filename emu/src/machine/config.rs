@@ -102,7 +102,7 @@ macro_rules! mode_name {
             use serde::{Deserialize, Deserializer, Serializer};
 
             pub fn serialize<S: Serializer>(mode: &$type, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.serialize_str(mode.name())
+                serializer.collect_str(mode)
             }
 
             pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<$type, D::Error> {

@@ -186,12 +186,12 @@ fn results_saturate_or_wrap_as_the_machine_says() {
     assert_eq!(modes(Overflow::Sat).add(32000, 1000), (32767, Done));
     assert_eq!(modes(Overflow::SatZero).add(32000, 1000), (0, Done));
     assert_eq!(modes(Overflow::SatSym).sub(-32000, 1000), (-32767, Done));
-    assert_eq!(modes(Overflow::Wrap).add(32000, 1000), (33000 - 65536, Done));
-    assert_eq!(modes(Overflow::Wrap).wmul(32000, -32000), (-1_024_000_000, Done), "32 bits hold it");
+    assert_eq!(modes(Overflow::Wrap(0)).add(32000, 1000), (33000 - 65536, Done));
+    assert_eq!(modes(Overflow::Wrap(0)).wmul(32000, -32000), (-1_024_000_000, Done), "32 bits hold it");
     assert_eq!(modes(Overflow::Sat).wmac(2_000_000_000, 32000, 32000), (i64::from(i32::MAX), Done));
-    assert_eq!(modes(Overflow::Wrap).iadd(32000, 1000), (33000, Done), "integer rows do not know the word");
-    assert_eq!(modes(Overflow::Wrap).div(5, 0, 3), (32767, Done), "a division by zero saturates in every mode");
-    assert_eq!(modes(Overflow::Wrap).div(0, 0, 3), (0, Done));
+    assert_eq!(modes(Overflow::Wrap(0)).iadd(32000, 1000), (33000, Done), "integer rows do not know the word");
+    assert_eq!(modes(Overflow::Wrap(0)).div(5, 0, 3), (32767, Done), "a division by zero saturates in every mode");
+    assert_eq!(modes(Overflow::Wrap(0)).div(0, 0, 3), (0, Done));
 }
 
 #[test]

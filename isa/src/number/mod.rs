@@ -1,6 +1,7 @@
 //! Fixed-point arithmetic on raw integers: quantization and overflow in the modes of IEEE 1666, exact quotients, and
 //! correctly rounded roots, and the exact tests of rays. Which format a raw integer has is the caller's business; every function says how it rounds.
 
+pub mod conformance;
 mod modes;
 mod nearest;
 pub mod ray;

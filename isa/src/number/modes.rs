@@ -1,5 +1,7 @@
 //! The quantization and overflow modes of IEEE 1666 (SystemC fixed point), chosen at run time.
 
+use std::fmt;
+
 use super::Arithmetic;
 
 /// Makes a mode enum with its standard names.
@@ -46,19 +48,72 @@ modes! {
     }
 }
 
-modes! {
-    /// What becomes of a number that does not fit.
-    Overflow {
-        /// The nearest number that fits.
-        Sat "SAT",
-        /// Zero.
-        SatZero "SAT_ZERO",
-        /// The nearest number of the symmetric range: the least one is minus the largest.
-        SatSym "SAT_SYM",
-        /// The low bits.
-        Wrap "WRAP",
-        /// Sign-magnitude wrap: the low bits, inverted where the lowest deleted bit differs from the sign left.
-        WrapSm "WRAP_SM",
+/// What becomes of a number that does not fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Overflow {
+    /// The nearest number that fits.
+    Sat,
+    /// Zero.
+    SatZero,
+    /// The nearest number of the symmetric range: the least one is minus the largest.
+    SatSym,
+    /// The low bits, below this number of *saturated bits*: the highest ones of the nearest number that fits.
+    Wrap(u32),
+    /// Sign-magnitude wrap: the same with all bits inverted first where the lowest saturated bit differs from the bit in its place; without
+    /// saturated bits, where the lowest deleted bit differs from the sign that is left.
+    WrapSm(u32),
+}
+
+impl Overflow {
+    /// All modes, without saturated bits.
+    pub const ALL: &[Overflow] =
+        &[Overflow::Sat, Overflow::SatZero, Overflow::SatSym, Overflow::Wrap(0), Overflow::WrapSm(0)];
+
+    /// Most saturated bits that a mode may name; from the word's length on they are all of its bits.
+    pub const MOST_SATURATED: u32 = 64;
+
+    /// The name in IEEE 1666, without its `SC_`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Overflow::Sat => "SAT",
+            Overflow::SatZero => "SAT_ZERO",
+            Overflow::SatSym => "SAT_SYM",
+            Overflow::Wrap(_) => "WRAP",
+            Overflow::WrapSm(_) => "WRAP_SM",
+        }
+    }
+
+    /// The mode with a number of saturated bits, where it has them.
+    pub const fn with_saturated(self, bits: u32) -> Overflow {
+        match self {
+            Overflow::Wrap(_) => Overflow::Wrap(bits),
+            Overflow::WrapSm(_) => Overflow::WrapSm(bits),
+            other => other,
+        }
+    }
+
+    /// The mode of that name, in any case; `WRAP:3` and `WRAP_SM:3` have three saturated bits.
+    pub fn from_name(name: &str) -> Option<Overflow> {
+        let (name, bits) = name.split_once(':').map_or((name, None), |(name, bits)| (name, Some(bits)));
+        let mode = Overflow::ALL.iter().copied().find(|mode| mode.name().eq_ignore_ascii_case(name))?;
+        let Some(bits) = bits else { return Some(mode) };
+        let bits = bits.parse().ok().filter(|&bits| bits <= Overflow::MOST_SATURATED)?;
+        matches!(mode, Overflow::Wrap(_) | Overflow::WrapSm(_)).then_some(mode.with_saturated(bits))
+    }
+}
+
+impl fmt::Display for Overflow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Overflow::Wrap(bits @ 1..) | Overflow::WrapSm(bits @ 1..) => write!(f, "{}:{bits}", self.name()),
+            _ => f.write_str(self.name()),
+        }
+    }
+}
+
+impl fmt::Display for Quantization {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -130,13 +185,22 @@ impl Overflow {
         if (least..=largest).contains(&value) {
             return value as i64;
         }
+        let end = value.clamp(least, largest) as i64;
         let low = |value: i128| ((value << (128 - bits)) >> (128 - bits)) as i64;
+        let bit = |at: u32| (value >> at) & 1 == 1;
+        let saturated = |value: i128, high: u32| {
+            let rest = i64::MAX >> (63 - (bits - high));
+            (end & !rest) | (value as i64 & rest)
+        };
         match self {
-            Overflow::Sat | Overflow::SatSym => value.clamp(least, largest) as i64,
+            Overflow::Sat | Overflow::SatSym => end,
             Overflow::SatZero => 0,
-            Overflow::Wrap => low(value),
-            Overflow::WrapSm if (value >> bits) & 1 == (value >> (bits - 1)) & 1 => low(value),
-            Overflow::WrapSm => low(!value),
+            Overflow::Wrap(0) => low(value),
+            Overflow::Wrap(high) | Overflow::WrapSm(high) if high >= bits => end,
+            Overflow::Wrap(high) => saturated(value, high),
+            Overflow::WrapSm(0) => low(if bit(bits) == bit(bits - 1) { value } else { !value }),
+            Overflow::WrapSm(1) => low(if bit(bits - 1) == (value < 0) { value } else { !value }),
+            Overflow::WrapSm(high) => saturated(if bit(bits - high) == (value < 0) { !value } else { value }, high),
         }
     }
 }

@@ -18,7 +18,7 @@ fn floor_root(value: u64) -> u64 {
     let guess = ((value as f64).sqrt() as u64).min(u32::MAX.into());
     if guess * guess > value {
         guess - 1
-    } else if guess < u32::MAX.into() && (guess + 1) * (guess + 1) <= value {
+    } else if guess < u64::from(u32::MAX) && (guess + 1) * (guess + 1) <= value {
         guess + 1
     } else {
         guess

@@ -258,7 +258,7 @@ proptest! {
         let (dividend, divisor) = (i128::from(dividend.unsigned_abs() >> left) << scale, (i128::from(divisor.unsigned_abs()) << (scale / 2)).max(1));
         let largest = (1i128 << (word - 1)) - 1;
         for quantization in Quantization::ALL.iter().copied() {
-            let modes = Modes { word, quantization, overflow: Overflow::Wrap };
+            let modes = Modes { word, quantization, overflow: Overflow::Wrap(0) };
             let found = ratio(&modes, dividend, divisor, shift);
             prop_assert_eq!(found, ratio(&modes, -dividend, -divisor, shift));
             // In eighths of 126 bits at most, by another way than the digits of the division.
@@ -285,7 +285,7 @@ fn quotients_of_the_largest_determinants_are_exact() {
     assert_eq!(ratio(&Nearest32, (1 << 99) - (1 << 68), 1 << 99, 30), 1 << 30, "a tie goes up");
     assert_eq!(ratio(&Nearest32, (1 << 99) - (1 << 68) - 1, 1 << 99, 30), (1 << 30) - 1);
     assert_eq!(ratio(&Nearest32, 0, 1 << 99, 63), 0);
-    let modes = Modes { word: 16, quantization: Quantization::Rnd, overflow: Overflow::Wrap };
+    let modes = Modes { word: 16, quantization: Quantization::Rnd, overflow: Overflow::Wrap(0) };
     assert_eq!(ratio(&modes, 40000, 1, 0), 32767, "a distance never wraps");
     assert_eq!(ratio(&modes, 65535, 2, 0), 32767);
     assert_eq!(modes.narrow(32768, 0), -32768);

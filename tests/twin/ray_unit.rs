@@ -1,0 +1,84 @@
+//! The walk and the search of the profile `ray` against their twins.
+
+use std::array::from_fn;
+use std::iter::successors;
+use std::ops::Range;
+
+use kernels::twin::planes::Packets;
+use kernels::twin::ray::{Packet, Ray, Search};
+use kernels::{Function, Profile};
+use proptest::prelude::*;
+use scenes::image::Kind;
+
+use super::bench::{Experiment, Place};
+use super::functions::{MODES, agree, packet_words, point_of_tree, trees};
+use super::operands::{direction, vector, words};
+
+/// The walk of the ray unit, from the first packet to the last, against the walk with planes and against that from box to box.
+#[test]
+fn walks_of_the_ray_unit() {
+    let experiment = Experiment {
+        functions: &[Function::OwnPacket, Function::NextPacket, Function::Descend],
+        operands: &[Place::Vector("origin"), Place::Vector("direction")],
+        body: "    mov near, s0\n    li near_t, NEVER\n    mov any_hit, s0\n    mov s29, s0\n    mov s30, s0\n    \
+               call link_packet, own_packet\n    bltz packet_count, 2f\n1:\n    movi s12, 31\n    imul s30, s30, s12\n    \
+               iadd s30, s30, packet_refs\n    iaddi s29, s29, 1\n    call link_packet, next_packet\n    bgez packet_count, 1b\n2:\n",
+        results: &[Place::Scalar("s29"), Place::Scalar("s30")],
+    };
+    for modes in MODES {
+        for subject in trees(modes) {
+            let subject = subject.with(Profile::Ray);
+            let twin = subject.twin();
+            let address = |references: Range<u32>| {
+                let bounds = twin.stage.bounds;
+                packet_words(&subject, Some(Packet { bounds, references }))[1]
+            };
+            let cases = (point_of_tree(&subject), direction(modes.word - 2)).prop_map(|(o, d)| words(&[o, d], &[]));
+            agree(&subject, &experiment, cases, |case| {
+                let (origin, direction) = (vector(case, 0), vector(case, 3));
+                let ray = Ray::new(&modes, origin, direction);
+                let exact = isa::number::ray::Ray { origin, direction };
+                let packets = Packets::new(&twin.stage.nodes, &twin.stage.bounds, exact);
+                let packets: Vec<i32> = packets.map(address).collect();
+                let search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                let from_box_to_box = successors(twin.own_packet(&ray), |here| twin.next_packet(&ray, here, &search));
+                assert_eq!(packets, from_box_to_box.map(|packet| address(packet.references)).collect::<Vec<_>>());
+                let sum = packets.iter().fold(0i32, |sum, &address| sum.wrapping_mul(31).wrapping_add(address));
+                vec![packets.len() as i32, sum]
+            });
+        }
+    }
+}
+
+/// Whole searches for the nearest hit with rays through vertices and planes of the tree, so that most decisions are ties.
+#[test]
+fn searches_of_aimed_rays() {
+    let experiment = Experiment {
+        functions: &[Function::OwnPacket, Function::Trace, Function::Packet, Function::NextPacket, Function::Descend],
+        operands: &[Place::Vector("origin"), Place::Vector("direction")],
+        body: "    mov near, s0\n    li near_t, NEVER\n    mov any_hit, s0\n    movi near_slot, NEAR_SLOT\n    movi slot, SLOT\n    \
+               call link_packet, own_packet\n    call link_trace, trace\n",
+        results: &[Place::Scalar("near_t"), Place::Scalar("near")],
+    };
+    for modes in MODES {
+        for subject in trees(modes) {
+            let subject = subject.with(Profile::Ray);
+            let twin = subject.twin();
+            let vertices: Vec<[i32; 3]> = twin.stage.triangles.iter().flat_map(|triangle| triangle.vertices).collect();
+            let towards = prop_oneof![prop::sample::select(vertices), point_of_tree(&subject)];
+            // Not of unit length: the ray passes through the very point.
+            let cases = (point_of_tree(&subject), towards)
+                .prop_map(|(origin, towards)| words(&[origin, from_fn(|k| towards[k] - origin[k])], &[]));
+            let triangles = subject.image.region(Kind::Triangles).start;
+            let octets = subject.image.layout.triangle().octets();
+            agree(&subject, &experiment, cases, |case| {
+                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
+                let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                if let Some(first) = twin.own_packet(&ray) {
+                    twin.trace(&ray, first, &mut search).expect("a walk with planes ends");
+                }
+                vec![search.t, search.triangle.map_or(0, |index| (triangles + index * octets) as i32)]
+            });
+        }
+    }
+}

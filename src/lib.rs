@@ -14,6 +14,7 @@ pub mod machine;
 pub mod manual;
 pub mod result;
 pub mod scaling;
+pub mod stress;
 pub mod summary;
 pub mod table;
 pub mod terminal;

@@ -17,6 +17,7 @@ mod run_result;
 mod scene;
 mod schema;
 mod trace;
+mod stress;
 
 use clap::{Parser, Subcommand};
 
@@ -57,6 +58,7 @@ enum Command {
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
     Trace(Box<trace::TraceArguments>),
+    Stress(stress::StressArguments),
     Arithmetic(arithmetic::ArithmeticArguments),
     Manual(manual::ManualArguments),
     Explain(explain::ExplainArguments),
@@ -80,6 +82,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
+        Some(Command::Stress(arguments)) => stress::execute(arguments, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),

@@ -1,4 +1,4 @@
-//! `lancer arithmetic check`, and modes of the arithmetic.
+//! `lancer arithmetic check` and `lancer stress`.
 
 use serde_json::Value;
 
@@ -42,4 +42,33 @@ fn modes_of_overflow_may_name_saturated_bits() {
     assert_eq!(run.code, 2);
     assert!(run.messages.contains("as in WRAP:3"), "{}", run.messages);
     session.json("render triangle --size 4x3 --overflow wrap_sm:2 --no-error");
+}
+
+#[test]
+fn a_case_of_the_catalogue_is_tried_and_taken_up() {
+    let session = Session::new();
+    let names: Vec<String> = lancer::stress::CASES.iter().map(|case| case.name.to_owned()).collect();
+    let list = session.succeed("stress --list");
+    assert!(names.iter().all(|name| list.contains(name.as_str())), "{list}");
+
+    let tried = session.json("stress --case normalising");
+    assert_eq!((&tried["passes"], tried["cases"].as_array().map(Vec::len)), (&true.into(), Some(1)));
+    let case = &tried["cases"][0];
+    assert!(case["value"].as_f64().unwrap() > 0.5 && case["value"].as_f64() <= case["threshold"].as_f64(), "{case}");
+
+    session.succeed("stress --case normalising --resume state.json");
+    let state = String::from_utf8(session.read("state.json")).unwrap();
+    // What the file says is done is not done again: an error that it claims stays.
+    let worse: Value = serde_json::from_str(&state).unwrap();
+    let worst = worse["cases"]["normalising"]["tally"]["worst"].to_string();
+    session.write("state.json", &state.replace(&worst, "9.5"));
+    let run = session.run("stress --case normalising --resume state.json");
+    assert_eq!(run.code, 4, "{}", run.out);
+    assert!(run.out.starts_with("FAIL normalising") && run.out.contains("9.5"), "{}", run.out);
+
+    let run = session.run("stress --case normalising --full --resume state.json");
+    assert_eq!((run.code, run.messages.contains("the state of another run")), (1, true), "{}", run.messages);
+    session.write("state.json", "{}");
+    assert_eq!(session.run("stress --resume state.json").code, 1);
+    assert_eq!(session.run("stress --case normalizing").code, 2);
 }

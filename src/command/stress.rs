@@ -1,0 +1,261 @@
+//! `lancer stress`: the catalogue of what fixed-point ray tracers get wrong, tried.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use isa::diagnostic::{Diagnostic, Report};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::failure::{Exit, Failure};
+use crate::stress::{self, CASES, Case, Size, Tally};
+use crate::table::{grouped, row, table};
+use crate::terminal::Terminal;
+use crate::{files, result};
+
+/// Version of what `--json` prints.
+pub(super) const SCHEMA: &str = "lancer-stress-1";
+
+/// Version of the file that a run is taken up from.
+const STATE: &str = "lancer-stress-state-1";
+
+/// Parts of a case after which progress is shown and kept.
+const PARTS: u64 = 200;
+
+/// Least trials of a part: fewer would leave host threads without work.
+const LEAST: u64 = 32;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer stress                                    # every case, as many trials as the test suite makes
+  lancer stress --case closed_meshes --case slivers --json
+  lancer stress --size full --resume stress.json   # hours; stopped and called again it goes on
+  lancer stress --list
+
+Exit codes: 0 all values are allowed, 4 one is not.";
+
+/// Tries what fixed-point ray tracers get wrong, and measures how wrong the kernels are.
+///
+/// Searches are those of the profile `ray`, by the native functions that have the kernels' bits; the case `kernels`
+/// holds them against the emulated machine. Trials depend on their number and the seed alone.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct StressArguments {
+    /// Case to try; may be repeated [default: all].
+    #[arg(long = "case", value_name = "NAME", value_parser = case())]
+    cases: Vec<&'static Case>,
+    /// Number of trials: quick (seconds) or full (hours).
+    #[arg(long, value_name = "SIZE", value_parser = size(), default_value = Size::Quick.name(), conflicts_with = "full")]
+    size: Size,
+    /// The same as --size full.
+    #[arg(long)]
+    full: bool,
+    /// Keeps what is done in a file, and goes on from what is there.
+    #[arg(long, value_name = "FILE")]
+    resume: Option<PathBuf>,
+    /// Lists the cases instead of trying them.
+    #[arg(long, conflicts_with_all = ["json", "resume"])]
+    list: bool,
+    /// Prints the results as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+fn case() -> impl TypedValueParser<Value = &'static Case> {
+    let names = PossibleValuesParser::new(CASES.iter().map(|case| case.name));
+    names.map(|name| stress::find(&name).expect("the parser lets only names pass"))
+}
+
+fn size() -> impl TypedValueParser<Value = Size> {
+    let names = PossibleValuesParser::new(Size::ALL.map(Size::name));
+    names.map(|name| Size::ALL.into_iter().find(|size| size.name() == name).expect("the parser lets only names pass"))
+}
+
+/// How far a run has come.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct State {
+    schema: String,
+    size: Size,
+    cases: BTreeMap<String, Done>,
+}
+
+/// How far a case has come: its first trials are done.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Done {
+    seed: u64,
+    tally: Tally,
+}
+
+/// What came of a case.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+struct Verdict {
+    /// Name of the case.
+    name: &'static str,
+    /// What is tried.
+    about: &'static str,
+    /// What the value counts or measures.
+    quantity: &'static str,
+    /// Trials that were made.
+    trials: u64,
+    /// Where the series of random numbers begins.
+    seed: u64,
+    /// Trials that went wrong, of which none is allowed.
+    failures: u64,
+    /// What was measured.
+    value: f64,
+    /// The largest value that is allowed.
+    threshold: f64,
+    /// Whether the value is allowed.
+    passes: bool,
+    /// The first trial that went wrong; null when none did.
+    example: Option<Example>,
+}
+
+/// A trial that went wrong.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+struct Example {
+    /// Its number, from 0.
+    trial: u64,
+    /// What went wrong, in words.
+    text: String,
+}
+
+/// What came of the cases.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(super) struct Catalogue {
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
+    schema: &'static str,
+    /// How many trials were made: quick or full.
+    size: &'static str,
+    /// Whether all values are allowed.
+    passes: bool,
+    /// The cases in the order of the catalogue, or of the command line.
+    cases: Vec<Verdict>,
+}
+
+/// Tries the cases.
+pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let size = if arguments.full { Size::Full } else { arguments.size };
+    let chosen: Vec<&Case> = match arguments.cases.is_empty() {
+        true => CASES.iter().collect(),
+        false => arguments.cases.clone(),
+    };
+    if arguments.list {
+        terminal.print(&list(&chosen))?;
+        return Ok(Exit::Done);
+    }
+    let file = arguments.resume.as_deref();
+    let mut state = match file.filter(|path| path.exists()) {
+        Some(path) => read(path, size)?,
+        None => State { schema: STATE.to_owned(), size, cases: BTreeMap::new() },
+    };
+    if let Some(path) = file {
+        files::check_target(path)?;
+    }
+    let mut verdicts = Vec::new();
+    for case in chosen {
+        let tally = try_case(case, size, &mut state, file, terminal)?;
+        let verdict = verdict(case, tally);
+        if !arguments.json {
+            terminal.print(&text(&verdict))?;
+        }
+        verdicts.push(verdict);
+    }
+    let passes = verdicts.iter().all(|verdict| verdict.passes);
+    if arguments.json {
+        terminal.print(&result::json(&Catalogue { schema: SCHEMA, size: size.name(), passes, cases: verdicts }))?;
+    }
+    Ok(if passes { Exit::Done } else { Exit::Tolerance })
+}
+
+/// Makes the trials of a case that are still to be made.
+fn try_case(
+    case: &Case,
+    size: Size,
+    state: &mut State,
+    file: Option<&Path>,
+    terminal: &Terminal,
+) -> Result<Tally, Failure> {
+    let trials = case.trials(size);
+    let done = Done { seed: case.seed, tally: Tally::default() };
+    let mut done = state.cases.remove(case.name).unwrap_or(done);
+    let bar = terminal.progress(case.name, trials);
+    bar.set_position(done.tally.trials);
+    while done.tally.trials < trials {
+        let from = done.tally.trials;
+        let to = (from + trials.div_ceil(PARTS).max(LEAST)).min(trials);
+        done.tally = done.tally.plus(case.run(size, from..to));
+        bar.set_position(to);
+        if let Some(path) = file {
+            state.cases.insert(case.name.to_owned(), done.clone());
+            files::write(path, result::json(state).as_bytes())?;
+        }
+    }
+    bar.finish_and_clear();
+    state.cases.insert(case.name.to_owned(), done.clone());
+    Ok(done.tally)
+}
+
+/// What a former run has left.
+fn read(path: &Path, size: Size) -> Result<State, Report> {
+    let shown = path.display();
+    let source = files::source(path)?;
+    let state: State = serde_json::from_str(&source.text)
+        .map_err(|error| Diagnostic::error(format!("{shown} is no state of `lancer stress`: {error}")))?;
+    let fits = |(name, done): (&String, &Done)| {
+        stress::find(name).is_ok_and(|case| case.seed == done.seed && done.tally.trials <= case.trials(size))
+    };
+    if state.schema == STATE && state.size == size && state.cases.iter().all(fits) {
+        return Ok(state);
+    }
+    let message = Diagnostic::error(format!("{shown} is the state of another run"));
+    Err(message.hint("choose the size that it was made with, or another file").into())
+}
+
+fn verdict(case: &'static Case, tally: Tally) -> Verdict {
+    Verdict {
+        name: case.name,
+        about: case.about,
+        quantity: case.quantity,
+        trials: tally.trials,
+        seed: case.seed,
+        failures: tally.failures,
+        value: case.value(&tally),
+        threshold: case.threshold,
+        passes: case.passes(&tally),
+        example: tally.example.map(|(trial, text)| Example { trial, text }),
+    }
+}
+
+fn number(value: f64) -> String {
+    match value {
+        whole if whole == whole.trunc() => grouped(whole as u64),
+        small if small < 0.001 => format!("{small:.1e}"),
+        _ => format!("{value:.3}"),
+    }
+}
+
+fn text(verdict: &Verdict) -> String {
+    let Verdict { name, quantity, trials, seed, failures, value, threshold, passes, example, .. } = verdict;
+    let word = if *passes { "ok" } else { "FAIL" };
+    let mut text = format!("{word:<4} {name:<17} {:>11} trials, seed {seed:>2}: {}", grouped(*trials), number(*value));
+    text += &format!(" {quantity}, at most {} allowed\n", number(*threshold));
+    if let Some(Example { trial, text: what }) = example {
+        text += &format!("     {} wrong, first trial {trial}: {what}\n", grouped(*failures));
+    }
+    text
+}
+
+fn list(cases: &[&Case]) -> String {
+    let mut rows = vec![row(["case", "what is tried", "quick", "full"])];
+    rows.extend(cases.iter().map(|case| {
+        let [quick, full] = Size::ALL.map(|size| grouped(case.trials(size)));
+        vec![case.name.to_owned(), case.about.to_owned(), quick, full]
+    }));
+    table(rows)
+}

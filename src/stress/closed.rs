@@ -1,0 +1,97 @@
+//! Rays aimed exactly at what a rounded test decides wrongly: vertices, edges, and the planes that divide the tree.
+
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use isa::number::Vector;
+use isa::number::ray::Ray;
+use kernels::Profile;
+
+use super::mesh::closed;
+use super::random::Random;
+use super::tally::{Tally, tally};
+use super::target::{Target, through};
+
+/// Of so many rays one is searched for in all triangles too.
+const EVERY: u64 = 16;
+
+static TARGETS: LazyLock<Vec<Target>> =
+    LazyLock::new(|| closed().iter().map(|mesh| Target::new(mesh, Profile::Ray)).collect());
+
+/// Checks a ray for each trial, the meshes in turn.
+fn check(seed: u64, trials: Range<u64>, aim: impl Fn(&Target, &mut Random) -> Ray + Sync) -> Tally {
+    tally(trials, |trial| {
+        let target = &TARGETS[(trial % TARGETS.len() as u64) as usize];
+        let ray = aim(target, &mut Random::new(seed, trial));
+        target.check_closed(&ray, (trial / TARGETS.len() as u64).is_multiple_of(EVERY)).map(|()| 0.0)
+    })
+}
+
+/// At vertices, at middles of edges and of triangles; in or across planes of the tree, now and then along an axis.
+pub fn closed_meshes(seed: u64, trials: Range<u64>) -> Tally {
+    check(seed, trials, |target, random| {
+        let mut towards = point(target, random);
+        let mut origin = start(random);
+        for k in 0..3 {
+            match random.below(8) {
+                0 => origin[k] = towards[k],
+                1 => towards[k] = split(target, random, k).unwrap_or(towards[k]),
+                _ => {}
+            }
+        }
+        through(origin, towards)
+    })
+}
+
+/// In one or two planes that divide the tree, through edges and corners of its boxes.
+pub fn split_planes(seed: u64, trials: Range<u64>) -> Tally {
+    check(seed, trials, |target, random| {
+        let mut towards = point(target, random);
+        let mut origin = start(random);
+        for k in 0..3 {
+            let Some(at) = split(target, random, k) else { continue };
+            match random.below(3) {
+                // In the plane.
+                0 => (origin[k], towards[k]) = (at, at),
+                // Through it at the point at which the ray meets others.
+                1 => towards[k] = at,
+                _ => {}
+            }
+        }
+        through(origin, towards)
+    })
+}
+
+/// Along one axis, or at right angles to one, through vertices.
+pub fn zero_directions(seed: u64, trials: Range<u64>) -> Tally {
+    check(seed, trials, |target, random| {
+        let towards = point(target, random);
+        let mut origin = start(random);
+        let first = random.below(3);
+        for k in (0..1 + random.below(2)).map(|more| (first + more) % 3) {
+            origin[k] = towards[k];
+        }
+        through(origin, towards)
+    })
+}
+
+/// A point of the mesh that a ray can be aimed at exactly.
+fn point(target: &Target, random: &mut Random) -> Vector {
+    let [a, b, c] = *target.corners(random.below(target.len()) as u32);
+    match random.below(4) {
+        0 => std::array::from_fn(|k| (a[k] + b[k]) / 2),
+        1 => std::array::from_fn(|k| (a[k] + b[k]) / 4 + c[k] / 2),
+        _ => a,
+    }
+}
+
+/// From far away, or from within the mesh's box.
+fn start(random: &mut Random) -> Vector {
+    let reach = [1 << 30, 1 << 29][random.below(2)];
+    random.point(reach)
+}
+
+fn split(target: &Target, random: &mut Random, axis: usize) -> Option<i32> {
+    let splits = &target.splits[axis];
+    (!splits.is_empty()).then(|| splits[random.below(splits.len())])
+}

@@ -1,0 +1,133 @@
+//! What follows a hit: where secondary rays start and go.
+
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use isa::number::ray::Ray;
+use isa::number::{Nearest32, Vector};
+use kernels::Profile;
+use kernels::twin::lanes::Lanes;
+use kernels::twin::ray;
+use kernels::twin::refract::{Refraction, refracts};
+use kernels::twin::stage::Material;
+use kernels::twin::surface::Surface;
+use kernels::twin::unit::unit;
+
+use super::mesh::{Mesh, sphere};
+use super::random::Random;
+use super::tally::{Tally, tally};
+use super::target::Target;
+
+/// Fraction bits of directions.
+const BITS: u32 = 30;
+
+/// Secondary rays of each hit.
+const SPAWNS: u64 = 1000;
+
+static BALL: LazyLock<Target> =
+    LazyLock::new(|| Target::new(&Mesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, Profile::Ray));
+
+fn rounded(direction: [f64; 3]) -> Vector {
+    direction.map(|x| (x * f64::from(1 << BITS)).round() as i32)
+}
+
+/// Rays that start on a convex body: those that leave it hit nothing, those that enter it hit it once more.
+pub fn self_intersection(seed: u64, trials: Range<u64>) -> Tally {
+    tally(trials, |trial| {
+        let twin = &BALL.twin;
+        let mut random = Random::new(seed, trial / SPAWNS);
+        let inner = random.point(1 << 27);
+        let back = random.direction();
+        let away = rounded(back.map(|x| -x));
+        let origin = std::array::from_fn(|k| inner[k] + (back[k] * f64::from(1 << 30)) as i32);
+        let first = Ray { origin, direction: away };
+        let Some((t, index)) = BALL.nearest(&first)? else { return Ok(0.0) };
+        let surface = twin.surface(&ray::Ray::new(&Nearest32, origin, away), t, index);
+        let direction = rounded(Random::new(seed ^ 1, trial).direction());
+        if direction == [0; 3] || on_side(index, &first, direction) == 0 {
+            return Ok(0.0);
+        }
+        let is_leaving = on_side(index, &first, direction) > 0;
+        let start = if is_leaving { surface.point } else { surface.behind };
+        let hits = BALL.crossings(&Ray { origin: start, direction }).len();
+        match hits == usize::from(!is_leaving) {
+            true => Ok(0.0),
+            false => Err(format!("from {start:?} along {direction:?}: {hits} hits, triangle {index}")),
+        }
+    })
+}
+
+/// The sign of the way away from a triangle's plane, positive on the side from which a ray has come; exact.
+fn on_side(index: u32, came: &Ray, direction: Vector) -> i128 {
+    let [a, b, c] = BALL.corners(index).map(|corner| corner.map(i128::from));
+    let (e, f): ([i128; 3], [i128; 3]) = (std::array::from_fn(|k| b[k] - a[k]), std::array::from_fn(|k| c[k] - a[k]));
+    let normal = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
+    let along = |way: Vector| (0..3).map(|k| normal[k] * i128::from(way[k])).sum::<i128>();
+    along(direction).signum() * -along(came.direction).signum()
+}
+
+/// Unit vectors of vectors between 2^-14 and 2^14 long with 16 fraction bits; the error of a lane in units in the last place.
+///
+/// Brought into the word, a vector is exact and at least 2^29 long. Its length is off by at most 1/2, so a lane of the unit vector by at most 1,
+/// and its own rounding adds 1/2.
+pub fn normalising(seed: u64, trials: Range<u64>) -> Tally {
+    tally(trials, |trial| {
+        let mut random = Random::new(seed, trial);
+        let length = (16.0 + 14.0 * random.unit()).exp2();
+        let vector = random.direction().map(|x| (x * length).round());
+        let exact = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if exact == 0.0 {
+            return Ok(0.0);
+        }
+        let found = unit(&Nearest32, BITS, Nearest32.normalized(vector.map(|x| x as i64)));
+        let one = f64::from(1 << BITS);
+        Ok((0..3).map(|k| (f64::from(found[k]) - vector[k] / exact * one).abs()).fold(0.0, f64::max))
+    })
+}
+
+/// Rays that leave glass next to the critical angle: how far from it, as 1 - eta^2 (1 - c^2) in units in the last place, a ray is still taken for one
+/// of the other side.
+///
+/// With eta up to 2.5, c^2 off by less than 3/2 (c and the square, rounded), and two products: 3/2 eta^2 + eta / 2 + 1/2 is the most.
+pub fn critical_angle(seed: u64, trials: Range<u64>) -> Tally {
+    let constants = &BALL.twin.constants;
+    let index = constants.formats.index;
+    tally(trials, |trial| {
+        let mut random = Random::new(seed, trial);
+        let eta = ((1.75 + 0.74 * random.unit()) * f64::from(1u32 << index)).round();
+        let ratio = eta / f64::from(1u32 << index);
+        let sine = (1.0 + random.unit() * (-(random.below(32) as f64)).exp2()) / ratio;
+        if !(0.0..1.0).contains(&sine) {
+            return Ok(0.0);
+        }
+        let normal = random.direction();
+        let other = random.direction();
+        let along = (0..3).map(|k| normal[k] * other[k]).sum::<f64>();
+        let aside: [f64; 3] = std::array::from_fn(|k| other[k] - along * normal[k]);
+        let length = aside.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if length < 0.01 {
+            return Ok(0.0);
+        }
+        let cosine = (1.0 - sine * sine).sqrt();
+        let incident = rounded(std::array::from_fn(|k| sine * aside[k] / length - cosine * normal[k]));
+        let facing = rounded(normal);
+        let material = Material {
+            colour: [0; 3],
+            reflection: 0,
+            intensity: 0,
+            transmission: 1 << constants.formats.weight,
+            index: eta as i32,
+            inverse_index: 0,
+        };
+        let rounded_cosine = -Nearest32.dot(facing, incident, BITS);
+        let surface = Surface { point: [0; 3], behind: [0; 3], facing, incident, cosine: rounded_cosine, material };
+        let one = f64::from(1u32 << BITS);
+        let exact = -(0..3).map(|k| f64::from(facing[k]) / one * (f64::from(incident[k]) / one)).sum::<f64>();
+        let k = 1.0 - ratio * ratio * (1.0 - exact * exact);
+        let is_total = matches!(
+            refracts(&Nearest32, constants, &surface, 1 << constants.formats.weight, true),
+            Refraction::Total(_)
+        );
+        Ok(if is_total == (k < 0.0) { 0.0 } else { k.abs() * one })
+    })
+}

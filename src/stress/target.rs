@@ -1,0 +1,224 @@
+//! A mesh in its kd tree, with the searches of the kernels (by their native twin) and the same search without a tree.
+
+use std::cmp::Ordering;
+
+use isa::number::ray::{Meeting, Ray, TriangleEnd, triangle};
+use isa::number::{Nearest32, Vector};
+use kernels::Profile;
+use kernels::build::Features;
+use kernels::twin::planes::Packets;
+use kernels::twin::stage::Node;
+use kernels::twin::{Twin, ray};
+use scenes::image;
+use scenes::model::{Material, Scene, Triangle, View};
+
+use super::mesh::{Corners, Mesh};
+
+/// Sign of the determinant where a ray leaves a body whose triangles run anticlockwise, seen from outside.
+const OUTWARDS: i32 = -1;
+
+/// A mesh on the grid of a word of 32 bits.
+pub struct Target {
+    /// Its name.
+    pub name: &'static str,
+    /// The kernels' functions for it.
+    pub twin: Twin<Nearest32>,
+    /// Coordinates of the planes that divide the tree, by axis.
+    pub splits: [Vec<i32>; 3],
+}
+
+/// A hit: t as a fraction with a positive denominator, the sign of the determinant, the triangle.
+pub type Crossing = (i128, i128, i32, u32);
+
+impl Target {
+    /// The mesh as the loader puts it on the grid, with its tree.
+    pub fn new(mesh: &Mesh, profile: Profile) -> Target {
+        let grey = Material { colour: [0.5; 3], reflection: 0.0, intensity: 1.0, index: 0.0 };
+        let corner = |number: usize| 3 * number as u32;
+        let scene = Scene {
+            name: mesh.name.into(),
+            size: (1, 1),
+            materials: vec![grey],
+            lights: Vec::new(),
+            vertices: mesh.triangles.iter().flatten().map(|vertex| vertex.map(f64::from)).collect(),
+            triangles: (0..mesh.triangles.len())
+                .map(|number| Triangle { vertices: [0, 1, 2].map(|k| corner(number) + k), material: 0 })
+                .collect(),
+        };
+        let view = View::new(scene.size);
+        let image = image::build(&scene, &view, &image::Options::default()).expect("the mesh fits the grid");
+        let features = Features::new(&scene, &view, 0);
+        let twin = Twin::new(&image, &features, profile, Nearest32).expect("an image that was built can be read");
+        let mut splits = [vec![], vec![], vec![]];
+        for node in &twin.stage.nodes {
+            if let Node::Inner { axis, at, .. } = *node {
+                splits[axis].push(at);
+            }
+        }
+        Target { name: mesh.name, twin, splits }
+    }
+
+    /// The corners of a triangle, on the grid.
+    pub fn corners(&self, index: u32) -> &Corners {
+        &self.twin.stage.triangles[index as usize].vertices
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.twin.stage.triangles.len()
+    }
+
+    fn crossing(&self, ray: &Ray, index: u32) -> Option<Crossing> {
+        let Meeting { end, determinant, t, .. } = triangle(ray, self.corners(index));
+        let sign = determinant.signum();
+        (end == TriangleEnd::Hit).then_some((t * sign, determinant * sign, sign as i32, index))
+    }
+
+    /// All crossings that the walk through the tree finds, each triangle once, nearest first.
+    pub fn crossings(&self, ray: &Ray) -> Vec<Crossing> {
+        let stage = &self.twin.stage;
+        let packets = Packets::new(&stage.nodes, &stage.bounds, *ray);
+        let indices = packets.flat_map(|packet| &stage.references[packet.start as usize..packet.end as usize]);
+        let mut found: Vec<Crossing> = indices.filter_map(|&index| self.crossing(ray, index)).collect();
+        found.sort_by_key(|crossing| crossing.3);
+        found.dedup_by_key(|crossing| crossing.3);
+        found.sort_by(by_distance);
+        found
+    }
+
+    /// The same from a search through all triangles.
+    pub fn all_crossings(&self, ray: &Ray) -> Vec<Crossing> {
+        let mut all: Vec<Crossing> = (0..self.len() as u32).filter_map(|index| self.crossing(ray, index)).collect();
+        all.sort_by(by_distance);
+        all
+    }
+
+    /// What the kernels find: the rounded t and the triangle.
+    pub fn nearest(&self, ray: &Ray) -> Result<Option<(i32, u32)>, String> {
+        let twin = &self.twin;
+        let ray = ray::Ray::new(&twin.arithmetic, ray.origin, ray.direction);
+        let mut search = ray::Search { t: twin.constants.never, triangle: None, takes_any: false };
+        if let Some(first) = twin.own_packet(&ray) {
+            twin.trace(&ray, first, &mut search).map_err(|_| "the walk is stuck".to_owned())?;
+        }
+        Ok(search.triangle.map(|index| (search.t, index)))
+    }
+
+    /// What they should find: of the smallest rounded t the lowest index.
+    pub fn expected(&self, crossings: &[Crossing]) -> Option<(i32, u32)> {
+        let shift = self.twin.constants.along();
+        let rounded = |&(t, determinant, _, index): &Crossing| (nearest_integer(t, determinant, shift), index);
+        crossings.iter().map(rounded).min().filter(|&(t, _)| t < self.twin.constants.never)
+    }
+
+    /// Checks that the ray crosses the closed surface evenly, and that a search finds what there is.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn check_closed(&self, ray: &Ray, is_searched: bool) -> Result<(), String> {
+        let found = self.crossings(ray);
+        // The way ends outside: ahead of each point of it, inwards against outwards, is nothing or one surface outwards. Crossings at the
+        // same t, where the ray grazes an edge, have no order, only a sum.
+        let mut ahead: i32 = found.iter().map(|crossing| crossing.2).sum();
+        let bounds = &self.twin.stage.bounds;
+        let starts_outside = (0..3).any(|k| ray.origin[k] < bounds.low[k] || ray.origin[k] > bounds.high[k]);
+        if starts_outside && ahead != 0 {
+            return Err(format!("{}, {ray:?}: {ahead} surfaces without another side", self.name));
+        }
+        let mut met = found.chunk_by(|a, b| by_distance(a, b).is_eq());
+        loop {
+            if ahead != 0 && ahead != OUTWARDS {
+                return Err(format!("{}, {ray:?}: {ahead} surfaces ahead of a point", self.name));
+            }
+            let Some(surfaces) = met.next() else { break };
+            ahead -= surfaces.iter().map(|crossing| crossing.2).sum::<i32>();
+        }
+        if is_searched { self.check_nearest(ray) } else { Ok(()) }
+    }
+
+    /// Checks the nearest hit and all crossings against a search through all triangles.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn check_nearest(&self, ray: &Ray) -> Result<(), String> {
+        let all = self.all_crossings(ray);
+        let mut found = self.crossings(ray);
+        let mut sorted = all.clone();
+        found.sort_by_key(|crossing| crossing.3);
+        sorted.sort_by_key(|crossing| crossing.3);
+        if found != sorted {
+            return Err(format!("{}, {ray:?}: the tree finds {found:?} of {sorted:?}", self.name));
+        }
+        let (nearest, expected) = (self.nearest(ray)?, self.expected(&all));
+        if nearest == expected {
+            Ok(())
+        } else {
+            Err(format!("{}, {ray:?}: found {nearest:?}, nearest is {expected:?}", self.name))
+        }
+    }
+}
+
+/// `t 2^shift / determinant`, to nearest with ties up, saturated; both are positive.
+pub fn nearest_integer(t: i128, determinant: i128, shift: u32) -> i32 {
+    let (mut whole, mut rest) = (t / determinant, t % determinant);
+    for _ in 0..shift {
+        rest *= 2;
+        whole = (2 * whole + i128::from(rest >= determinant)).min(1 << 40);
+        rest -= if rest >= determinant { determinant } else { 0 };
+    }
+    (whole + i128::from(2 * rest >= determinant)).min(i32::MAX.into()) as i32
+}
+
+/// t of one against t of the other, by their continued fractions.
+pub fn by_distance(&(a, b, ..): &Crossing, &(c, d, ..): &Crossing) -> Ordering {
+    let (mut a, mut b, mut c, mut d) = (a, b, c, d);
+    loop {
+        let order = (a / b).cmp(&(c / d));
+        match (a % b, c % d) {
+            _ if order.is_ne() => return order,
+            (rest, other) if rest == 0 || other == 0 => return rest.cmp(&other),
+            // rest / b < other / d as d / other < b / rest.
+            (rest, other) => (a, b, c, d) = (d, other, b, rest),
+        }
+    }
+}
+
+/// A ray from one point through another.
+pub fn through(origin: Vector, towards: Vector) -> Ray {
+    Ray { origin, direction: std::array::from_fn(|k| towards[k] - origin[k]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::sphere;
+    use super::super::random::Random;
+    use super::*;
+
+    /// Rays at vertices that are found to be wrong, of 500.
+    fn wrong(triangles: Vec<Corners>) -> usize {
+        let target = Target::new(&Mesh { name: "sphere", triangles }, Profile::Ray);
+        let ray = |trial| {
+            let mut random = Random::new(1, trial);
+            through(random.point(1 << 30), target.corners(random.below(target.len()) as u32)[0])
+        };
+        (0..500).filter(|&trial| target.check_closed(&ray(trial), true).is_err()).count()
+    }
+
+    #[test]
+    fn holes_and_double_surfaces_are_found() {
+        let closed = sphere(3, |_| 1.0);
+        assert_eq!(wrong(closed.clone()), 0);
+        assert!(wrong(closed[1..].to_vec()) > 5, "a hole");
+        assert!(wrong([closed.clone(), closed[..4].to_vec()].concat()) > 5, "a surface that is there twice");
+        let turned = closed.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert!(wrong(turned) > 100, "inside out");
+    }
+
+    #[test]
+    fn quotients_are_rounded_to_the_nearest() {
+        assert_eq!(
+            [(7, 2, 0), (5, 4, 0), (1, 3, 4), (1, 1, 31)].map(|(t, d, i)| nearest_integer(t, d, i)),
+            [4, 1, 5, i32::MAX]
+        );
+    }
+}

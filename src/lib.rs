@@ -1,6 +1,7 @@
 //! lancer's command line as a library: from scene files through the emulated coprocessor to pictures, counts and
 //! tables. What a command prints is decided here; what it computes, in the crates below.
 
+pub mod accuracy;
 pub mod annex;
 pub mod arguments;
 pub mod command;

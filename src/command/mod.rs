@@ -1,5 +1,6 @@
 //! The commands, one a file. Each is a function from its arguments and the terminal to its exit code.
 
+mod accuracy;
 mod annex;
 mod arithmetic;
 mod assemble;
@@ -16,8 +17,8 @@ mod run_arguments;
 mod run_result;
 mod scene;
 mod schema;
-mod trace;
 mod stress;
+mod trace;
 
 use clap::{Parser, Subcommand};
 
@@ -58,6 +59,7 @@ enum Command {
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
     Trace(Box<trace::TraceArguments>),
+    Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
     Arithmetic(arithmetic::ArithmeticArguments),
     Manual(manual::ManualArguments),
@@ -82,6 +84,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
+        Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, terminal),
         Some(Command::Stress(arguments)) => stress::execute(arguments, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),

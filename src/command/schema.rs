@@ -7,11 +7,12 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
+use super::accuracy::{self, Results};
 use super::arithmetic::{self, Checked};
 use super::run_result::{self, RunResult};
+use super::stress::{self, Catalogue};
 use crate::annex;
 use crate::annex::result::Annexes;
-use super::stress::{self, Catalogue};
 use crate::failure::{Exit, Failure};
 use crate::result::{self, Render};
 use crate::scaling::{self, Scaling};
@@ -46,6 +47,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
     Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
+    Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
     Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
 ];

@@ -72,3 +72,55 @@ fn a_case_of_the_catalogue_is_tried_and_taken_up() {
     assert_eq!(session.run("stress --resume state.json").code, 1);
     assert_eq!(session.run("stress --case normalizing").code, 2);
 }
+
+#[test]
+fn variants_are_measured_and_the_front_is_marked() {
+    let session = Session::new();
+    let arguments = "accuracy cornell --size 16x12 --words 32,20 --cutoffs 0 --csv all.csv --svg all.svg";
+    let measured = session.json(arguments);
+    let variants = measured["variants"].as_array().unwrap();
+    let names: Vec<&str> = variants.iter().map(|one| one["variant"].as_str().unwrap()).collect();
+    let expected = ["ray 32", "ray 20", "vector 32", "vector 20", "report 32", "report 20", "ray 32 TRN", "ray 20 TRN"];
+    assert_eq!(names[..8], expected);
+    assert_eq!(names[8..], ["ray 32 report", "ray 20 report", "ray 32 bounces 2", "ray 20 bounces 2"]);
+    for one in variants {
+        let by = one["dominated_by"].as_str();
+        assert_eq!(one["is_on_front"], by.is_none());
+        if let Some(by) = by {
+            let other = &variants[names.iter().position(|name| *name == by).unwrap()];
+            let not_above = |key: &dyn Fn(&Value) -> f64| key(other) <= key(one);
+            assert!(not_above(&|v| v["clocks"].as_f64().unwrap()), "{one} by {other}");
+            assert!(not_above(&|v| v["error"]["rmse"].as_f64().unwrap()), "{one} by {other}");
+        }
+    }
+    // The exact profile decides every camera ray as exact integers do.
+    assert_eq!(variants[0]["rays"]["misclassified_per_million"], 0.0);
+    assert!(variants[0]["rays"]["t_max"].as_f64().unwrap() <= 0.5);
+    assert!(variants[1]["error"]["rmse"].as_f64() > variants[0]["error"]["rmse"].as_f64());
+    let csv = String::from_utf8(session.read("all.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + variants.len());
+    let svg = String::from_utf8(session.read("all.svg")).unwrap();
+    assert_eq!(svg.matches("<circle").count(), variants.len());
+    assert!(svg.contains("dominated by"), "{svg}");
+    assert_eq!(session.run("accuracy cornell --words 7").code, 2);
+    assert_eq!(session.run("accuracy no_such_scene").code, 1);
+}
+
+/// Renewed by `lancer accuracy cornell --size 32x24 --svg docs/accuracy.svg`.
+#[test]
+fn the_documents_chart_and_sentence_are_what_is_measured() {
+    let session = Session::new();
+    let measured = session.json("accuracy cornell --size 32x24 --svg accuracy.svg");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let chart = std::fs::read(folder.join("accuracy.svg")).unwrap();
+    assert!(session.read("accuracy.svg") == chart, "docs/accuracy.svg is stale");
+    let variants = measured["variants"].as_array().unwrap();
+    assert!(variants.len() >= 12);
+    let best = &variants[0];
+    let figure = |one: &Value, key: &str| one[key].as_f64().or(one["error"][key].as_f64()).unwrap();
+    for one in variants.iter().filter(|one| one["profile"] == "report") {
+        assert_eq!((&best["variant"], &one["dominated_by"]), (&"ray 32".into(), &"ray 32".into()));
+        assert!(figure(one, "clocks") > 4.5 * figure(best, "clocks"));
+        assert!(figure(one, "psnr_db") + 110.0 < figure(best, "psnr_db"));
+    }
+}

@@ -21,6 +21,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("cores triangle --size 4x4 --cores 1,2 --machine node_cache", "lancer-cores-1"),
     ("scene info cornell", "lancer-scene-1"),
     ("scene info empty", "lancer-scene-1"),
+    ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
     ("stress --case normalising", "lancer-stress-1"),
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];

@@ -32,7 +32,7 @@ use scenes::image::Image;
 use crate::build::{Crop, Features};
 use crate::constants::Constants;
 use crate::function::Profile;
-use ray::Stuck;
+use ray::{Packet, Ray, Stuck};
 use ray_tree::Branch;
 use stage::Stage;
 
@@ -141,16 +141,29 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The colour of a pixel. `branches` is room that pixels may share.
     fn pixel(&self, column: u32, row: u32, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
+        let ray = self.camera_ray(column, row);
+        let first = self.camera_packet(&ray);
+        match self.profile {
+            Profile::Report => self.literal_ray_tree(ray, first),
+            Profile::Vector | Profile::Ray => self.ray_tree(ray, first, branches),
+        }
+    }
+
+    /// The ray of a pixel, row 0 on top.
+    pub fn camera_ray(&self, column: u32, row: u32) -> Ray {
         let (arithmetic, bits) = (&self.arithmetic, self.constants.formats.direction);
         let unit = |vector| match self.profile {
             Profile::Report => report::unit(arithmetic, bits, vector),
             Profile::Vector | Profile::Ray => unit::unit(arithmetic, bits, vector),
         };
-        let ray = camera::camera(arithmetic, unit, &self.camera, column, row);
-        if self.profile == Profile::Report {
-            let first = report::first_packet(arithmetic, &self.constants, &self.stage, &ray);
-            return self.literal_ray_tree(ray, first);
+        camera::camera(arithmetic, unit, &self.camera, column, row)
+    }
+
+    /// The first packet of a camera ray; `None` when it misses the scene's box.
+    pub fn camera_packet(&self, ray: &Ray) -> Option<Packet> {
+        match self.profile {
+            Profile::Report => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
+            Profile::Vector | Profile::Ray => first_packet::first_packet(&self.arithmetic, &self.stage, ray),
         }
-        self.ray_tree(ray, first_packet::first_packet(arithmetic, &self.stage, &ray), branches)
     }
 }

@@ -1,0 +1,196 @@
+//! Run time against error: pictures in many arithmetics, profiles and layouts, each measured against double precision, and its camera rays
+//! against exact integers on the same grid, so that what the formats cost and what the scene's rounding costs are told apart.
+
+mod chart;
+mod front;
+mod rays;
+
+use std::fmt;
+use std::time::Instant;
+
+use isa::number::Quantization;
+use kernels::Profile;
+use scenes::layout::Layout;
+use scenes::metrics::PictureError;
+use scenes::model::{Scene, View};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::drawing::{self, Comparison};
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::result::{ByClass, Render};
+pub use chart::svg;
+pub use front::rank;
+pub use rays::RayErrors;
+
+/// What is varied.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// Set of kernels.
+    pub profile: Profile,
+    /// Bits of a word.
+    pub word: u32,
+    /// Rounding mode.
+    pub rounding: Quantization,
+    /// Structures of global memory.
+    pub layout: Layout,
+    /// Levels of secondary rays.
+    pub bounces: u32,
+    /// Weight that a secondary ray must exceed.
+    pub cutoff: f64,
+}
+
+impl Variant {
+    /// The same with other kernels, those of the report in its layout.
+    fn with(self, profile: Profile) -> Variant {
+        let layout = if profile == Profile::Report { profile.layout() } else { self.layout };
+        Variant { profile, layout, ..self }
+    }
+}
+
+impl fmt::Display for Variant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.profile, self.word)?;
+        if self.rounding != Quantization::Rnd {
+            write!(f, " {}", self.rounding)?;
+        }
+        if self.layout != self.profile.layout() {
+            write!(f, " {}", self.layout.name())?;
+        }
+        if self.bounces != BOUNCES {
+            write!(f, " bounces {}", self.bounces)?;
+        }
+        if self.cutoff != 0.0 {
+            write!(f, " cutoff {}", self.cutoff)?;
+        }
+        Ok(())
+    }
+}
+
+/// Levels of secondary rays where nothing else is said.
+const BOUNCES: u32 = 5;
+
+/// The values that are tried of each setting. The first one of each list is the base.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// Sets of kernels.
+    pub profiles: Vec<Profile>,
+    /// Bits of a word.
+    pub words: Vec<u32>,
+    /// Rounding modes.
+    pub roundings: Vec<Quantization>,
+    /// Layouts.
+    pub layouts: Vec<Layout>,
+    /// Levels of secondary rays.
+    pub bounces: Vec<u32>,
+    /// Weights that a secondary ray must exceed.
+    pub cutoffs: Vec<f64>,
+}
+
+impl Choice {
+    /// Every profile in every word (that of the report in its own layout), and for each further value of another setting the base profile in
+    /// every word; `None` without a value of some setting.
+    pub fn variants(&self) -> Option<Vec<Variant>> {
+        let base = Variant {
+            profile: *self.profiles.first()?,
+            word: *self.words.first()?,
+            rounding: *self.roundings.first()?,
+            layout: *self.layouts.first()?,
+            bounces: *self.bounces.first()?,
+            cutoff: *self.cutoffs.first()?,
+        };
+        let mut kinds: Vec<Variant> = self.profiles.iter().map(|&profile| base.with(profile)).collect();
+        kinds.extend(self.roundings[1..].iter().map(|&rounding| Variant { rounding, ..base }));
+        kinds.extend(self.layouts[1..].iter().map(|&layout| Variant { layout, ..base }));
+        kinds.extend(self.bounces[1..].iter().map(|&bounces| Variant { bounces, ..base }));
+        kinds.extend(self.cutoffs[1..].iter().map(|&cutoff| Variant { cutoff, ..base }));
+        Some(kinds.iter().flat_map(|&kind| self.words.iter().map(move |&word| Variant { word, ..kind })).collect())
+    }
+}
+
+/// A variant on a scene.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Measured {
+    /// Name of the scene.
+    pub scene: String,
+    /// The variant in words.
+    pub variant: String,
+    /// Set of kernels.
+    pub profile: &'static str,
+    /// Bits of a word.
+    pub word: u32,
+    /// Rounding mode.
+    pub rounding: &'static str,
+    /// Structures of global memory.
+    pub layout: &'static str,
+    /// Levels of secondary rays.
+    pub bounces: u32,
+    /// Weight that a secondary ray must exceed.
+    pub cutoff: f64,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: crate::result::Formats,
+    /// The picture against double precision with five bounces and no cut-off.
+    pub error: PictureError,
+    /// Camera rays against exact integers.
+    pub rays: RayErrors,
+    /// Clocks of the frame, a pixel.
+    pub clocks: f64,
+    /// Operations of all cores.
+    pub operations: ByClass,
+    /// Instructions of all cores, a pixel.
+    pub instructions: f64,
+    /// Octets that the cores moved, a pixel.
+    pub octets: f64,
+    /// Nanoseconds of the host a pixel; only when asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub host_nanoseconds: Option<f64>,
+    /// Whether no other variant of the scene beats it.
+    pub is_on_front: bool,
+    /// A variant of the scene that takes no more clocks, has no larger error and is better in one of them; null for one on the front.
+    pub dominated_by: Option<String>,
+}
+
+/// Draws a scene in a variant and measures it.
+///
+/// # Errors
+/// A scene that does not fit the formats, or a trap.
+pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -> Result<Measured, Failure> {
+    let mut job = Job::new(scene.clone());
+    job.view = View { bounces: variant.bounces, ..view.clone() };
+    job.kernels.profile = variant.profile;
+    job.kernels.weight_cutoff = variant.cutoff;
+    job.memory.word = variant.word;
+    job.memory.layout = variant.layout;
+    job.machine.arithmetic.word = variant.word;
+    job.machine.arithmetic.quantization = variant.rounding;
+    let start = Instant::now();
+    let drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
+    let host = start.elapsed();
+    let reference = scenes::reference::render(scene, view)?.picture;
+    let error = scenes::metrics::compare(&drawing.picture, &reference).expect("both have the view's size");
+    let rays = RayErrors::new(scene, &job.view, &job.memory, variant.profile, job.machine.arithmetic.modes())?;
+    let result = Render::new(&job, &drawing);
+    let pixels = f64::from(result.width) * f64::from(result.height);
+    let each = |total: u64| total as f64 / pixels;
+    Ok(Measured {
+        scene: result.scene.clone(),
+        variant: variant.to_string(),
+        profile: variant.profile.name(),
+        word: variant.word,
+        rounding: variant.rounding.name(),
+        layout: variant.layout.name(),
+        bounces: variant.bounces,
+        cutoff: variant.cutoff,
+        error,
+        rays,
+        clocks: each(result.clocks),
+        operations: result.counts,
+        instructions: each(result.instructions),
+        octets: each(result.octets),
+        host_nanoseconds: has_times.then(|| host.as_nanos() as f64 / pixels),
+        formats: result.formats,
+        is_on_front: false,
+        dominated_by: None,
+    })
+}

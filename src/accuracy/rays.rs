@@ -1,0 +1,124 @@
+//! Camera rays of a picture, searched by the kernels' functions and on exact integers over the same rounded scene: the error of the formats
+//! alone.
+
+use isa::diagnostic::Report;
+use isa::number::ray::{self as exact, TriangleEnd};
+use isa::number::{Modes, Vector};
+use kernels::Profile;
+use kernels::build::Features;
+use kernels::twin::planes::Packets;
+use kernels::twin::ray::{Ray, Search};
+use kernels::twin::surface::normal;
+use kernels::twin::{Twin, report};
+use rayon::prelude::*;
+use scenes::image::{self, Options};
+use scenes::model::{Scene, View};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+/// Errors of the camera rays' hits. Units in the last place (ulp) are those of the quantity's format; null where no ray hits.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct RayErrors {
+    /// Rays that find another triangle than exact integers do, or none, or one where there is none, per million.
+    pub misclassified_per_million: f64,
+    /// Error of the distance that 99 of 100 hits stay below, ulp.
+    pub t_p99: Option<f64>,
+    /// Largest error of the distance, ulp.
+    pub t_max: Option<f64>,
+    /// Error of a component of the normal that 99 of 100 hits stay below, ulp.
+    pub normal_p99: Option<f64>,
+    /// Largest error of a component of the normal, ulp.
+    pub normal_max: Option<f64>,
+}
+
+/// What came of a ray.
+struct Ended {
+    is_right: bool,
+    /// Errors of t and of the normal, of a hit that both find.
+    errors: Option<[f64; 2]>,
+}
+
+impl RayErrors {
+    /// Measures the camera rays of a picture.
+    ///
+    /// # Errors
+    /// A scene that does not fit its formats.
+    pub fn new(
+        scene: &Scene,
+        view: &View,
+        memory: &Options,
+        profile: Profile,
+        modes: Modes,
+    ) -> Result<RayErrors, Report> {
+        let image = image::build(scene, view, memory)?;
+        let features = Features::new(scene, view, 0);
+        let twin = Twin::new(&image, &features, profile, modes).expect("an image that was built can be read");
+        let (width, height) = view.size;
+        let ended: Vec<Ended> = (0..width * height)
+            .into_par_iter()
+            .map(|pixel| end(&twin, &twin.camera_ray(pixel % width, pixel / width)))
+            .collect();
+        let wrong = ended.iter().filter(|ray| !ray.is_right).count();
+        let errors = |which: usize| {
+            let mut errors: Vec<f64> = ended.iter().filter_map(|ray| ray.errors).map(|errors| errors[which]).collect();
+            errors.sort_by(f64::total_cmp);
+            errors
+        };
+        let [t, normals] = [errors(0), errors(1)];
+        let p99 = |errors: &[f64]| errors.get((errors.len() * 99 / 100).min(errors.len().saturating_sub(1))).copied();
+        Ok(RayErrors {
+            misclassified_per_million: wrong as f64 * 1e6 / ended.len().max(1) as f64,
+            t_p99: p99(&t),
+            t_max: t.last().copied(),
+            normal_p99: p99(&normals),
+            normal_max: normals.last().copied(),
+        })
+    }
+}
+
+fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
+    let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+    let is_stuck = twin.camera_packet(ray).is_some_and(|first| twin.trace(ray, first, &mut search).is_err());
+    let expected = nearest(twin, ray);
+    let errors = match (search.triangle, expected) {
+        (Some(found), Some((t, index))) if found == index => {
+            Some([(f64::from(search.t) - t).abs(), normal_error(twin, ray.direction, index)])
+        }
+        _ => None,
+    };
+    Ended { is_right: !is_stuck && search.triangle == expected.map(|(_, index)| index), errors }
+}
+
+/// The nearest hit by exact decisions: t in units of its last place, and the triangle; of equally near ones the lowest index.
+fn nearest(twin: &Twin<Modes>, ray: &Ray) -> Option<(f64, u32)> {
+    let stage = &twin.stage;
+    let ray = exact::Ray { origin: ray.origin, direction: ray.direction };
+    let scale = f64::from(twin.constants.along()).exp2();
+    let packets = Packets::new(&stage.nodes, &stage.bounds, ray);
+    let indices = packets.flat_map(|packet| &stage.references[packet.start as usize..packet.end as usize]);
+    let hits = indices.filter_map(|&index| {
+        let met = exact::triangle(&ray, &stage.triangles[index as usize].vertices);
+        // Rounded to a unit, as the kernels do, so that ties are the same ones.
+        (met.end == TriangleEnd::Hit).then(|| (met.t as f64 / met.determinant as f64 * scale, index))
+    });
+    hits.min_by(|a, b| (a.0 + 0.5).floor().total_cmp(&(b.0 + 0.5).floor()).then(a.1.cmp(&b.1)))
+}
+
+/// The largest error of a component of a triangle's unit normal.
+fn normal_error(twin: &Twin<Modes>, direction: Vector, index: u32) -> f64 {
+    let bits = twin.constants.formats.direction;
+    let vertices = &twin.stage.triangles[index as usize].vertices;
+    let facing = match twin.profile {
+        Profile::Report => report::normal(&twin.arithmetic, bits, vertices),
+        Profile::Vector | Profile::Ray => normal(&twin.arithmetic, bits, direction, vertices).0,
+    };
+    let [a, b, c] = vertices.map(|vertex| vertex.map(i128::from));
+    let (e, f): ([i128; 3], [i128; 3]) = (std::array::from_fn(|k| b[k] - a[k]), std::array::from_fn(|k| c[k] - a[k]));
+    let exact = [0, 1, 2].map(|k| (e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]) as f64);
+    let length = exact.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let one = f64::from(bits).exp2();
+    // A normal at right angles to the ray may be turned either way; the report's is not turned yet.
+    let error =
+        |turn: f64| (0..3).map(|k| (f64::from(facing[k]) - turn * exact[k] / length * one).abs()).fold(0.0, f64::max);
+    error(1.0).min(error(-1.0))
+}

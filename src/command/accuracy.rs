@@ -1,0 +1,252 @@
+//! `lancer accuracy`: run time against error, in many arithmetics.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+use isa::diagnostic::Diagnostic;
+use isa::number::Quantization;
+use kernels::Profile;
+use scenes::layout::Layout;
+use scenes::model::View;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::accuracy::{self, Choice, Measured};
+use crate::arguments::{self, Size};
+use crate::failure::{Exit, Failure};
+use crate::table::{row, short, table};
+use crate::terminal::Terminal;
+use crate::{files, input, result};
+
+/// Version of what `--json` prints.
+pub(super) const SCHEMA: &str = "lancer-accuracy-1";
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer accuracy
+  lancer accuracy cornell terrain --words 32,24,20 --size 160x120 --csv accuracy.csv --svg accuracy.svg
+  lancer accuracy slabs --profiles ray --roundings RND,TRN,RND_CONV --bounces 5 --cutoffs 0 --json";
+
+/// Draws scenes in many arithmetics and sets clocks against error.
+///
+/// Every profile is drawn in every word length, and for each further value of another option the first profile in every
+/// word length. The first value of each option is the base. A variant is dominated when another one of the scene
+/// takes no more clocks, has no larger error, and is better in one of them; the others are the front.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct AccuracyArguments {
+    /// Scenes: .dsc or mesh files, or names of generated ones.
+    #[arg(value_name = "SCENE", default_value = "cornell")]
+    scenes: Vec<String>,
+    /// Size of the pictures in pixels.
+    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "64x48")]
+    size: Size,
+    /// Bits of a word, 8 to 32.
+    #[arg(long, value_name = "BITS,..", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(8..=32), default_value = "32,28,24,20,16")]
+    words: Vec<u32>,
+    /// Sets of kernels.
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = profile, default_value = "ray,vector,report")]
+    profiles: Vec<Profile>,
+    /// Rounding modes, by their IEEE 1666 names.
+    #[arg(long, value_name = "MODE,..", value_delimiter = ',', value_parser = rounding, default_value = "RND,TRN")]
+    roundings: Vec<Quantization>,
+    /// Structures of global memory.
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = layout, default_value = "wide,report")]
+    layouts: Vec<Layout>,
+    /// Levels of secondary rays.
+    #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=100), default_value = "5,2")]
+    bounces: Vec<u32>,
+    /// Weights that a secondary ray must exceed, in [0, 1].
+    #[arg(long, value_name = "W,..", value_delimiter = ',', value_parser = weight, default_value = "0,0.0078125")]
+    cutoffs: Vec<f64>,
+    /// Table as comma-separated values.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Chart of clocks against error with the front marked.
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Prints the results as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Adds the host's nanoseconds a pixel.
+    #[arg(long)]
+    timing: bool,
+}
+
+fn profile(text: &str) -> Result<Profile, String> {
+    Profile::from_str(text).map_err(|message| arguments::plain(&message))
+}
+
+fn layout(text: &str) -> Result<Layout, String> {
+    let names: Vec<&str> = Layout::ALL.iter().map(|layout| layout.name()).collect();
+    let found = Layout::ALL.into_iter().find(|layout| layout.name() == text);
+    found.ok_or_else(|| format!("it is one of {}", names.join(", ")))
+}
+
+fn rounding(text: &str) -> Result<Quantization, String> {
+    let names: Vec<&str> = Quantization::ALL.iter().map(|mode| mode.name()).collect();
+    Quantization::from_name(text).ok_or_else(|| format!("it is one of {}", names.join(", ")))
+}
+
+fn weight(text: &str) -> Result<f64, String> {
+    let weight = text.parse().ok().filter(|weight| (0.0..=1.0).contains(weight));
+    weight.ok_or_else(|| "a number in [0, 1] is expected".into())
+}
+
+/// Variants of pictures with their clocks and errors.
+#[derive(Serialize, JsonSchema)]
+pub(super) struct Results {
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
+    schema: &'static str,
+    /// Width of the pictures in pixels.
+    width: u32,
+    /// Height of the pictures in pixels.
+    height: u32,
+    /// Where in its pixel a ray passes, in pixels to the right of the middle and above it.
+    shift: [f64; 2],
+    /// What was measured, scene by scene.
+    variants: Vec<Measured>,
+    /// Variants that a scene does not fit, and why.
+    refused: Vec<Refused>,
+}
+
+/// A variant that a scene does not fit.
+#[derive(Serialize, JsonSchema)]
+struct Refused {
+    /// Name of the scene.
+    scene: String,
+    /// The variant in words.
+    variant: String,
+    /// Why there is no picture.
+    reason: String,
+}
+
+/// Where in a pixel its ray passes, so that rays and edges along the axes do not tie.
+const SHIFT: [f64; 2] = [0.137, 0.071];
+
+/// Draws and prints.
+pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    for target in [&arguments.csv, &arguments.svg].into_iter().flatten() {
+        files::check_target(target)?;
+    }
+    let choice = Choice {
+        profiles: arguments.profiles.clone(),
+        words: arguments.words.clone(),
+        roundings: arguments.roundings.clone(),
+        layouts: arguments.layouts.clone(),
+        bounces: arguments.bounces.clone(),
+        cutoffs: arguments.cutoffs.clone(),
+    };
+    let variants = choice.variants().ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
+    let (mut measured, mut refused) = (Vec::new(), Vec::new());
+    for name in &arguments.scenes {
+        let loaded = input::scene(name, None, Some(arguments.size))?;
+        terminal.show(&loaded.warnings);
+        let view = View { shift: SHIFT, ..View::new(arguments.size) };
+        let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
+        for variant in &variants {
+            match accuracy::measure(&loaded.scene, &view, variant, arguments.timing) {
+                Ok(one) => measured.push(one),
+                // A word that the scene does not fit, or in which a ray is stuck, is a result, not a mistake.
+                Err(Failure::Message { report, exit: Exit::Input | Exit::Trap }) => refused.push(Refused {
+                    scene: loaded.scene.name.clone(),
+                    variant: variant.to_string(),
+                    reason: report.0.iter().map(|message| message.message.as_str()).collect::<Vec<_>>().join("; "),
+                }),
+                Err(failure) => return Err(failure),
+            }
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+    }
+    accuracy::rank(&mut measured);
+    if let Some(path) = &arguments.csv {
+        files::write(path, csv(&measured).as_bytes())?;
+    }
+    if let Some(path) = &arguments.svg {
+        files::write(path, accuracy::svg(&measured).as_bytes())?;
+    }
+    let (width, height) = arguments.size;
+    let results = Results { schema: SCHEMA, width, height, shift: SHIFT, variants: measured, refused };
+    terminal.print(&if arguments.json { result::json(&results) } else { text(&results) })?;
+    Ok(Exit::Done)
+}
+
+fn decibels(psnr: Option<f64>) -> String {
+    psnr.map_or_else(|| "-".into(), |psnr| format!("{psnr:.1}"))
+}
+
+fn text(results: &Results) -> String {
+    let mut scenes: Vec<&str> = results.variants.iter().map(|one| one.scene.as_str()).collect();
+    scenes.dedup();
+    let mut text = String::new();
+    for scene in scenes {
+        let _ = writeln!(
+            text,
+            "{scene}, {} x {} pixels; clocks and octets a pixel, * on the front",
+            results.width, results.height
+        );
+        let mut rows =
+            vec![row(["variant", "clocks", "octets", "PSNR", "off", "wrong/M", "t p99", "N p99", "dominated by"])];
+        for one in results.variants.iter().filter(|one| one.scene == scene) {
+            let ulp = |error: Option<f64>| error.map_or_else(|| "-".into(), |error| format!("{error:.2}"));
+            rows.push(vec![
+                format!("{}{}", if one.is_on_front { "* " } else { "  " }, one.variant),
+                short(one.clocks.round() as u64),
+                short(one.octets.round() as u64),
+                decibels(one.error.psnr_db),
+                one.error.off_pixels.to_string(),
+                format!("{:.0}", one.rays.misclassified_per_million),
+                ulp(one.rays.t_p99),
+                ulp(one.rays.normal_p99),
+                one.dominated_by.clone().unwrap_or_default(),
+            ]);
+        }
+        text += &table(rows);
+        text.push('\n');
+    }
+    for Refused { scene, variant, reason } in &results.refused {
+        let _ = writeln!(text, "{scene}, {variant}: {reason}");
+    }
+    text
+}
+
+fn csv(measured: &[Measured]) -> String {
+    let mut text = String::from(
+        "scene,variant,profile,word,rounding,layout,bounces,cutoff,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,\
+         misclassified_per_million,t_p99,t_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
+    );
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
+    for one in measured {
+        let cells = [
+            quoted(&one.scene),
+            quoted(&one.variant),
+            one.profile.to_owned(),
+            one.word.to_string(),
+            one.rounding.to_owned(),
+            one.layout.to_owned(),
+            one.bounces.to_string(),
+            one.cutoff.to_string(),
+            one.clocks.to_string(),
+            one.instructions.to_string(),
+            one.octets.to_string(),
+            one.error.rmse.to_string(),
+            number(one.error.psnr_db),
+            one.error.max.to_string(),
+            one.error.off_pixels.to_string(),
+            one.rays.misclassified_per_million.to_string(),
+            number(one.rays.t_p99),
+            number(one.rays.t_max),
+            number(one.rays.normal_p99),
+            number(one.rays.normal_max),
+            number(one.host_nanoseconds),
+            quoted(one.dominated_by.as_deref().unwrap_or("")),
+        ];
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}

@@ -4,8 +4,8 @@
 .func driver
     begin_triangles
     movi  s23, ONE / 64
-    store_triangles 1, SURFACE, step_z SURFACE
-    store_triangles PACKET - 1, ASIDE, step_z ASIDE
+    store_triangles 1, SURFACE, "step_z SURFACE"
+    store_triangles PACKET - 1, ASIDE, "step_z ASIDE"
     root_packet
     lv    origin, START(s0)
     lv    direction, WAY(s0)

@@ -3,7 +3,7 @@
 .func driver
     begin_triangles
     movi  s23, ONE / 64
-    store_triangles PACKET, PATTERN, step_z PATTERN
+    store_triangles PACKET, PATTERN, "step_z PATTERN"
     lv    origin, ABOVE(s0)
     lv    direction, DOWN(s0)
     li    near_t, NEVER

@@ -5,9 +5,9 @@
 .func driver
     begin_triangles
     movi  s23, -2 * ONE / 5
-    store_triangles 5, SURFACE, step_z SURFACE
+    store_triangles 5, SURFACE, "step_z SURFACE"
     movi  s23, ONE / 64
-    store_triangles PACKET - 5, ASIDE, step_z ASIDE
+    store_triangles PACKET - 5, ASIDE, "step_z ASIDE"
     root_packet
     lv    origin, START(s0)
     lv    direction, WAY(s0)

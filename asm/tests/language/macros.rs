@@ -1,5 +1,9 @@
 //! What is written once and read often: repetitions and macros.
 
+use asm::{Options, assemble};
+use isa::Isa;
+use isa::diagnostic::Source;
+
 use super::{code, program};
 
 #[test]

@@ -41,7 +41,7 @@ use std::sync::Arc;
 use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
 
-pub use disassembly::disassemble;
+pub use disassembly::{disassemble, disassemble_program};
 pub use listing::listing;
 pub use map::{MapEntry, NameKind, symbol_map};
 

@@ -58,6 +58,29 @@ fn tried(text: &str) -> Attempt {
 }
 
 #[test]
+fn a_program_comes_back_from_its_text_with_data_names_and_entry() {
+    let text = "nop\n.func L0\nadd s1, s2, s3\nret s31\n.endfunc\n.func start\ncall s31, L0\n1: beqz s1, 1b\nhalt\n.endfunc\n\
+                .func other\nhalt\n.endfunc\n.entry other\n.buffer\n.byte 1, 2\n.space 20, 7\n";
+    let assembled = |text: &str| {
+        let source = Source::new("t.s", text);
+        asm::assemble(&source, &Isa::base(), &Options::default()).unwrap().program
+    };
+    let program = assembled(text);
+    let shown = asm::disassemble_program(&program, &Isa::base());
+    for line in [
+        "    .entry other\n",
+        "L0:\n    add s1, s2, s3",
+        "start:\n    call s31, L0",
+        "L1:\n    beq s1, s0, L1",
+        "    .buffer\n    .byte 0x01, 0x02, 0x07",
+    ] {
+        assert!(shown.contains(line), "{line}\n{shown}");
+    }
+    let again = assembled(&shown);
+    assert_eq!((again.words, again.buffer, again.entry), (program.words, program.buffer, program.entry));
+}
+
+#[test]
 fn the_listing_shows_lines_words_and_expansions() {
     insta::assert_snapshot!(listing(&tried(PROGRAM)));
 }

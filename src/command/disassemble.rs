@@ -16,7 +16,7 @@ Examples:
   lancer disassemble first.hex -o again.s
   lancer assemble first.s -o first.bin && lancer disassemble first.bin";
 
-/// Shows the instructions of a program's file. The text assembles to the same words.
+/// Shows the instructions and data of a program's file. The text assembles to the same words and octets.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct DisassembleArguments {
@@ -35,7 +35,7 @@ pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal)
         Some(program) => program,
         None => ProgramFile::Binary.load(&arguments.file)?,
     };
-    let text = asm::disassemble(&program.words, &Isa::base());
+    let text = asm::disassemble_program(&program, &Isa::base());
     match &arguments.output {
         Some(path) => files::write(path, text.as_bytes())?,
         None => terminal.print(&text)?,

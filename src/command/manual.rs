@@ -58,7 +58,9 @@ pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> R
 fn man_page() -> String {
     let mut command = Lancer::command();
     command.build();
-    let mut page = rendered(|out| Man::new(command.clone()).render(out));
+    let page = rendered(|out| Man::new(command.clone()).render(out)).replace(".SH EXTRA", ".SH EXAMPLES");
+    // There are no pages of their own for the commands: their sections follow.
+    let mut page = with_values(&command, &page).replace("lancer\\-", "lancer ").replace("(1)\n", "\n");
     for command in command.get_subcommands() {
         add_section(command, &mut page);
     }
@@ -79,6 +81,7 @@ fn add_section(command: &Command, page: &mut String) {
         }
         man.render_extra_section(out)
     });
+    let text = with_values(command, &text);
     page.push_str(&format!(".SH \"{}\"\n", name.to_uppercase()));
     // Sections of a command are below its own, and each begins with the same definitions.
     let lines = text.lines().filter(|line| !line.starts_with(".ie") && !line.starts_with(".el"));
@@ -86,6 +89,18 @@ fn add_section(command: &Command, page: &mut String) {
     for command in command.get_subcommands() {
         add_section(command, page);
     }
+}
+
+/// The page with the names of the options' values in its synopsis, which has the bare options.
+fn with_values(command: &Command, page: &str) -> String {
+    let mut page = page.to_owned();
+    for option in command.get_opts() {
+        let (Some(name), Some([value, ..])) = (option.get_long(), option.get_value_names()) else { continue };
+        let bare = format!("\\fB\\-\\-{}\\fR]", name.replace('-', "\\-"));
+        let full = format!("{} \\fI{}\\fR]", bare.trim_end_matches(']'), value.replace('-', "\\-"));
+        page = page.replacen(&bare, &full, 1);
+    }
+    page
 }
 
 fn rendered(render: impl FnOnce(&mut Vec<u8>) -> std::io::Result<()>) -> String {

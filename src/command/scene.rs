@@ -14,9 +14,9 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  lancer scene generate cornell -o scenes
-  lancer scene info scenes/cornell.dsc
-  lancer scene convert scenes/cornell.dsc room.obj";
+  lancer scene generate cornell -o rooms
+  lancer scene info rooms/cornell.dsc
+  lancer scene convert rooms/cornell.dsc room.obj";
 
 /// Generates scenes, says what is in them, and converts them.
 #[derive(Args, Debug)]

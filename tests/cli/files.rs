@@ -10,8 +10,11 @@ fn a_missing_folder_is_an_error_with_a_hint_before_any_work() {
     // The mere kd tree of this scene would take minutes.
     session.fail("render terrain --size 2000x2000 -o no/such/a.png", 1, "mkdir -p no/such");
     session.fail(&format!("{TINY} -o a.png --heat no/b.png"), 1, "there is no folder no for no/b.png");
-    session.fail("scene generate triangle -o no", 1, "mkdir -p no");
+    session.fail("scene generate triangle -o no/such", 1, "mkdir -p no");
     assert!(session.names().is_empty());
+    session.succeed("scene generate triangle -o new");
+    session.fail("scene generate triangle -o new/triangle.off", 1, "`-o` names the folder");
+    assert!(session.path("new/triangle.dsc").is_file());
 }
 
 #[test]

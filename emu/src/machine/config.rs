@@ -1,12 +1,14 @@
 //! The machine as a file describes it: every key with its unit and where its default comes from.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use isa::diagnostic::{Diagnostic, Place, Report, Source, did_you_mean};
 use isa::number::{Modes, Overflow, Quantization};
 use isa::{Class, Counts};
 use serde::{Deserialize, Serialize};
+use toml::de::{DeTable, DeValue};
 
 use super::arbiter::ArbiterKind;
 use crate::quantity::{Clocks, Octets};
@@ -305,7 +307,7 @@ impl Config {
     pub fn parse(source: &Arc<Source>) -> Result<Config, Report> {
         let config: Config = toml::from_str(&source.text).map_err(|error| {
             let first_line = error.message().lines().next().unwrap_or_default().to_owned();
-            let mut message = Diagnostic::error(first_line.clone());
+            let mut message = Diagnostic::error(plain(&first_line));
             if let Some(span) = error.span() {
                 message = message.at(Place::new(source, span), "");
             }
@@ -318,8 +320,12 @@ impl Config {
             }
             Report::from(message)
         })?;
-        config.check()?;
-        Ok(config)
+        let shown = |(key, message): (String, Diagnostic)| match span(&source.text, &key) {
+            Some(span) => message.at(Place::new(source, span), "out of its range"),
+            None => message,
+        };
+        let wrong: Vec<Diagnostic> = config.out_of_range().into_iter().map(shown).collect();
+        if wrong.is_empty() { Ok(config) } else { Err(Report(wrong)) }
     }
 
     /// Whether every number lies in its range.
@@ -327,10 +333,18 @@ impl Config {
     /// # Errors
     /// One message for each that does not.
     pub fn check(&self) -> Result<(), Report> {
+        let messages: Vec<Diagnostic> = self.out_of_range().into_iter().map(|(_, message)| message).collect();
+        if messages.is_empty() { Ok(()) } else { Err(Report(messages)) }
+    }
+
+    /// The keys whose numbers are out of their ranges, with what to say about each.
+    fn out_of_range(&self) -> Vec<(String, Diagnostic)> {
         let mut messages = Vec::new();
         let mut check = |key: &str, value: u64, least: u64, most: u64| {
             if !(least..=most).contains(&value) {
-                messages.push(Diagnostic::error(format!("`{key}` is {value}, but must lie in {least}..={most}")));
+                let message = Diagnostic::error(format!("`{key}` is {value}, but must lie in {least}..={most}"));
+                let nearest = value.clamp(least, most);
+                messages.push((key.to_owned(), message.hint(format!("the nearest possible value is {nearest}"))));
             }
         };
         check("cores", self.cores.into(), 1, MOST_CORES.into());
@@ -360,13 +374,48 @@ impl Config {
         check("cache.line_octets", self.cache.line_octets.into(), 1, MOST_BUFFER_OCTETS.into());
         check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("main.step_limit", self.main.step_limit, 1, 1 << 62);
-        if messages.is_empty() { Ok(()) } else { Err(Report(messages)) }
+        messages
     }
 
     /// The machine as a file with every key.
     pub fn text(&self) -> String {
         toml::to_string(self).expect("a machine has nothing that TOML cannot hold")
     }
+}
+
+/// Where the value of a key such as `bus.weights[2]` stands in a file.
+fn span(text: &str, key: &str) -> Option<Range<usize>> {
+    let document = DeTable::parse(text).ok()?;
+    let mut table = document.get_ref();
+    let mut found = None;
+    for part in key.split('.') {
+        let part = part.split(['[', '\'']).next()?;
+        let (_, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
+        found = Some(value.span());
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => break,
+        }
+    }
+    found
+}
+
+/// A message of the TOML reader about a value of the wrong type, without the names of types of Rust.
+fn plain(message: &str) -> String {
+    let wrong = ["invalid type: ", "invalid value: "].iter().find_map(|start| message.strip_prefix(start));
+    let Some((found, wanted)) = wrong.and_then(|rest| rest.split_once(", expected ")) else {
+        return message.to_owned();
+    };
+    let wanted = match wanted {
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0",
+        "a boolean" => "true or false",
+        "a string" => "a text in quotation marks",
+        "a sequence" => "a list in brackets",
+        wanted if wanted.starts_with("struct ") || wanted.starts_with("a map") => "a table",
+        wanted => wanted,
+    };
+    let found = found.replace("string ", "text ").replace("integer ", "number ").replace("floating point ", "number ");
+    format!("{wanted} is expected, not {}", found.replace("sequence", "a list").replace("map", "a table"))
 }
 
 #[cfg(test)]
@@ -406,7 +455,13 @@ mod tests {
             ("[arithmetic]\nquantization = \"RNG\"", "m.toml:2:16", "did you mean `RND`?"),
             ("cores = \"four\"", "m.toml:1:9", ""),
             ("cores = ", "m.toml:1", ""),
-            ("cores = -1", "m.toml:1:9", ""),
+            ("cores = -1", "m.toml:1:9", "a whole number from 0 is expected, not number `-1`"),
+            ("\ncores = \"4\"", "m.toml:2:9", "a whole number from 0 is expected, not text \"4\""),
+            ("[bus]\noverlap = 1", "m.toml:2:11", "true or false is expected, not number `1`"),
+            ("[bus]\nweights = [1, 0]", "m.toml:2:11", "must lie in 1..="),
+            ("bus = 3", "m.toml:1:7", "a table is expected"),
+            ("\ncores = 999", "m.toml:2:9", "the nearest possible value is 256"),
+            ("[arithmetic]\nword = 99 # bits", "m.toml:2:8", "the nearest possible value is 32"),
         ] {
             let shown = parse(text).expect_err(text);
             assert!(shown.contains(place) && shown.contains(hint), "{text}\n{shown}");

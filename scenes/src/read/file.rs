@@ -13,7 +13,7 @@ const LARGEST: u64 = 256 << 20;
 
 /// All octets of a file.
 ///
-/// Errors: it is missing (with a name nearby that may be meant), no file, too large, or cannot be read.
+/// Errors: it is missing (with a name nearby that may be meant), a folder, too large, or cannot be read.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     let shown = path.display();
     let metadata = fs::metadata(path).map_err(|error| refusal(path, &error))?;
@@ -26,14 +26,12 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
         };
         return Err(error.hint(hint).into());
     }
-    if !metadata.is_file() {
-        return Err(Diagnostic::error(format!("{shown} is not a regular file")).into());
-    }
     let too_large = || Diagnostic::error(format!("{shown} is larger than {} MiB", LARGEST >> 20));
     if metadata.len() > LARGEST {
         return Err(too_large().into());
     }
     let file = fs::File::open(path).map_err(|error| refusal(path, &error))?;
+    // Pipes and terminals have no length: they are read up to their end, or the limit.
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| refusal(path, &error))?;
     if bytes.len() as u64 > LARGEST { Err(too_large().into()) } else { Ok(bytes) }

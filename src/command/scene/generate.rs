@@ -1,10 +1,10 @@
 //! `lancer scene generate`: a scene made by the program, as files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use isa::diagnostic::Diagnostic;
+use isa::diagnostic::{Diagnostic, Report};
 use scenes::generate::{self, Options, SCENES};
 use scenes::write;
 
@@ -17,7 +17,7 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   lancer scene generate cornell
-  lancer scene generate terrain --triangles 5000 -o scenes
+  lancer scene generate terrain --triangles 5000 -o rooms
   lancer scene generate sphereflake --level 3 --size 640x480";
 
 /// Writes a scene as NAME.dsc and NAME.off, the same octets on every run.
@@ -27,7 +27,7 @@ pub struct GenerateArguments {
     /// Scene.
     #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(names()))]
     name: String,
-    /// Folder for the files [default: the current one].
+    /// Folder for the files; it is made where only the last part of its path is missing [default: the current one].
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
     /// Fineness, for scenes that have one: what it counts and its range depend on the scene.
@@ -63,19 +63,39 @@ fn settings(title: &str, known: impl Iterator<Item = (&'static str, &'static gen
     title.to_owned() + &known.map(line).collect::<String>()
 }
 
+/// Refuses a file in the place of the folder.
+fn check_folder(folder: &Path) -> Result<(), Report> {
+    if folder.as_os_str().is_empty() || folder.is_dir() {
+        return Ok(());
+    }
+    let message = Diagnostic::error(format!("{} is a file, not a folder", folder.display()));
+    Err(message.hint("`-o` names the folder for NAME.dsc and NAME.off").into())
+}
+
 /// Generates and writes.
 pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let options = Options { level: arguments.level, triangles: arguments.triangles, size: arguments.size };
     let folder = arguments.output.clone().unwrap_or_default();
     let paths = ["dsc", "off"].map(|extension| folder.join(format!("{}.{extension}", arguments.name)));
-    for path in &paths {
-        files::check_target(path)?;
+    let is_new = !folder.as_os_str().is_empty() && !folder.exists();
+    if is_new {
+        // Made when the scene is there; the folder around it must exist.
+        files::check_target(&folder)?;
+    } else {
+        check_folder(&folder)?;
+        for path in &paths {
+            files::check_target(path)?;
+        }
     }
     let scene = generate::scene(&arguments.name, &options)?;
     let (mut description, mut mesh) = (Vec::new(), Vec::new());
     let written = write::dsc(&scene, &mut description).and_then(|()| write::off(&scene, &mut mesh));
     written.map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
     let [description_path, mesh_path] = &paths;
+    if is_new {
+        let refusal = |error| Diagnostic::error(format!("the folder {} cannot be made: {error}", folder.display()));
+        std::fs::create_dir(&folder).map_err(refusal)?;
+    }
     // The mesh first: a .dsc without its mesh would be no scene.
     files::write_all(&[(mesh_path, &mesh), (description_path, &description)])?;
     terminal.print(&format!("{} and {}: {}\n", description_path.display(), mesh_path.display(), parts(&scene)))?;

@@ -51,6 +51,11 @@ impl Numbers<'_> {
         self.all.len() - self.rest.len()
     }
 
+    /// Offset of the number that was read last.
+    fn before(&self) -> usize {
+        self.at() - 4
+    }
+
     fn whole(&mut self, what: impl Fn() -> String) -> Result<u32, String> {
         let parsed: IResult<&[u8], u32> = be_u32.parse(self.rest);
         let (rest, value) =
@@ -84,7 +89,8 @@ impl Numbers<'_> {
         }
         let other = count.swap_bytes() as usize;
         let hint = if other <= most { format!("; the least octet first it would be {other}") } else { String::new() };
-        Err(format!("{count} {what} are announced, but the rest of the file has room for {most} at most{hint}"))
+        let room = format!("the rest of the file, from octet {} on, has room for {most} at most", self.at());
+        Err(format!("{count} {what} are announced, but {room}{hint}"))
     }
 }
 
@@ -93,7 +99,8 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
     if binary.has_dimension {
         let dimension = numbers.whole(|| "the dimension".to_string())?;
         if !(1..=DIMENSIONS).contains(&dimension) {
-            return Err(format!("the dimension must be 1 to {DIMENSIONS}, not {dimension}"));
+            let at = numbers.before();
+            return Err(format!("the dimension must be 1 to {DIMENSIONS}, not {dimension} (octet {at})"));
         }
         header.components = dimension as usize + usize::from(header.is_homogeneous);
     }
@@ -111,7 +118,8 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
             *slot = numbers.real(|| format!("a number of vertex {n} of {points}"))?;
         }
         let point = position(&header, &row[..header.components]);
-        vertices.push(point.ok_or_else(|| format!("vertex {n} lies at infinity: its last number is 0"))?);
+        let at = numbers.before();
+        vertices.push(point.ok_or_else(|| format!("vertex {n} lies at infinity: its last number is 0 (octet {at})"))?);
     }
     let mut faces = Faces::with_room(numbers.room(polygons, 8, "faces")?);
     let mut corners = Vec::new();
@@ -121,14 +129,16 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
         for k in 0..size {
             let number = numbers.whole(|| format!("corner {} of the {size} of face {n}", k + 1))?;
             if number >= points {
-                return Err(format!("face {n} has vertex {number}, but there are {points} vertices, counted from 0"));
+                let (at, all) = (numbers.before(), counted(points as usize, "vertex", "vertices"));
+                return Err(format!("face {n} has vertex {number} of {all}, counted from 0 (octet {at})"));
             }
             corners.push(number);
         }
         let components = numbers.whole(|| format!("the number of colour components of face {n}"))?;
         let mut values = [0.0; 4];
-        let Some(values) = values.get_mut(..components as usize) else {
-            return Err(format!("face {n} has {components} colour components; a colour has 0, 1, 3 or 4"));
+        let Some(values) = values.get_mut(..components as usize).filter(|values| values.len() != 2) else {
+            let at = numbers.before();
+            return Err(format!("face {n} has {components} colour components; a colour has 0, 1, 3 or 4 (octet {at})"));
         };
         for value in values.iter_mut() {
             *value = numbers.real(|| format!("a colour component of face {n}"))?;
@@ -142,7 +152,37 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
     }
     if !numbers.rest.is_empty() {
         let rest = counted(numbers.rest.len(), "octet follows", "octets follow");
-        return Err(format!("{rest} the last of {polygons} faces"));
+        return Err(format!("{rest} the last face, from octet {} on", numbers.at()));
     }
     Ok(faces.into_mesh(name, vertices, None))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::read::off;
+
+    /// The message about a triangle whose face has these numbers behind its corners.
+    fn refusal(behind: &[u32], last_corner: u32) -> String {
+        let mut bytes = b"OFF BINARY\n".to_vec();
+        [3, 1, 0].iter().for_each(|count: &u32| bytes.extend(count.to_be_bytes()));
+        [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|x| bytes.extend(x.to_be_bytes()));
+        [3, 0, 1, last_corner].iter().chain(behind).for_each(|number| bytes.extend(number.to_be_bytes()));
+        off::parse(bytes, "a.off").map_or_else(|report| report.render(false), |_| String::new())
+    }
+
+    #[test]
+    fn messages_say_the_octet() {
+        let one = 1f32.to_bits();
+        assert_eq!(refusal(&[0], 2), "");
+        assert_eq!(refusal(&[3, one, one, one], 2), "");
+        for (behind, last_corner, message) in [
+            (&[2, one, one][..], 2, "2 colour components; a colour has 0, 1, 3 or 4 (octet 75)"),
+            (&[5, 0, 0, 0, 0, 0], 2, "5 colour components; a colour has 0, 1, 3 or 4 (octet 75)"),
+            (&[0], 3, "face 0 has vertex 3 of 3 vertices, counted from 0 (octet 71)"),
+            (&[0, 0], 2, "4 octets follow the last face, from octet 79 on"),
+        ] {
+            let shown = refusal(behind, last_corner);
+            assert!(shown.contains(message), "{message}\n{shown}");
+        }
+    }
 }

@@ -157,7 +157,10 @@ fn faces<'a>(
     let mut colours = Colours::default();
     for n in 0..polygons.0 {
         let Some(word) = words.next() else {
-            let error = Diagnostic::error(format!("the file ends after {n} of {} faces", polygons.0));
+            let error = Diagnostic::error(format!(
+                "the file ends after {n} of {}",
+                counted(polygons.0 as usize, "face", "faces")
+            ));
             let error = error.at(words.end(), "the end");
             words.complain(error.also(words.place(polygons.1.span()), "the number of faces"));
             return None;
@@ -274,7 +277,9 @@ impl Colours {
 fn trailing(words: &mut Words<'_>, points: Count<'_>, polygons: Count<'_>) -> bool {
     let Some(word) = words.next() else { return false };
     let place = words.place(word.span());
-    let message = format!("the file goes on after {} vertices and {} faces", points.0, polygons.0);
+    let (vertices, faces) =
+        (counted(points.0 as usize, "vertex", "vertices"), counted(polygons.0 as usize, "face", "faces"));
+    let message = format!("the file goes on after {vertices} and {faces}");
     let announced = words.place(points.1.start..polygons.1.span().end);
     let is_number = word.text.parse::<f64>().is_ok();
     words.complain(if is_number {

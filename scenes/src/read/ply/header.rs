@@ -91,7 +91,13 @@ pub(super) fn read<'a>(words: &mut Words<'a>) -> Option<(Header, Vec<Element<'a>
         }
         match word.text {
             "format" if has_format => words.refuse(word, "the format is there twice", "again"),
-            "format" => has_format = true,
+            "format" => {
+                has_format = true;
+                if let Some(version) = parts.get(2).filter(|version| version.text != "1.0") {
+                    let message = format!("the version of the format is `{}`", shortened(version.text));
+                    words.refuse(*version, message, "only 1.0 can be read");
+                }
+            }
             "element" => {
                 words.whole(parts[2], || format!("the number of elements `{}`", shortened(parts[1].text)));
                 if elements.iter().any(|(name, ..)| name.text == parts[1].text) {

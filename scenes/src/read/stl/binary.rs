@@ -37,7 +37,8 @@ pub(super) fn parse(bytes: Cow<'_, [u8]>, name: &str) -> Result<Mesh, Report> {
     };
     let room = (bytes.len() - HEADER) / TRIANGLE;
     if count > room {
-        let message = format!("{count} triangles are announced (octet 80), but the file has room for {room}");
+        let announced = counted(count, "triangle is announced", "triangles are announced");
+        let message = format!("{announced} (octet 80), but the file has room for {room}");
         let error = Diagnostic::error(format!("{name}: {message}"));
         return Err(match count.checked_sub(room) {
             Some(1) => error.hint(format!("it ends at octet {} within the last one", bytes.len())).into(),
@@ -48,7 +49,7 @@ pub(super) fn parse(bytes: Cow<'_, [u8]>, name: &str) -> Result<Mesh, Report> {
     let mut warnings = Vec::new();
     if rest > 0 {
         let rest = counted(rest, "octet is", "octets are");
-        warnings.push(Diagnostic::warning(format!("{name}: {rest} not read, behind the last of {count} triangles")));
+        warnings.push(Diagnostic::warning(format!("{name}: {rest} not read, behind the last triangle")));
     }
     let triangles = bytes[HEADER..].chunks_exact(TRIANGLE).take(count);
     let attributed = triangles.filter(|triangle| triangle[48..] != [0; 2]).count();

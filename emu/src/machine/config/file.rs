@@ -1,0 +1,195 @@
+//! A machine's file: read with places and hints, checked, and written with every key.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use isa::Class;
+use isa::diagnostic::{Diagnostic, Place, Report, Source, did_you_mean};
+use toml::de::{DeTable, DeValue};
+
+use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES};
+use crate::machine::arbiter::ArbiterKind;
+
+impl Config {
+    /// Reads a machine file; keys that it leaves out have their defaults.
+    ///
+    /// # Errors
+    /// A file that is not TOML, a key that does not exist, a value out of its range.
+    pub fn parse(source: &Arc<Source>) -> Result<Config, Report> {
+        let config: Config = toml::from_str(&source.text).map_err(|error| {
+            let first_line = error.message().lines().next().unwrap_or_default().to_owned();
+            let mut message = Diagnostic::error(plain(&first_line));
+            if let Some(span) = error.span() {
+                message = message.at(Place::new(source, span), "");
+            }
+            let mut quoted = first_line.split('`').skip(1).step_by(2);
+            if first_line.contains("unknown")
+                && let Some(wrong) = quoted.next()
+                && let Some(near) = did_you_mean(wrong, quoted)
+            {
+                message = message.hint(format!("did you mean `{near}`?"));
+            }
+            Report::from(message)
+        })?;
+        let shown = |(key, message): (String, Diagnostic)| match span(&source.text, &key) {
+            Some(span) => message.at(Place::new(source, span), "out of its range"),
+            None => message,
+        };
+        let wrong: Vec<Diagnostic> = config.out_of_range().into_iter().map(shown).collect();
+        if wrong.is_empty() { Ok(config) } else { Err(Report(wrong)) }
+    }
+
+    /// Whether every number lies in its range.
+    ///
+    /// # Errors
+    /// One message for each that does not.
+    pub fn check(&self) -> Result<(), Report> {
+        let messages: Vec<Diagnostic> = self.out_of_range().into_iter().map(|(_, message)| message).collect();
+        if messages.is_empty() { Ok(()) } else { Err(Report(messages)) }
+    }
+
+    /// The keys whose numbers are out of their ranges, with what to say about each.
+    fn out_of_range(&self) -> Vec<(String, Diagnostic)> {
+        let mut messages = Vec::new();
+        let mut check = |key: &str, value: u64, least: u64, most: u64| {
+            if !(least..=most).contains(&value) {
+                let message = Diagnostic::error(format!("`{key}` is {value}, but must lie in {least}..={most}"));
+                let nearest = value.clamp(least, most);
+                messages.push((key.to_owned(), message.hint(format!("the nearest possible value is {nearest}"))));
+            }
+        };
+        check("cores", self.cores.into(), 1, MOST_CORES.into());
+        check("clock_hz", self.clock_hz, 1, 1_000_000_000_000);
+        check("buffer_octets", self.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("step_limit", self.step_limit, 1, 1 << 62);
+        check("arithmetic.word", self.arithmetic.word.into(), 8, 32);
+        for &class in Class::ALL {
+            check(&format!("clocks.{}", class.name()), self.clocks.0[class], 0, MOST_CLOCKS);
+            check(&format!("units.{}", class.name()), self.units.0[class], 1, MOST_CLOCKS);
+        }
+        check("bus.octets_per_beat", self.bus.octets_per_beat, 1, MOST_CLOCKS);
+        check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
+        check("bus.setup_clocks", self.bus.setup_clocks, 0, MOST_CLOCKS);
+        check("bus.burst_octets", self.bus.burst_octets, 0, MOST_BUFFER_OCTETS.into());
+        let slot = if self.bus.arbiter == ArbiterKind::Tdma {
+            self.bus.setup_clocks.saturating_add(self.bus.clocks_per_beat)
+        } else {
+            1
+        };
+        check("bus.slot_clocks", self.bus.slot_clocks, slot, 4 * MOST_CLOCKS);
+        for (master, &weight) in self.bus.weights.iter().enumerate() {
+            check(&format!("bus.weights[{master}]"), weight.into(), 1, MOST_CLOCKS);
+        }
+        check("bus.weights' length", self.bus.weights.len() as u64, 0, u64::from(MOST_CORES) + 1);
+        check("cache.octets", self.cache.octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("cache.line_octets", self.cache.line_octets.into(), 1, MOST_BUFFER_OCTETS.into());
+        check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
+        check("main.step_limit", self.main.step_limit, 1, 1 << 62);
+        messages
+    }
+
+    /// The machine as a file with every key.
+    pub fn text(&self) -> String {
+        toml::to_string(self).expect("a machine has nothing that TOML cannot hold")
+    }
+}
+
+/// Where the value of a key such as `bus.weights[2]` stands in a file.
+fn span(text: &str, key: &str) -> Option<Range<usize>> {
+    let document = DeTable::parse(text).ok()?;
+    let mut table = document.get_ref();
+    let mut found = None;
+    for part in key.split('.') {
+        let part = part.split(['[', '\'']).next()?;
+        let (_, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
+        found = Some(value.span());
+        match value.get_ref() {
+            DeValue::Table(inner) => table = inner,
+            _ => break,
+        }
+    }
+    found
+}
+
+/// A message of the TOML reader about a value of the wrong type, without the names of types of Rust.
+fn plain(message: &str) -> String {
+    let wrong = ["invalid type: ", "invalid value: "].iter().find_map(|start| message.strip_prefix(start));
+    let Some((found, wanted)) = wrong.and_then(|rest| rest.split_once(", expected ")) else {
+        return message.to_owned();
+    };
+    let wanted = match wanted {
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0",
+        "a boolean" => "true or false",
+        "a string" => "a text in quotation marks",
+        "a sequence" => "a list in brackets",
+        wanted if wanted.starts_with("struct ") || wanted.starts_with("a map") => "a table",
+        wanted => wanted,
+    };
+    let found = found.replace("string ", "text ").replace("integer ", "number ").replace("floating point ", "number ");
+    format!("{wanted} is expected, not {}", found.replace("sequence", "a list").replace("map", "a table"))
+}
+
+#[cfg(test)]
+mod tests {
+    use isa::number::Quantization;
+
+    use super::*;
+    use crate::quantity::{Clocks, Octets};
+
+    fn parse(text: &str) -> Result<Config, String> {
+        Config::parse(&Source::new("m.toml", text)).map_err(|report| report.render(false))
+    }
+
+    #[test]
+    fn what_a_file_leaves_out_is_the_reports() {
+        assert_eq!(parse(""), Ok(Config::default()));
+        let config = parse("cores = 8\n[clocks]\ndiv = 16\n[bus]\noctets_per_beat = 4\n").expect("it is right");
+        assert_eq!((config.cores, config.clocks.0[Class::Div], config.clocks.0[Class::Mul]), (8, 16, 1));
+        assert_eq!(config.bus.length(Octets(31)), Clocks(16));
+        assert_eq!(Config::default().bus.length(Octets(31)), Clocks(62));
+    }
+
+    #[test]
+    fn the_effective_machine_reads_back_as_itself() {
+        let mut config = Config::default();
+        config.arithmetic.quantization = Quantization::TrnZero;
+        config.units.0[Class::Mul] = 3;
+        config.main.traffic = false;
+        assert_eq!(parse(&config.text()), Ok(config));
+        assert_eq!(parse(&Config::default().text()), Ok(Config::default()));
+    }
+
+    #[test]
+    fn mistakes_are_shown_with_place_and_suggestion() {
+        for (text, place, hint) in [
+            ("core = 3", "m.toml:1:1", "did you mean `cores`?"),
+            ("\n[bus]\nclocks_per_bet = 3", "m.toml:3:1", "did you mean `clocks_per_beat`?"),
+            ("[bus]\narbiter = \"round-robbin\"", "m.toml:2:11", "did you mean `round-robin`?"),
+            ("[clocks]\nmull = 3", "m.toml", "did you mean `mul`?"),
+            ("[arithmetic]\nquantization = \"RNG\"", "m.toml:2:16", "did you mean `RND`?"),
+            ("cores = \"four\"", "m.toml:1:9", ""),
+            ("cores = ", "m.toml:1", ""),
+            ("cores = -1", "m.toml:1:9", "a whole number from 0 is expected, not number `-1`"),
+            ("\ncores = \"4\"", "m.toml:2:9", "a whole number from 0 is expected, not text \"4\""),
+            ("[bus]\noverlap = 1", "m.toml:2:11", "true or false is expected, not number `1`"),
+            ("[bus]\nweights = [1, 0]", "m.toml:2:11", "must lie in 1..="),
+            ("bus = 3", "m.toml:1:7", "a table is expected"),
+            ("\ncores = 999", "m.toml:2:9", "the nearest possible value is 256"),
+            ("[arithmetic]\nword = 99 # bits", "m.toml:2:8", "the nearest possible value is 32"),
+        ] {
+            let shown = parse(text).expect_err(text);
+            assert!(shown.contains(place) && shown.contains(hint), "{text}\n{shown}");
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_their_range_are_all_named() {
+        let text = "cores = 0\nbuffer_octets = 4000000000\n[arithmetic]\nword = 7\n[units]\nmul = 0\n\
+                    [bus]\nclocks_per_beat = 0\n";
+        let shown = parse(text).expect_err("nothing is right");
+        for key in ["`cores` is 0", "`buffer_octets`", "`arithmetic.word` is 7", "`units.mul`", "`bus.clocks_per_beat`"]
+        {
+            assert!(shown.contains(key), "{key}\n{shown}");
+        }
+    }
+}

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use emu::machine::Config;
+use isa::Isa;
 use isa::diagnostic::{Diagnostic, Report};
 use kernels::build::{Crop, Options as KernelOptions};
 use scenes::image::Options as MemoryOptions;
@@ -28,6 +29,8 @@ pub struct Job {
     pub view: View,
     /// How it lies in memory.
     pub memory: MemoryOptions,
+    /// The instructions that there are.
+    pub isa: Isa,
     /// Which kernels draw it.
     pub kernels: KernelOptions,
     /// Name of the machine.
@@ -73,6 +76,7 @@ impl Job {
             scene,
             view,
             memory: MemoryOptions::default(),
+            isa: Isa::base(),
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
@@ -93,6 +97,8 @@ impl Job {
         job.files = loaded.files;
         job.files.extend(arguments.kernels.replaced.iter().map(|(_, path)| path.clone()));
         job.files.push(PathBuf::from(&arguments.machine.machine));
+        job.files.extend(arguments.kernels.extensions.extensions.iter().cloned());
+        job.isa = arguments.kernels.extensions.isa()?;
         job.view = View {
             size: arguments.view.size.unwrap_or(job.scene.size),
             camera,

@@ -6,6 +6,7 @@ pub mod annex;
 pub mod arguments;
 pub mod command;
 pub mod drawing;
+pub mod extension;
 pub mod failure;
 pub mod files;
 pub mod input;

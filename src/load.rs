@@ -45,7 +45,7 @@ impl Load {
     /// # Errors
     /// A scene that does not fit its formats, errors in the user's kernels.
     pub fn picture(job: &Job) -> Result<(Load, Image), Failure> {
-        let isa = Isa::base();
+        let isa = job.isa.clone();
         let mut image = image::build(&job.scene, &job.view, &job.memory)?;
         let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
         let kinds = image.regions.iter().map(|(kind, range)| (range.clone(), traffic(*kind).to_owned())).collect();

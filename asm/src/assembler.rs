@@ -14,6 +14,7 @@ use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
 use crate::explain;
 use crate::expression::{Expression, Step};
+use crate::extension::Template;
 use crate::frame::Frame;
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
@@ -78,13 +79,24 @@ pub(crate) struct Assembler<'a> {
     /// Some text could not be read, so that missing names say nothing.
     pub is_incomplete: bool,
     pub is_last_pass: bool,
+    /// Set while the body of an extension instruction is assembled: then instructions become its steps.
+    pub body: Option<Template>,
 }
 
 /// Assembles a source as far as possible; the program is whole when the report has no errors.
 pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> Attempt {
+    let mut assembler = new(isa, options);
+    assembler.take_options(source);
+    assembler.first_pass(source);
+    assembler.second_pass();
+    assembler.finish()
+}
+
+/// An assembler that has read nothing.
+pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
     let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.row(op).name, op)).collect();
     let nop = operations.get("mov").and_then(|&op| isa.encode(op, &[0, 0]).ok()).unwrap_or(0);
-    let mut assembler = Assembler {
+    Assembler {
         isa,
         options,
         operations,
@@ -113,15 +125,12 @@ pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> At
         octets_read: 0,
         is_incomplete: false,
         is_last_pass: false,
-    };
-    assembler.take_options(source);
-    assembler.first_pass(source);
-    assembler.second_pass();
-    assembler.finish()
+        body: None,
+    }
 }
 
 impl Assembler<'_> {
-    fn take_options(&mut self, source: &Arc<Source>) {
+    pub(crate) fn take_options(&mut self, source: &Arc<Source>) {
         self.program.sources.push(source.clone());
         for (text, value) in &self.options.defines {
             let name = self.names.intern(text);
@@ -148,6 +157,11 @@ impl Assembler<'_> {
             return;
         }
         self.enter_file(0, At::default());
+        self.read_frames();
+    }
+
+    /// Reads the lines of all frames, and says what is open at their end.
+    pub(crate) fn read_frames(&mut self) {
         while let Some(line) = self.fetch() {
             self.line(&line);
         }
@@ -172,6 +186,9 @@ impl Assembler<'_> {
 
     /// Appends a word to the code.
     pub(crate) fn emit(&mut self, word: u32, line: &Line) {
+        if !self.takes_step(line) {
+            return;
+        }
         if self.program.words.len() >= WORDS {
             let message = format!("the program has more than {WORDS} words");
             self.give_up(Problem::new(explain::SIZE, message, line.at_all(), "one too many"));
@@ -182,12 +199,18 @@ impl Assembler<'_> {
         self.program.region_of.push(self.regions.last().map(|open| open.index));
     }
 
-    fn second_pass(&mut self) {
+    pub(crate) fn second_pass(&mut self) {
         self.is_last_pass = true;
         self.report_early();
         self.resolve_pending();
         for fixup in std::mem::take(&mut self.fixups) {
             match fixup {
+                Fixup::Instruction { op, arguments, pc } if self.body.is_some() => {
+                    match self.encode_step(op, &arguments, pc) {
+                        Ok(act) => self.set_act(pc, act),
+                        Err(failures) => failures.into_iter().for_each(|failure| self.report_failure(failure)),
+                    }
+                }
                 Fixup::Instruction { op, arguments, pc } => match self.encode(op, &arguments, pc) {
                     Ok(word) => self.program.words[pc] = word,
                     Err(failures) => failures.into_iter().for_each(|failure| self.report_failure(failure)),
@@ -220,7 +243,7 @@ impl Assembler<'_> {
         self.resolve_entry();
     }
 
-    fn finish(mut self) -> Attempt {
+    pub(crate) fn finish(mut self) -> Attempt {
         let symbols = self.map();
         self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
         for (place, name) in std::mem::take(&mut self.pending_records) {

@@ -48,6 +48,26 @@ enum Action {
     Assert,
 }
 
+impl Action {
+    /// Whether a body of an extension instruction may have it: it places no data, words or functions.
+    fn suits_body(self) -> bool {
+        !matches!(
+            self,
+            Action::Section(_)
+                | Action::Entry
+                | Action::Numbers(_)
+                | Action::Fixed
+                | Action::Texts { .. }
+                | Action::Space
+                | Action::Align { .. }
+                | Action::Org
+                | Action::Open { .. }
+                | Action::Close { .. }
+                | Action::End
+        )
+    }
+}
+
 /// A directive.
 #[derive(Clone, Copy, Debug)]
 pub struct Directive {
@@ -192,6 +212,12 @@ impl Assembler<'_> {
                     .also(Some(open.at), "opened here")
                     .hint("`.endstruct` ends the structure"));
             }
+        }
+        if let Some(template) = &self.body
+            && !directive.action.suits_body()
+        {
+            let message = format!("`{name}` does not stand in an extension");
+            return Err(Problem::new(explain::BODY, message, at, "no place for it").hint(template.place_of_data()));
         }
         match directive.action {
             Action::Section(section) => {

@@ -222,6 +222,29 @@ an instruction.
 "The right operand of `<<` and `>>` in an expression is 0 to 63.
 
     .equ mask, 1 << -1";
+    ROW "E038" "malformed row of an extension"
+"A file of extensions has rows as the table of instructions has them: mnemonic, operands, the 32-bit word as a picture, and the ways in
+which the instruction ends with what each costs. Words stand in the major opcodes custom0 to custom3.
+
+    .extension slab
+    .instr vhalf (d: V, a: V) \"custom0 ddddd aaaaa ---------------\" [Done(add 3)]   ; one bit short
+    .end";
+    TAKEN "E039" "taken by another instruction"
+"An instruction has the name or some word already. The message shows which one.
+
+    .extension slab
+    .instr vadd (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]   ; there is a `vadd`
+        vadd d, a, a
+    .end";
+    BODY "E040" "impossible body"
+"The body of an extension instruction works on the operands of its row (by their letters), on temporaries t0, t1, ... (scalars), tv0, ...
+(vectors), tw0, ... (wide accumulators) and on s0. It writes only destinations and temporaries, reads nothing that it has not written or
+been given, writes every destination on every way to an exit, and neither calls, returns, halts nor uses instructions of extensions.
+
+    .extension slab
+    .instr vhalf (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]
+        vadd d, tv0, a          ; nothing has written tv0
+    .end";
     WARNED "W001" "warning of the program"
 "The program says so itself, by `.warning`.
 

@@ -83,6 +83,9 @@ impl Assembler<'_> {
             self.call_macro(&definition, at, cursor);
             return;
         }
+        if self.body.is_some() && self.special_step(name, at, cursor) {
+            return;
+        }
         let op = self.operations.get(name).copied();
         let pseudo = crate::pseudo::find(name);
         if op.is_none() && pseudo.is_none() {
@@ -125,7 +128,14 @@ impl Assembler<'_> {
             return;
         };
         let pc = self.program.words.len();
-        let word = match self.encode(op, &arguments, pc) {
+        let encoded = match self.body {
+            None => self.encode(op, &arguments, pc),
+            Some(_) => self.encode_step(op, &arguments, pc).map(|act| {
+                self.set_act(pc, act);
+                0
+            }),
+        };
+        let word = match encoded {
             Ok(word) => word,
             Err(failures) => {
                 let mut is_later = false;
@@ -257,7 +267,7 @@ impl Assembler<'_> {
         Ok(isa.encode(op, &numbers).expect("count and ranges were checked"))
     }
 
-    fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, Failure> {
+    pub(crate) fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, Failure> {
         if let Some(name) = expression.symbol()
             && let Some(symbol) = self.names.get(name)
             && matches!(symbol.meaning, Meaning::Buffer(_))
@@ -293,7 +303,13 @@ fn wrong_count(row: &Row, operands: &[Operand], at: At) -> Box<Problem> {
     Problem::new(explain::OPERAND_COUNT, message, place, label).hint(legend(row))
 }
 
-fn out_of_range(row: &Row, operand: isa::row::Operand, at: At, number: i64, (least, most): (i64, i64)) -> Box<Problem> {
+pub(crate) fn out_of_range(
+    row: &Row,
+    operand: isa::row::Operand,
+    at: At,
+    number: i64,
+    (least, most): (i64, i64),
+) -> Box<Problem> {
     let (letter, kind) = (operand.letter as char, operand.kind.name());
     let name = &row.name;
     if operand.kind == Kind::Rel {

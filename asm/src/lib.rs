@@ -15,6 +15,7 @@ mod disassembly;
 mod evaluation;
 pub mod explain;
 mod expression;
+pub mod extension;
 mod frame;
 pub mod function;
 pub mod hex;

@@ -74,6 +74,11 @@ impl Assembler<'_> {
     /// # Errors
     /// A name such as `s32` of a register that does not exist.
     pub(crate) fn register(&self, text: &str, at: At) -> Parsed<Option<Register>> {
+        if let Some(template) = &self.body
+            && let Some(register) = template.register(text, at)?
+        {
+            return Ok(Some(register));
+        }
         if let Some(register) = isa::parse_register(text) {
             return Ok(Some(register));
         }
@@ -149,6 +154,9 @@ impl Assembler<'_> {
         let at = cursor.at(token);
         let register = self.register(cursor.text(token), at)?;
         cursor.position += usize::from(register.is_some());
-        Ok(register.map(|register| (register, at)))
+        match (&self.body, register) {
+            (Some(template), Some(register)) => template.member(register, at, cursor).map(Some),
+            (_, register) => Ok(register.map(|register| (register, at))),
+        }
     }
 }

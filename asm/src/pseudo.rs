@@ -143,7 +143,11 @@ impl Assembler<'_> {
         };
         let holds = |form: &&Form| match form.when {
             When::Otherwise => true,
-            When::IsShort(letter) => known(letter).is_some_and(|value| i16::try_from(value).is_ok()),
+            When::IsShort(letter) => match (known(letter), &operands[place(letter).unwrap_or(0)].written) {
+                (Some(value), _) => i16::try_from(value).is_ok(),
+                (None, Written::Number(expression)) => self.is_short_immediate(expression),
+                (None, _) => false,
+            },
             When::AreZero => ['x', 'y', 'z'].into_iter().all(|letter| known(letter) == Some(0)),
             When::AreEqual => known('x').is_some() && known('x') == known('y') && known('y') == known('z'),
         };

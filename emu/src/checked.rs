@@ -23,10 +23,12 @@ pub struct State {
     pub registers: Registers,
     /// Its local buffer.
     pub buffer: Buffer,
-    /// Word of the next instruction.
+    /// Slot of the next instruction: its word, or a step of a body behind the words.
     pub pc: u32,
     /// Instructions executed since the last [`State::begin`].
     pub steps: u64,
+    /// Steps of bodies beside those instructions.
+    pub inner_steps: u64,
     /// Clocks of those instructions, transfers and waiting left out.
     pub clocks: u64,
     /// Elementary operations of those instructions.
@@ -37,7 +39,8 @@ impl State {
     /// A core after reset, about to execute the program's first instruction.
     pub fn new(code: &Code, buffer: Buffer) -> State {
         let pc = code.program.entry;
-        State { registers: Registers::default(), buffer, pc, steps: 0, clocks: 0, elementary: 0 }
+        let registers = Registers::default();
+        State { registers, buffer, pc, steps: 0, inner_steps: 0, clocks: 0, elementary: 0 }
     }
 
     /// The same core after another reset.
@@ -45,7 +48,7 @@ impl State {
         self.registers = Registers::default();
         self.buffer.reset_to(initial);
         self.pc = code.program.entry;
-        (self.steps, self.clocks, self.elementary) = (0, 0, 0);
+        (self.steps, self.inner_steps, self.clocks, self.elementary) = (0, 0, 0, 0);
     }
 }
 
@@ -56,8 +59,17 @@ pub struct Seat {
     pub core: u32,
     /// Number of cores, the main processor not counted.
     pub cores: u32,
-    /// Instructions that a work item may take.
+    /// Instructions that a work item may take; steps of bodies count as such here, so that none goes on for ever.
     pub step_limit: u64,
+}
+
+/// What becomes of a program after an instruction.
+#[derive(Clone, Copy)]
+enum After {
+    Goes,
+    Ends(End),
+    /// It leads outside of the program.
+    Strays,
 }
 
 /// Why an engine stopped.
@@ -147,22 +159,23 @@ pub fn run<T: Watch, O: Observer>(
     let State { registers, buffer, .. } = state;
     let mut next = state.pc;
     let mut pc;
-    let mut steps = state.steps;
+    let mut steps = state.steps + state.inner_steps;
+    let mut inner_steps = state.inner_steps;
     let mut clocks = state.clocks;
     let mut elementary = state.elementary;
 
     let pause = loop {
         pc = next;
         let Some(slot) = slots.get(pc as usize) else {
-            break Pause::Fault(Fault::OutsideProgram { words: slots.len() as u32 });
+            break Pause::Fault(Fault::OutsideProgram { words: code.words() });
         };
         if steps >= seat.step_limit {
             break Pause::Fault(Fault::StepLimit(seat.step_limit));
         }
         let fields = &slot.fields;
-        next = pc.wrapping_add(1);
+        next = slot.next;
         let mut motion = Motion::Jump;
-        let mut end = None;
+        let mut after = After::Goes;
 
         /// Writes what a meaning handed back and yields how it ended.
         macro_rules! finish {
@@ -199,9 +212,14 @@ pub fn run<T: Watch, O: Observer>(
                 }
             };
             ({ control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
-                let mut flow = Flow::new(pc, seat.core, seat.cores);
+                let mut flow = Flow::new(pc, next, seat.core, seat.cores);
                 let exit = finish!($trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*), $written);
-                (next, motion, end) = (flow.next, flow.motion, flow.end);
+                (next, motion) = (flow.next, flow.motion);
+                if let Some(end) = flow.end {
+                    after = After::Ends(end);
+                } else if next >= code.words() && code.is_outside(pc, next) {
+                    after = After::Strays;
+                }
                 exit
             }};
         }
@@ -213,9 +231,12 @@ pub fn run<T: Watch, O: Observer>(
                     $($(Some(Op::$name) => {
                         split_operands! { execute { $style $trait $name } [] [] ($($operands)*) }
                     })*)*
-                    // Bodies of extensions are spliced in here; without one the word cannot be executed.
+                    // A body would stand here instead; without one the word cannot be executed.
                     Some(Op::Ext(_)) => break Pause::Fault(Fault::NoMeaning(code.program.words[pc as usize])),
-                    None => break Pause::Fault(Fault::IllegalWord(code.program.words[pc as usize])),
+                    None => break Pause::Fault(match code.program.words.get(pc as usize) {
+                        Some(&word) => Fault::IllegalWord(word),
+                        None => Fault::OutsideProgram { words: code.words() },
+                    }),
                 }
             };
         }
@@ -226,26 +247,32 @@ pub fn run<T: Watch, O: Observer>(
         let pass = &mut passes[number];
         pass.count += 1;
         steps += 1;
+        inner_steps += u64::from(pass.cost.is_inner);
         clocks += u64::from(pass.cost.clocks);
         elementary += u64::from(pass.cost.elementary);
         pass.units += u64::from(units);
         if units != 0 && pass.cost.has_busy_units {
-            let (more_clocks, more_elementary) = code.unit_cost(pc, exit, units);
+            let (more_clocks, more_elementary) = code.unit_cost(number, units);
             clocks += more_clocks.0;
             elementary += more_elementary;
         }
         if O::IS_ACTIVE {
             // What ends here goes nowhere: the word after a `halt` may belong to another function.
-            observer.step(pc, number, units, if end.is_none() { next } else { pc }, motion);
+            observer.step(pc, number, units, if matches!(after, After::Ends(_)) { pc } else { next }, motion);
         }
-        match end {
-            None => {}
-            Some(End::Halt) => break Pause::Halt,
-            Some(End::Trap(number)) => break Pause::Fault(Fault::User(number)),
+        match after {
+            After::Goes => {}
+            After::Ends(End::Halt) => break Pause::Halt,
+            After::Ends(End::Trap(number)) => break Pause::Fault(Fault::User(number)),
+            After::Strays => {
+                pc = next;
+                break Pause::Fault(Fault::OutsideProgram { words: code.words() });
+            }
         }
     };
     state.pc = pc;
-    state.steps = steps;
+    state.steps = steps - inner_steps;
+    state.inner_steps = inner_steps;
     state.clocks = clocks;
     state.elementary = elementary;
     pause

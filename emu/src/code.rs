@@ -1,22 +1,37 @@
 //! A program decoded once, with what each exit of each word costs. Counting happens elsewhere.
+//!
+//! A word is a slot of the same number. An extension instruction is the first slot of its body; the other slots of that stand behind all
+//! words, with a slot without an instruction between them, and lead back. Slots are ordinary rows, so an engine needs to know only that
+//! [`Slot::next`] comes after a slot, that registers go up to 63 (wide ones to 15), that some passes are no instructions, and that only
+//! bodies lead behind the words: see [`Code::is_outside`].
 
+use std::fmt;
+use std::ops::Range;
+
+use isa::diagnostic::{Diagnostic, Place};
 use isa::{Counts, Fields, Isa, Op, Program, Row};
 
 use crate::quantity::Clocks;
+use crate::splice::{Passing, Way, splice};
 use crate::timing::Timing;
 
-/// One word, decoded.
+/// Most slots of all bodies of a program.
+pub const MOST_BODY_SLOTS: usize = 1 << 18;
+
+/// One instruction, decoded.
 #[derive(Clone, Copy, Debug)]
 pub struct Slot {
     /// The instruction; `None` for a word that is none, which traps when it is executed.
     pub op: Option<Op>,
     /// Its operands.
     pub fields: Fields,
-    /// Number of its first exit among all exits of the program.
+    /// Number of the pass through its first exit; those of its other exits follow.
     pub first_exit: u32,
+    /// The slot after it, unless it leads elsewhere.
+    pub next: u32,
 }
 
-/// What one exit of one word adds to a run, apart from its units.
+/// What one exit of one slot adds to a run, apart from its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExitCost {
     /// Time.
@@ -25,6 +40,26 @@ pub struct ExitCost {
     pub elementary: u32,
     /// Whether its units take clocks or elementary operations; octets do not, as long as the bus accounts for them.
     pub has_busy_units: bool,
+    /// Whether it is a step of a body that goes on: no instruction of the program ends with it.
+    pub is_inner: bool,
+}
+
+/// What a pass belongs to and counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// The word for which it counts.
+    pub word: u32,
+    /// The exit of the word's row; `None` for steps of a body that go on.
+    pub exit: Option<u8>,
+    /// The row and its exit whose cost it has; `None` for nothing.
+    cost: Option<(Op, u8)>,
+}
+
+/// A slot behind the words.
+#[derive(Clone, Copy, Debug)]
+struct Inner {
+    word: u32,
+    step: u32,
 }
 
 /// A decoded program.
@@ -38,60 +73,247 @@ pub struct Code<'a> {
     pub timing: Timing,
     slots: Vec<Slot>,
     costs: Vec<ExitCost>,
+    passes: Vec<Pass>,
+    /// The first pass of each word, and the end of the last one's.
+    starts: Vec<u32>,
+    /// What the slots behind the words belong to.
+    inner: Vec<Inner>,
+    /// The words that bodies stand for, in their order.
+    extended: Vec<(u32, Op)>,
+}
+
+/// The program's bodies have more slots than [`MOST_BODY_SLOTS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLarge;
+
+impl fmt::Display for TooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the bodies of the program's extension instructions have more than {MOST_BODY_SLOTS} instructions")
+    }
+}
+
+impl From<TooLarge> for Diagnostic {
+    fn from(error: TooLarge) -> Diagnostic {
+        Diagnostic::error(error.to_string()).hint("call a function that has the instruction once")
+    }
+}
+
+/// Whether the bodies of a program's extension instructions fit.
+///
+/// # Errors
+/// They do not; then [`Code::new`] leaves the last ones without a meaning.
+pub fn check_bodies(program: &Program, isa: &Isa) -> Result<(), TooLarge> {
+    if isa.extensions().next().is_none() {
+        return Ok(());
+    }
+    let code = Code::new(program, isa, Timing::default());
+    let is_left_out = |slot: &Slot| slot.op.is_some_and(|op| isa.body(op).is_some());
+    if code.slots.iter().any(is_left_out) { Err(TooLarge) } else { Ok(()) }
 }
 
 impl<'a> Code<'a> {
     /// Decodes a program.
     pub fn new(program: &'a Program, isa: &'a Isa, timing: Timing) -> Code<'a> {
-        let mut code = Code { program, isa, timing, slots: Vec::with_capacity(program.words.len()), costs: Vec::new() };
-        for &word in &program.words {
-            let instruction = isa.decode(word);
+        let words = program.words.len();
+        let mut code = Code {
+            program,
+            isa,
+            timing,
+            slots: Vec::with_capacity(words),
+            costs: Vec::new(),
+            passes: Vec::new(),
+            starts: Vec::with_capacity(words + 1),
+            inner: Vec::new(),
+            extended: Vec::new(),
+        };
+        // The slots of bodies come behind all words, whose number is known.
+        let mut behind: Vec<Slot> = Vec::new();
+        for (word, &text) in (0..).zip(&program.words) {
+            let instruction = isa.decode(text);
             let first_exit = code.costs.len() as u32;
-            let slot = match instruction {
-                Some(instruction) => Slot { op: Some(instruction.op), fields: instruction.fields, first_exit },
-                None => Slot { op: None, fields: Fields::default(), first_exit },
-            };
-            if let Some(op) = slot.op {
-                let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
-                code.costs.extend(isa.row(op).exits.iter().map(|exit| ExitCost {
-                    clocks: fit(timing.clocks(&exit.cost).0),
-                    elementary: fit(exit.cost.elementary()),
-                    has_busy_units: timing.clocks(&exit.each).0 != 0 || exit.each.elementary() != 0,
-                }));
+            code.starts.push(first_exit);
+            let mut slot = Slot { op: None, fields: Fields::default(), first_exit, next: word + 1 };
+            if let Some(instruction) = instruction {
+                (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
+                for exit in 0..isa.row(instruction.op).exits.len() as u8 {
+                    let cost = (!isa.is_expanded(instruction.op)).then_some((instruction.op, exit));
+                    code.add(Pass { word, exit: Some(exit), cost }, isa.is_expanded(instruction.op));
+                }
+                if isa.body(instruction.op).is_some() {
+                    slot = code.splice(slot, word, &mut behind);
+                }
             }
             code.slots.push(slot);
+        }
+        code.starts.push(code.costs.len() as u32);
+        if !behind.is_empty() {
+            // What runs off the end of the program must not get into a body.
+            code.slots.push(Slot { op: None, fields: Fields::default(), first_exit: 0, next: words as u32 });
+            code.slots.append(&mut behind);
         }
         code
     }
 
-    /// The decoded words.
+    fn add(&mut self, pass: Pass, is_inner: bool) -> u32 {
+        let cost = pass.cost.map(|(op, exit)| &self.isa.row(op).exits[usize::from(exit)]);
+        let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
+        self.costs.push(ExitCost {
+            clocks: cost.map_or(0, |exit| fit(self.timing.clocks(&exit.cost).0)),
+            elementary: cost.map_or(0, |exit| fit(exit.cost.elementary())),
+            has_busy_units: cost
+                .is_some_and(|exit| self.timing.clocks(&exit.each).0 != 0 || exit.each.elementary() != 0),
+            is_inner,
+        });
+        self.passes.push(pass);
+        self.passes.len() as u32 - 1
+    }
+
+    /// Puts the body of the extension instruction at a word behind the words; its first slot takes the word's place.
+    fn splice(&mut self, outer: Slot, word: u32, behind: &mut Vec<Slot>) -> Slot {
+        let isa = self.isa;
+        let Some(op) = outer.op else { return outer };
+        let (row, Some(body)) = (isa.row(op), isa.body(op)) else { return outer };
+        let pieces = splice(body, row, isa, &outer.fields);
+        if behind.len() + pieces.len() > MOST_BODY_SLOTS {
+            return outer;
+        }
+        let base = self.words() + behind.len() as u32;
+        let place = |at: usize| if at == 0 { word } else { base + at as u32 };
+        let is_expanded = isa.is_expanded(op);
+        let costs_body = is_expanded || row.exits.iter().any(|exit| exit.is_body);
+        // Where steps cost nothing, they share passes.
+        let most = pieces.iter().map(|piece| isa.row(piece.op).exits.len()).max().unwrap_or(0);
+        let free = self.passes.len() as u32;
+        for _ in 0..most {
+            self.add(Pass { word, exit: None, cost: None }, true);
+        }
+        self.extended.push((word, op));
+        let mut first = outer;
+        for (at, piece) in pieces.iter().enumerate() {
+            let exits = isa.row(piece.counted).exits.len() as u8;
+            let first_exit = match piece.passing {
+                Passing::Step if costs_body => {
+                    let first = self.passes.len() as u32;
+                    for exit in 0..exits {
+                        self.add(Pass { word, exit: None, cost: Some((piece.counted, exit)) }, !is_expanded);
+                    }
+                    first
+                }
+                Passing::StepAndExit(exit) if costs_body => {
+                    self.add(Pass { word, exit: Some(exit), cost: Some((piece.counted, 0)) }, false)
+                }
+                Passing::Step | Passing::Move => free,
+                Passing::Exit(exit) | Passing::StepAndExit(exit) => outer.first_exit + u32::from(exit),
+            };
+            let next = match piece.way {
+                Way::Inside(to) => place(to),
+                Way::Behind => word + 1,
+                Way::Away(distance) => word.wrapping_add_signed(distance).min(self.words()),
+            };
+            let mut fields = piece.fields;
+            if let Some((letter, to)) = piece.branch {
+                fields.set(letter, place(to).wrapping_sub(place(at)) as i32);
+            }
+            let slot = Slot { op: Some(piece.op), fields, first_exit, next };
+            if at == 0 {
+                first = slot;
+            } else {
+                behind.push(slot);
+                self.inner.push(Inner { word, step: piece.step });
+            }
+        }
+        first
+    }
+
+    /// The slots: those of the words, then those of bodies.
     #[inline]
     pub fn slots(&self) -> &[Slot] {
         &self.slots
     }
 
-    /// The row of a word; `None` for a word that is no instruction.
-    pub fn row(&self, pc: u32) -> Option<&Row> {
-        Some(self.isa.row(self.slots.get(pc as usize)?.op?))
+    /// Number of words.
+    #[inline]
+    pub fn words(&self) -> u32 {
+        self.program.words.len() as u32
     }
 
-    /// What the exits cost, in the order of [`Slot::first_exit`].
+    /// The word to which a slot belongs.
+    #[inline]
+    pub fn word(&self, slot: u32) -> u32 {
+        self.inner(slot).map_or(slot, |inner| inner.word)
+    }
+
+    fn inner(&self, slot: u32) -> Option<Inner> {
+        self.inner.get(slot.checked_sub(self.words() + 1)? as usize).copied()
+    }
+
+    /// Whether a control instruction in one slot leaves the program by leading to another: only a body leads behind the words.
+    #[inline]
+    pub fn is_outside(&self, from: u32, to: u32) -> bool {
+        to >= self.words() && (to as usize >= self.slots.len() || !self.is_in_body(from))
+    }
+
+    fn is_in_body(&self, slot: u32) -> bool {
+        slot > self.words() || self.op(slot).is_some_and(|op| self.isa.body(op).is_some())
+    }
+
+    /// The row of a word; `None` for a word that is no instruction.
+    pub fn row(&self, word: u32) -> Option<&Row> {
+        Some(self.isa.row(self.op(word)?))
+    }
+
+    /// The instruction of a word, as the program has it.
+    pub fn op(&self, word: u32) -> Option<Op> {
+        match self.extended.binary_search_by_key(&word, |&(word, _)| word) {
+            Ok(at) => Some(self.extended[at].1),
+            Err(_) => self.slots.get(word as usize).filter(|_| word < self.words())?.op,
+        }
+    }
+
+    /// The row that a slot executes; `None` for a word that is no instruction.
+    pub fn slot_row(&self, slot: u32) -> Option<&Row> {
+        Some(self.isa.row(self.slots.get(slot as usize)?.op?))
+    }
+
+    /// Where the body stands that a slot is a step of.
+    pub fn body_place(&self, slot: u32) -> Option<Place> {
+        let body = self.isa.body(self.op(self.word(slot))?)?;
+        body.place(self.inner(slot).map_or(0, |inner| inner.step as usize))
+    }
+
+    /// What the passes cost, by number.
     pub fn costs(&self) -> &[ExitCost] {
         &self.costs
     }
 
-    /// Clocks and elementary operations that `units` units add to an exit of a word.
-    pub fn unit_cost(&self, pc: u32, exit: usize, units: u32) -> (Clocks, u64) {
-        let Some(exit) = self.row(pc).and_then(|row| row.exits.get(exit)) else { return (Clocks(0), 0) };
-        let each = exit.each.times(units.into());
-        (self.timing.clocks(&(exit.cost + each)) - self.timing.clocks(&exit.cost), each.elementary())
+    /// What the passes are, by number.
+    pub fn passes(&self) -> &[Pass] {
+        &self.passes
     }
 
-    /// What `count` passes through an exit of a word with `units` units together cost.
-    pub fn cost(&self, pc: u32, exit: usize, count: u64, units: u64) -> Counts {
-        match self.row(pc).and_then(|row| row.exits.get(exit)) {
-            Some(exit) => exit.cost.times(count) + exit.each.times(units),
-            None => Counts::ZERO,
+    /// The passes of a word.
+    pub fn passes_of(&self, word: u32) -> Range<usize> {
+        match (self.starts.get(word as usize), self.starts.get(word as usize + 1)) {
+            (Some(&start), Some(&end)) => start as usize..end as usize,
+            _ => 0..0,
         }
+    }
+
+    /// What a pass costs, and what each of its units adds.
+    pub fn pass_cost(&self, pass: usize) -> (Counts, Counts) {
+        match self.passes.get(pass).and_then(|pass| pass.cost) {
+            Some((op, exit)) => {
+                let exit = &self.isa.row(op).exits[usize::from(exit)];
+                (exit.cost, exit.each)
+            }
+            None => (Counts::ZERO, Counts::ZERO),
+        }
+    }
+
+    /// Clocks and elementary operations that `units` units add to a pass.
+    pub fn unit_cost(&self, pass: usize, units: u32) -> (Clocks, u64) {
+        let (cost, each) = self.pass_cost(pass);
+        let each = each.times(units.into());
+        (self.timing.clocks(&(cost + each)) - self.timing.clocks(&cost), each.elementary())
     }
 }

@@ -8,6 +8,7 @@ pub mod octets;
 pub mod profile;
 pub mod quantity;
 pub mod registers;
+mod splice;
 pub mod tally;
 pub mod timing;
 pub mod trap;

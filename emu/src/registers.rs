@@ -3,11 +3,20 @@
 use isa::number::Vector;
 
 /// Registers of a core, all zero after reset.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+///
+/// Behind those that programs can name come hidden ones (scalars and vectors 32 to 63, wide accumulators 8 to 15), in which bodies of
+/// extension instructions work. A body reads none that it has not written, so what one leaves there no other one sees.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Registers {
-    scalars: [i32; 32],
-    vectors: [Vector; 32],
-    wides: [i64; 8],
+    scalars: [i32; 64],
+    vectors: [Vector; 64],
+    wides: [i64; 16],
+}
+
+impl Default for Registers {
+    fn default() -> Registers {
+        Registers { scalars: [0; 64], vectors: [[0; 3]; 64], wides: [0; 16] }
+    }
 }
 
 /// Register numbers come from decoded fields, which the decoder has checked; the masks only tell that to the compiler.
@@ -15,26 +24,26 @@ impl Registers {
     /// `s0` to `s31`; `s0` is zero.
     #[inline]
     pub fn scalar(&self, number: u8) -> i32 {
-        self.scalars[usize::from(number & 31)]
+        self.scalars[usize::from(number & 63)]
     }
 
     /// Sets a scalar; `s0` stays zero.
     #[inline]
     pub fn set_scalar(&mut self, number: u8, value: i32) {
-        self.scalars[usize::from(number & 31)] = value;
+        self.scalars[usize::from(number & 63)] = value;
         self.scalars[0] = 0;
     }
 
     /// `v0` to `v31`.
     #[inline]
     pub fn vector(&self, number: u8) -> Vector {
-        self.vectors[usize::from(number & 31)]
+        self.vectors[usize::from(number & 63)]
     }
 
     /// Sets a vector.
     #[inline]
     pub fn set_vector(&mut self, number: u8, value: Vector) {
-        self.vectors[usize::from(number & 31)] = value;
+        self.vectors[usize::from(number & 63)] = value;
     }
 
     /// `N` consecutive vectors from `number` on.
@@ -54,13 +63,13 @@ impl Registers {
     /// `w0` to `w7`.
     #[inline]
     pub fn wide(&self, number: u8) -> i64 {
-        self.wides[usize::from(number & 7)]
+        self.wides[usize::from(number & 15)]
     }
 
     /// Sets a wide accumulator.
     #[inline]
     pub fn set_wide(&mut self, number: u8, value: i64) {
-        self.wides[usize::from(number & 7)] = value;
+        self.wides[usize::from(number & 15)] = value;
     }
 
     /// `N` consecutive wide accumulators from `number` on.

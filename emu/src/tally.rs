@@ -40,16 +40,23 @@ impl Tally {
         Tally { passes: code.costs().iter().map(none_yet).collect() }
     }
 
-    /// All passes, in the order of [`crate::code::Slot::first_exit`].
+    /// All passes, by number: see [`crate::code::Slot::first_exit`].
     #[inline]
     pub fn passes_mut(&mut self) -> &mut [Passes] {
         &mut self.passes
     }
 
-    /// The passes through exit number `exit` of a word.
-    pub fn passes(&self, code: &Code, pc: u32, exit: usize) -> Passes {
-        let first = code.slots().get(pc as usize).map_or(usize::MAX, |slot| slot.first_exit as usize);
-        first.checked_add(exit).and_then(|at| self.passes.get(at)).copied().unwrap_or_default()
+    /// The passes through exit number `exit` of a word. Those of an extension instruction that costs what its body does have the cost of
+    /// the body's last step.
+    pub fn passes(&self, code: &Code, word: u32, exit: usize) -> Passes {
+        let mut total = Passes::default();
+        for number in code.passes_of(word).filter(|&number| code.passes()[number].exit == Some(exit as u8)) {
+            let Some(passes) = self.passes.get(number) else { continue };
+            total.count += passes.count;
+            total.units += passes.units;
+            total.cost = passes.cost;
+        }
+        total
     }
 
     /// Adds another tally of the same program.
@@ -60,20 +67,21 @@ impl Tally {
         }
     }
 
-    /// Instructions executed.
+    /// Instructions executed; the steps of a body are none.
     pub fn instructions(&self) -> u64 {
-        self.passes.iter().map(|passes| passes.count).sum()
+        self.passes.iter().filter(|passes| !passes.cost.is_inner).map(|passes| passes.count).sum()
     }
 
-    /// Instructions and operations of one word.
-    pub fn word(&self, code: &Code, pc: u32) -> LineCount {
+    /// Instructions and operations of one word, those of the body that it stands for included.
+    pub fn word(&self, code: &Code, word: u32) -> LineCount {
         let mut total = LineCount::default();
-        for exit in 0..code.row(pc).map_or(0, |row| row.exits.len()) {
-            let passes = self.passes(code, pc, exit);
-            if passes.count != 0 {
+        for number in code.passes_of(word) {
+            let Some(passes) = self.passes.get(number).filter(|passes| passes.count != 0) else { continue };
+            if !passes.cost.is_inner {
                 total.instructions += passes.count;
-                total.counts += code.cost(pc, exit, passes.count, passes.units);
             }
+            let (cost, each) = code.pass_cost(number);
+            total.counts += cost.times(passes.count) + each.times(passes.units);
         }
         total
     }
@@ -81,8 +89,8 @@ impl Tally {
     /// Operations by class.
     pub fn counts(&self, code: &Code) -> Counts {
         let mut total = Counts::ZERO;
-        for pc in 0..code.slots().len() as u32 {
-            total += self.word(code, pc).counts;
+        for word in 0..code.words() {
+            total += self.word(code, word).counts;
         }
         total
     }

@@ -5,6 +5,8 @@ use std::fmt;
 use isa::Program;
 use isa::diagnostic::{Diagnostic, Place};
 
+use crate::code::Code;
+
 /// What went wrong, without where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
@@ -120,13 +122,18 @@ pub struct Trap {
     pub place: Option<String>,
     /// Its source line.
     pub line: Option<Place>,
+    /// The line of the body of the extension instruction that went wrong there, if it is one.
+    pub body: Option<Place>,
     /// What else is known: the work item, what others wait for. Empty when nothing is.
     pub detail: String,
 }
 
 impl Trap {
-    /// The trap of a fault at word `pc` of a program.
-    pub fn new(kind: Fault, core: u32, pc: u32, program: &Program) -> Trap {
+    /// The trap of a fault at a slot of a program.
+    pub fn new(kind: Fault, core: u32, slot: u32, code: &Code) -> Trap {
+        // What lies outside of the program belongs to no word of it, even where bodies are kept.
+        let is_outside = matches!(kind, Fault::OutsideProgram { .. });
+        let (program, pc) = (code.program, if is_outside { slot } else { code.word(slot) });
         let function = program.function(pc).map(str::to_owned);
         Trap {
             kind,
@@ -135,6 +142,7 @@ impl Trap {
             function,
             place: program.place(pc),
             line: line_place(program, pc),
+            body: if is_outside { None } else { code.body_place(slot) },
             detail: String::new(),
         }
     }
@@ -153,9 +161,11 @@ impl Trap {
     /// The message with the source line.
     pub fn diagnostic(&self) -> Diagnostic {
         let message = Diagnostic::error(self.to_string());
-        match &self.line {
-            Some(line) => message.at(line.clone(), "stopped here"),
-            None => message,
+        match (&self.line, &self.body) {
+            (Some(line), None) => message.at(line.clone(), "stopped here"),
+            (Some(line), Some(body)) => message.at(line.clone(), "stopped here").also(body.clone(), "in its body"),
+            (None, Some(body)) => message.at(body.clone(), "in the body"),
+            (None, None) => message,
         }
     }
 }
@@ -168,6 +178,9 @@ impl fmt::Display for Trap {
         }
         if let Some(place) = &self.place {
             write!(f, " ({place})")?;
+        }
+        if let Some(Place { source, span }) = &self.body {
+            write!(f, ", in its body at {}:{}", source.name, source.line_column(span.start).0)?;
         }
         if !self.detail.is_empty() {
             write!(f, "; {}", self.detail)?;

@@ -1,7 +1,9 @@
 //! The instruction set of a run: the built-in table plus loaded extension rows, with encoder and decoder over it.
 
 use std::fmt;
+use std::sync::Arc;
 
+use crate::extension::{Body, Extension};
 use crate::row::{Kind, Row};
 use crate::table::{Op, ROWS};
 
@@ -36,7 +38,8 @@ impl Fields {
         }
     }
 
-    fn set(&mut self, letter: u8, value: i32) {
+    /// Puts a number into the field of a letter.
+    pub fn set(&mut self, letter: u8, value: i32) {
         match letter {
             b'd' => self.d = value as u8,
             b'e' => self.e = value as u8,
@@ -93,7 +96,7 @@ impl fmt::Display for EncodeError {
 /// The instruction set of a run.
 #[derive(Clone, Debug)]
 pub struct Isa {
-    extensions: Vec<Row>,
+    extensions: Vec<Extension>,
     by_major: Vec<Vec<Op>>,
 }
 
@@ -127,9 +130,48 @@ impl Isa {
             return Err(other);
         }
         let op = Op::Ext(self.extensions.len() as u16);
-        self.extensions.push(row);
+        self.extensions.push(Extension { row, body: None, is_expanded: false });
         self.enter(op);
         Ok(op)
+    }
+
+    /// Says what an extension row does.
+    pub fn set_body(&mut self, op: Op, body: Arc<Body>) {
+        if let Op::Ext(n) = op {
+            self.extensions[n as usize].body = Some(body);
+        }
+    }
+
+    /// What an extension row does; `None` for the rows of the table.
+    pub fn body(&self, op: Op) -> Option<&Arc<Body>> {
+        match op {
+            Op::Ext(n) => self.extensions[n as usize].body.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// The same set, where the steps of these instructions count as instructions of the program, as if they stood in it.
+    pub fn expanded(&self, ops: &[Op]) -> Isa {
+        let mut isa = self.clone();
+        for op in ops {
+            if let Op::Ext(n) = op {
+                isa.extensions[*n as usize].is_expanded = true;
+            }
+        }
+        isa
+    }
+
+    /// Whether the steps of an instruction's body count as instructions.
+    pub fn is_expanded(&self, op: Op) -> bool {
+        match op {
+            Op::Ext(n) => self.extensions[n as usize].is_expanded,
+            _ => false,
+        }
+    }
+
+    /// The opcodes of the extensions.
+    pub fn extensions(&self) -> impl Iterator<Item = Op> + use<> {
+        (0..self.extensions.len()).map(|n| Op::Ext(n as u16))
     }
 
     /// All opcodes, extensions last.
@@ -140,7 +182,7 @@ impl Isa {
     /// The row of an opcode.
     pub fn row(&self, op: Op) -> &Row {
         match op {
-            Op::Ext(n) => &self.extensions[n as usize],
+            Op::Ext(n) => &self.extensions[n as usize].row,
             _ => &ROWS[op.index()],
         }
     }

@@ -3,6 +3,7 @@
 pub mod diagnostic;
 
 pub mod class;
+pub mod extension;
 mod isa;
 pub mod number;
 pub mod picture;

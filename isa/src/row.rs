@@ -164,6 +164,8 @@ pub struct Exit {
     pub cost: Counts,
     /// Cost of each unit that the meaning reports (an octet of a block transfer).
     pub each: Counts,
+    /// Whether it costs what the steps of the body cost on the way to it, and nothing else: extensions only.
+    pub is_body: bool,
 }
 
 /// The chapter of the table in which a row stands.
@@ -273,7 +275,9 @@ impl Exit {
                 counts.iter().filter(|&(_, n)| n != 0).map(|(class, n)| format!("{} {n}", class.name())).collect();
             parts.join(", ")
         };
-        if self.each == Counts::ZERO {
+        if self.is_body {
+            format!("{}(body)", self.name)
+        } else if self.each == Counts::ZERO {
             format!("{}({})", self.name, list(&self.cost))
         } else {
             format!("{}({}; each {})", self.name, list(&self.cost), list(&self.each))

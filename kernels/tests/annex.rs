@@ -61,9 +61,8 @@ impl Observer for Trace<'_> {
     fn begin(&mut self, _: u32) {}
 
     fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
-        let first = self.code.slots()[pc as usize].first_exit as usize;
-        let cost = self.code.cost(pc, exit - first, 1, units.into());
-        self.steps.push(Step { pc, next, cost, motion });
+        let (cost, each) = self.code.pass_cost(exit);
+        self.steps.push(Step { pc, next, cost: cost + each.times(units.into()), motion });
     }
 
     fn end(&mut self) {}

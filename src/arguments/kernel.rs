@@ -7,6 +7,8 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use isa::diagnostic::Diagnostic;
 use kernels::{Function, Profile};
 
+use super::ExtensionArguments;
+
 /// Options of the kernels.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Kernels")]
@@ -17,6 +19,9 @@ pub struct KernelArguments {
     /// Assembly file that serves one function instead of the profile's own; may be repeated.
     #[arg(long = "kernel", value_name = "FUNCTION=FILE", value_parser = replacement)]
     pub replaced: Vec<(Function, PathBuf)>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub extensions: ExtensionArguments,
 }
 
 fn profile() -> impl TypedValueParser<Value = Profile> {

@@ -2,6 +2,7 @@
 //! [`crate::job`].
 
 mod effort;
+mod extension;
 mod kernel;
 mod machine;
 mod numbers;
@@ -10,6 +11,7 @@ mod value;
 mod view;
 
 pub use effort::EffortArguments;
+pub use extension::{ExtensionArguments, extend};
 pub use kernel::{KernelArguments, plain};
 pub use machine::{MachineArguments, layout};
 pub use numbers::NumberArguments;

@@ -8,7 +8,7 @@ use clap::Args;
 use isa::diagnostic::{Diagnostic, Report, Source};
 use isa::{Isa, Program};
 
-use crate::arguments;
+use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
 use crate::files::{self, program::ProgramFile};
 use crate::table::count;
@@ -34,6 +34,8 @@ pub struct AssembleArguments {
     file: PathBuf,
     #[command(flatten)]
     source: SourceArguments,
+    #[command(flatten)]
+    extensions: ExtensionArguments,
     /// Program: .o (object file), or its words alone: .bin (32 bits, little-endian), .hex (text for $readmemh).
     #[arg(short, long, value_name = "FILE", value_parser = ProgramFile::check)]
     output: Option<PathBuf>,
@@ -112,11 +114,13 @@ pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) ->
     let outputs = [&arguments.output, &arguments.data, &arguments.list, &arguments.map];
     let all = outputs.into_iter().flatten().map(PathBuf::as_path).filter(|path| *path != Path::new(PRINTED));
     files::check_distinct(all.clone()).map_err(Failure::usage)?;
-    files::check_spared(all.clone(), [&arguments.file]).map_err(Failure::usage)?;
+    files::check_spared(all.clone(), arguments.extensions.extensions.iter().chain([&arguments.file]))
+        .map_err(Failure::usage)?;
     for output in all.clone() {
         files::check_target(output)?;
     }
-    let attempt = attempted(&arguments.file, &arguments.source, &Isa::base())?;
+    let isa = arguments.extensions.isa()?;
+    let attempt = attempted(&arguments.file, &arguments.source, &isa)?;
     files::check_spared(all, attempt.program.sources.iter().map(|source| &source.name)).map_err(Failure::usage)?;
     if let Some(path) = &arguments.list {
         write_or_print(path, &asm::listing(&attempt), terminal)?;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use isa::Isa;
 
+use crate::arguments::ExtensionArguments;
 use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::files::program::{ProgramFile, load_any};
@@ -23,6 +23,8 @@ pub struct DisassembleArguments {
     /// Program: an object file (.o), text for $readmemh (.hex); anything else is words of 32 bits, little-endian.
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    extensions: ExtensionArguments,
     /// Assembly file [default: standard output].
     #[arg(short, long, value_name = "FILE.s")]
     output: Option<PathBuf>,
@@ -31,11 +33,12 @@ pub struct DisassembleArguments {
 /// Reads, disassembles and prints.
 pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     files::check_spared(arguments.output.as_deref(), [&arguments.file]).map_err(Failure::usage)?;
+    let isa = arguments.extensions.isa()?;
     let program = match load_any(&arguments.file)? {
         Some(program) => program,
         None => ProgramFile::Binary.load(&arguments.file)?,
     };
-    let text = asm::disassemble_program(&program, &Isa::base());
+    let text = asm::disassemble_program(&program, &isa);
     match &arguments.output {
         Some(path) => files::write(path, text.as_bytes())?,
         None => terminal.print(&text)?,

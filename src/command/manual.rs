@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory, ValueEnum};
 use clap_mangen::Man;
-use isa::Isa;
 
 use super::Lancer;
+use crate::arguments::ExtensionArguments;
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 use crate::{files, manual};
@@ -35,6 +35,8 @@ pub struct ManualArguments {
     /// What to write.
     #[arg(long = "as", value_name = "FORM", value_enum, default_value = "markdown")]
     form: Form,
+    #[command(flatten)]
+    extensions: ExtensionArguments,
     /// File to write instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -42,9 +44,10 @@ pub struct ManualArguments {
 
 /// Prints or writes the manual.
 pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let isa = arguments.extensions.isa()?;
     let octets = match arguments.form {
-        Form::Markdown => manual::markdown(&Isa::base()).into_bytes(),
-        Form::Html => manual::html(&Isa::base()).into_bytes(),
+        Form::Markdown => manual::markdown(&isa).into_bytes(),
+        Form::Html => manual::html(&isa).into_bytes(),
         Form::Man => man_page().into_bytes(),
     };
     match &arguments.output {

@@ -9,6 +9,7 @@ mod cores;
 mod demo;
 mod disassemble;
 mod explain;
+mod extension;
 mod machine;
 mod manual;
 mod render;
@@ -63,6 +64,7 @@ enum Command {
     Stress(stress::StressArguments),
     Arithmetic(arithmetic::ArithmeticArguments),
     Manual(manual::ManualArguments),
+    Extension(extension::ExtensionsArguments),
     Explain(explain::ExplainArguments),
     Schema(schema::SchemaArguments),
     Completions(completions::CompletionsArguments),
@@ -88,6 +90,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Stress(arguments)) => stress::execute(arguments, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
+        Some(Command::Extension(arguments)) => extension::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),
         Some(Command::Schema(arguments)) => schema::execute(arguments, terminal),
         Some(Command::Completions(arguments)) => completions::execute(arguments, terminal),

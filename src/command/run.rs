@@ -11,6 +11,7 @@ use isa::{Isa, Program};
 use super::assemble::{self, SourceArguments};
 use super::run_arguments::{Dump, RegisterValue, memory_file};
 use super::run_result::RunResult;
+use crate::arguments::ExtensionArguments;
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
@@ -19,6 +20,7 @@ const EXAMPLES: &str = "\
 Examples:
   lancer run first.s
   lancer run first.s --reg s1=5,v2=1:2:3 --max-steps 1000
+  lancer run first.s --ext slab.isa                 # with instructions of your own
   lancer run copy.s --mem 0x100=data.bin --dump 0x100:64 --dump regs
   lancer run sqrt.s --reg s3=0x10000 --json
   lancer run first.o                            # as lancer assemble -o first.o has written it
@@ -37,6 +39,8 @@ pub struct RunArguments {
     file: PathBuf,
     #[command(flatten)]
     source: SourceArguments,
+    #[command(flatten)]
+    extensions: ExtensionArguments,
     /// Registers at the start, such as s1=5,v2=1:2:3,w0=-7; may be repeated [default: 0].
     #[arg(long = "reg", value_name = "REGISTER=VALUE,..", value_delimiter = ',', allow_hyphen_values = true)]
     registers: Vec<RegisterValue>,
@@ -64,7 +68,7 @@ pub struct RunArguments {
 /// Assembles, runs and prints.
 pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let (machine_name, config) = machine::find(&arguments.machine)?;
-    let isa = Isa::base();
+    let isa = arguments.extensions.isa()?;
     let memory = memory(arguments)?;
     let program = program(arguments, &isa, terminal)?;
     let mut registers = emu::registers::Registers::default();

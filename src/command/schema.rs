@@ -13,6 +13,7 @@ use super::run_result::{self, RunResult};
 use super::stress::{self, Catalogue};
 use crate::annex;
 use crate::annex::result::Annexes;
+use crate::extension::{self, Comparison};
 use crate::failure::{Exit, Failure};
 use crate::result::{self, Render};
 use crate::scaling::{self, Scaling};
@@ -49,6 +50,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
     Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
+    Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<Comparison> },
     Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
 ];
 

@@ -4,6 +4,7 @@ mod annex;
 mod convert;
 mod cores;
 mod demo;
+mod extensions;
 mod files;
 mod help;
 mod numbers;

@@ -23,6 +23,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("scene info empty", "lancer-scene-1"),
     ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
     ("stress --case normalising", "lancer-stress-1"),
+    ("extension compare half.isa --scene triangle --size 4x3", "lancer-extension-1"),
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];
 
@@ -38,6 +39,7 @@ fn names(session: &Session) -> Vec<String> {
 fn session() -> Session {
     let session = Session::new();
     session.write("sum.s", ".func f\n    imul s1, s2, s3\n.endfunc\n    halt\n");
+    session.write("half.isa", ".extension half\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
     session.write("trap.s", "    trap 7\n");
     session.write("vectors.csv", &format!("{}\n", isa::number::conformance::HEADER));
     session

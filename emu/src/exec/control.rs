@@ -42,10 +42,10 @@ pub struct Flow {
 }
 
 impl Flow {
-    /// The flow at word `pc` before anything was decided: on to the next word.
+    /// The flow at word `pc` before anything was decided: on to `next`, which is the next word but in bodies of extensions.
     #[inline]
-    pub fn new(pc: u32, core: u32, cores: u32) -> Flow {
-        Flow { pc, next: pc.wrapping_add(1), motion: Motion::Jump, end: None, core, cores }
+    pub fn new(pc: u32, next: u32, core: u32, cores: u32) -> Flow {
+        Flow { pc, next, motion: Motion::Jump, end: None, core, cores }
     }
 
     #[inline]

@@ -39,7 +39,7 @@ impl<T: Watch, O: Observer> Machine<'_, T, O> {
     pub(super) fn trap(&self, number: usize) -> Trap {
         let processor = &self.processors[number];
         let kind = processor.fault.unwrap_or(Fault::Deadlock);
-        let trap = Trap::new(kind, number as u32, processor.state.pc, processor.code.program);
+        let trap = Trap::new(kind, number as u32, processor.state.pc, processor.code);
         match processor.work.subject {
             Some([x, y, z]) => {
                 trap.with_detail(format!("in the work item whose first message began with {x}, {y}, {z}"))

@@ -11,12 +11,12 @@ use crate::tally::Tally;
 /// What an instruction does with scalar registers, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Mark {
-    reads: u32,
-    writes: u32,
+    reads: u64,
+    writes: u64,
     /// Written with the number of the main processor, which is the number of cores.
-    counts: u32,
+    counts: u64,
     /// Where a message goes to.
-    target: u32,
+    target: u64,
     is_send: bool,
     /// It tells which core this is.
     tells_core: bool,
@@ -29,7 +29,7 @@ pub struct Independence<O> {
     pub inner: O,
     marks: Vec<Mark>,
     /// Registers that hold the number of cores, as far as the item's path tells.
-    tainted: u32,
+    tainted: u64,
     /// Whether the item may depend on the number of cores.
     pub depends_on_cores: bool,
     /// Whether the item has asked for its core's number.
@@ -38,11 +38,11 @@ pub struct Independence<O> {
 
 fn mark(code: &Code, pc: u32) -> Mark {
     let mut mark = Mark::default();
-    let (Some(slot), Some(row)) = (code.slots().get(pc as usize), code.row(pc)) else { return mark };
+    let (Some(slot), Some(row)) = (code.slots().get(pc as usize), code.slot_row(pc)) else { return mark };
     mark.is_send = matches!(slot.op, Some(Op::send2 | Op::send5));
     mark.tells_core = slot.op == Some(Op::core);
     for operand in row.operands.iter().filter(|operand| matches!(operand.kind, Kind::S | Kind::A)) {
-        let bit = 1 << (slot.fields.get(operand.letter) & 31);
+        let bit = 1 << (slot.fields.get(operand.letter) & 63);
         match operand.is_read() {
             true if mark.is_send => mark.target |= bit,
             true => mark.reads |= bit,

@@ -40,6 +40,7 @@ pub use recorded::Recorded;
 
 use trace::Window;
 
+use crate::code::check_bodies;
 use crate::exec::{Watch, Watching};
 use crate::octets::Memory;
 use crate::profile::{Observer, Profiler, Unobserved};
@@ -190,6 +191,9 @@ fn check(setup: &Setup) -> Result<(), Failure> {
     setup.config.check()?;
     check_buffer("a core", setup.core, setup.config.buffer_octets)?;
     check_buffer("the main processor", setup.main, setup.config.main.buffer_octets)?;
+    for program in [setup.core, setup.main] {
+        check_bodies(program, setup.isa).map_err(|error| Report::from(Diagnostic::from(error)))?;
+    }
     let cache = &setup.config.cache;
     let mut names = setup.kinds.iter().map(|(_, kind)| kind.as_str());
     if cache.octets != 0 && !setup.kinds.is_empty() && !names.clone().any(|kind| kind == cache.kind) {

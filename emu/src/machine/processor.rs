@@ -260,7 +260,11 @@ impl<O> Processor<'_, O> {
             Standing::Meets => "waits at a barrier".to_owned(),
             _ => "has more to do".to_owned(),
         };
-        let place = self.code.program.place(self.state.pc).map_or(String::new(), |place| format!(" at {place}"));
+        let place = self
+            .code
+            .program
+            .place(self.code.word(self.state.pc))
+            .map_or(String::new(), |place| format!(" at {place}"));
         format!("core {} {what}{place}", self.seat.core)
     }
 }

@@ -1,6 +1,6 @@
 //! One program on one core with a memory of its own: no main processor, no other cores, a bus without rivals.
 
-use isa::diagnostic::Report;
+use isa::diagnostic::{Diagnostic, Report};
 use isa::number::{Modes, Nearest32};
 use isa::{Isa, Program};
 
@@ -9,7 +9,7 @@ use super::config::Config;
 use super::processor::Processor;
 use super::station::{Request, Shared};
 use crate::checked::{Pause, Seat, State};
-use crate::code::Code;
+use crate::code::{Code, check_bodies};
 use crate::exec::{Watch, Watching};
 use crate::octets::Memory;
 use crate::profile::{Observer, Profile, Profiler, Unobserved};
@@ -61,6 +61,7 @@ pub struct SingleRun {
 pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
     single.config.check()?;
     check_buffer("a core", single.program, single.config.buffer_octets)?;
+    check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
     let arithmetic = &single.config.arithmetic;
     let traps = arithmetic.trap_division_by_zero;
     Ok(if arithmetic.modes() == Modes::default() && !traps {
@@ -108,7 +109,7 @@ fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmet
         has_leave = true;
     };
     processor.observer.end();
-    let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, single.program));
+    let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, &code));
     SingleRun {
         profile: processor.observer.into_profile(&code, &processor.tally),
         state: processor.state,

@@ -21,7 +21,7 @@ pub trait Observer {
     /// A run begins at a word.
     fn begin(&mut self, pc: u32);
 
-    /// The word at `pc` ended by exit `exit` (numbered over the whole program) with `units` units, and control goes to
+    /// The slot at `pc` ended by pass `exit` (numbered over the whole program) with `units` units, and control goes to
     /// `next`.
     fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion);
 
@@ -110,7 +110,7 @@ impl Profile {
             most_elementary: 0,
         });
         let mut profile = Profile { regions: regions.collect(), ..Profile::default() };
-        for pc in 0..code.slots().len() as u32 {
+        for pc in 0..code.words() {
             let word = tally.word(code, pc);
             let region = code.program.region_of.get(pc as usize).copied().flatten();
             match region.and_then(|region| profile.regions.get_mut(region as usize)) {

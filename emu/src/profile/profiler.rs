@@ -119,8 +119,8 @@ impl Observer for Profiler {
     const IS_ACTIVE: bool = true;
 
     fn new(code: &Code) -> Profiler {
-        let rows = (0..code.slots().len() as u32).filter_map(|pc| code.row(pc));
-        let costs = rows.flat_map(|row| row.exits.iter().map(|exit| (exit.cost, exit.each))).collect();
+        let costs = (0..code.passes().len()).map(|pass| code.pass_cost(pass)).collect();
+        let region = |slot: u32| code.program.region_of.get(code.word(slot) as usize).copied().flatten();
         let regions = &code.program.regions;
         let chain = |number: usize| {
             let mut chain = vec![number as u16];
@@ -135,7 +135,7 @@ impl Observer for Profiler {
         };
         Profiler {
             costs,
-            region_of: code.program.region_of.clone(),
+            region_of: (0..code.slots().len() as u32).map(region).collect(),
             chains: (0..regions.len()).map(chain).collect(),
             regions: Profile::exclusive(code, &Tally::default()).regions,
             depth: vec![0; regions.len()],

@@ -165,6 +165,7 @@ macro_rules! stamp {
                 name: Cow::Borrowed(stringify!($exit)),
                 cost: Counts::from_pairs(&[$((stringify!($class), $n)),*]),
                 each: Counts::from_pairs(&[$($((stringify!($unit), $m)),+)?]),
+                is_body: false,
             }),+]),
         },)*)*];
 

@@ -1,0 +1,147 @@
+//! A body from its lines: assembled, completed by its exit, and checked for what its steps read and write.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use isa::Isa;
+use isa::diagnostic::{Diagnostic, Place, Report, Source};
+use isa::extension::{Act, Body, Defect, Step, Summary, registers};
+use isa::row::Row;
+use isa::table::Op;
+
+use super::template::{Template, letter_name, register_name};
+use crate::frame::{Frame, Origin};
+use crate::line::Line;
+use crate::message::At;
+use crate::{Loader, Options, assembler, explain};
+
+/// Assembles the body of an extension row; warnings come with it.
+#[allow(clippy::too_many_arguments, reason = "one for each part of the file")]
+pub(super) fn assemble(
+    isa: &Isa,
+    op: Op,
+    row_at: &Place,
+    shared: Rc<[Line]>,
+    lines: Rc<[Line]>,
+    source: &Arc<Source>,
+    include: Loader,
+) -> Result<(Body, Summary, Report), Report> {
+    let options = Options { include, ..Options::default() };
+    let mut assembler = assembler::new(isa, &options);
+    assembler.take_options(source);
+    let row = isa.row(op);
+    let row_line = source.line_column(row_at.span.start).0 as u32;
+    let template = Template { op, row: row.clone(), row_line, steps: Vec::new(), places: Vec::new(), is_shared: true };
+    assembler.body = Some(template);
+    assembler.enter(Frame::new(shared, Origin::File(0)), At::default());
+    assembler.read_frames();
+    if let Some(template) = &mut assembler.body {
+        template.is_shared = false;
+    }
+    if !assembler.is_incomplete {
+        assembler.enter(Frame::new(lines, Origin::File(0)), At::default());
+        assembler.read_frames();
+    }
+    assembler.second_pass();
+    let template = assembler.body.take().expect("it was put there above");
+    let attempt = assembler.finish();
+    if attempt.report.has_errors() {
+        return Err(attempt.report);
+    }
+    let body = complete(template, isa, source, row_at)?;
+    let summary = body.summary(row, isa).map_err(|defect| defective(defect, &body, row, row_at))?;
+    Ok((body, summary, attempt.report))
+}
+
+/// Adds the exit that the body runs into, where there is only one.
+fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place) -> Result<Body, Report> {
+    let Template { row, mut steps, .. } = template;
+    let end = steps.len();
+    let mut body = Body { steps: steps.clone(), source: source.clone(), temporaries: [0; 3] };
+    let runs_on = (0..end).find(|&step| body.successors(step, isa).any(|next| next == end));
+    if let Some(step) = runs_on.or((end == 0).then_some(0)) {
+        if row.exits.len() > 1 {
+            let names: Vec<&str> = row.exits.iter().map(|exit| &*exit.name).collect();
+            let message = format!("the body of `{}` runs off its end, but it has {} exits", row.name, names.len());
+            let place = body.place(step).unwrap_or_else(|| row_at.clone());
+            let hint = format!("end it with `exit {}`", names.join("` or `exit "));
+            return Err(Diagnostic::error(message)
+                .code(explain::BODY)
+                .at(place, "nothing says which one")
+                .hint(hint)
+                .into());
+        }
+        let line = steps.last().map_or(template.row_line, |last| last.line);
+        steps.push(Step { act: Act::Exit { exit: 0, jumps: false }, line });
+        body.steps = steps;
+    }
+    for (place, file) in ['s', 'v', 'w'].into_iter().enumerate() {
+        let hidden = registers::hidden(file);
+        let used = temporaries(&body, isa, file);
+        let written = row.operands.iter().filter(|o| o.is_written() && o.kind.register_file() == Some(file));
+        let written: u8 = written.map(|operand| operand.kind.registers()).sum();
+        if usize::from(used + written) > hidden.len() {
+            let message = format!(
+                "the body of `{}` needs {} hidden registers of the file `{file}`, of which there are {}",
+                row.name,
+                used + written,
+                hidden.len()
+            );
+            let label = format!("{used} temporaries, {written} destinations");
+            let hint = "number temporaries from 0, and use one again when its value is no longer needed";
+            return Err(Diagnostic::error(message).code(explain::BODY).at(row_at.clone(), label).hint(hint).into());
+        }
+        body.temporaries[place] = used;
+    }
+    Ok(body)
+}
+
+/// One more than the highest temporary of a file.
+fn temporaries(body: &Body, isa: &Isa, file: char) -> u8 {
+    let hidden = registers::hidden(file);
+    let mut used = 0;
+    for step in &body.steps {
+        let Act::Row { instruction, .. } = step.act else { continue };
+        for operand in isa.row(instruction.op).operands.iter().filter(|o| o.kind.register_file() == Some(file)) {
+            let number = instruction.fields.get(operand.letter) as u8;
+            if hidden.contains(&number) {
+                used = used.max(number + operand.kind.registers() - hidden.start);
+            }
+        }
+    }
+    used
+}
+
+fn defective(defect: Defect, body: &Body, row: &Row, row_at: &Place) -> Report {
+    let place = |step: usize| body.place(step).unwrap_or_else(|| row_at.clone());
+    let message = match defect {
+        Defect::Unwritten { step, file, number } => {
+            let name = register_name(file, number);
+            let hint = match registers::letter(number) {
+                Some((letter, _)) => format!(
+                    "`{}` is only written; call the operand `x` or `y` in the row if it is read too",
+                    letter as char
+                ),
+                None => {
+                    format!("write `{name}` on every way that leads here; hidden registers hold nothing at the start")
+                }
+            };
+            Diagnostic::error(format!("`{name}` is read, but not written on every way to this line"))
+                .at(place(step), "read here")
+                .hint(hint)
+        }
+        Defect::Missing { step, letter, offset } => {
+            let count = row.operand(letter).map_or(1, |operand| operand.kind.registers());
+            let name = letter_name(letter, offset, count);
+            let message = format!("`{name}` is not written on every way to this exit of `{}`", row.name);
+            Diagnostic::error(message)
+                .at(place(step), "ends here")
+                .also(row_at.clone(), "its row")
+                .hint("write it, or call the operand `x` or `y` in the row if it may stay as it was")
+        }
+        Defect::Endless => Diagnostic::error(format!("the body of `{}` never ends", row.name))
+            .at(row_at.clone(), "no exit is reached")
+            .hint("`exit NAME` ends a body"),
+    };
+    message.code(explain::BODY).into()
+}

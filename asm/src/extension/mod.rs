@@ -1,0 +1,93 @@
+//! Files of extensions: rows as the table of instructions has them, each with a body in assembly. What a body then does to registers is
+//! the business of engines.
+
+mod body;
+mod file;
+mod immediate;
+mod row;
+mod template;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use isa::Isa;
+use isa::diagnostic::{Diagnostic, Place, Report, Source};
+use isa::extension::Summary;
+use isa::table::Op;
+
+pub(crate) use template::Template;
+
+use crate::explain;
+
+/// An instruction that was added.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// Its number.
+    pub op: Op,
+    /// Name of the extension.
+    pub extension: String,
+    /// What its body may do; `None` for a row without a body.
+    pub summary: Option<Summary>,
+    /// Its row in the file.
+    pub row: Place,
+    /// Where its exits stand in the file.
+    pub exits: Vec<Place>,
+}
+
+/// Most instructions of all extensions of a run.
+pub const MOST_INSTRUCTIONS: usize = 1024;
+/// Most steps of a body.
+pub const MOST_STEPS: usize = 1024;
+/// Most operations of a class that an exit may cost.
+pub const MOST_COST: u64 = 1_000_000;
+
+/// The source of a file of extensions.
+///
+/// # Errors
+/// Octets that are not UTF-8, with their place.
+pub fn source(name: &str, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
+    String::from_utf8(octets).map(|text| Source::new(name, text)).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        let source = Source::new(name, String::from_utf8_lossy(error.as_bytes()));
+        let message = format!("octet {} of the file is not UTF-8", at + 1);
+        Diagnostic::error(message)
+            .code(explain::CHARACTER)
+            .at(Place::new(&source, at..at + '\u{fffd}'.len_utf8()), "no character")
+            .hint("save the file as UTF-8")
+            .into()
+    })
+}
+
+/// Adds the instructions of a file to an instruction set; `include` reads what the file includes.
+///
+/// # Errors
+/// All errors of the file, each with its place; then nothing is added.
+pub fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<Loaded>, Report> {
+    load_with(isa, source, include, &[])
+}
+
+/// As [`load`]; the instructions that are named in `elsewhere` may have an empty body, since something else says what they do.
+///
+/// # Errors
+/// See [`load`].
+pub fn load_with(
+    isa: &mut Isa,
+    source: &Arc<Source>,
+    include: crate::Loader,
+    elsewhere: &[&str],
+) -> Result<Vec<Loaded>, Report> {
+    let mut extended = isa.clone();
+    let loaded = file::load(&mut extended, source, include, elsewhere)?;
+    *isa = extended;
+    Ok(loaded)
+}
+
+fn error(
+    code: &'static str,
+    message: impl Into<String>,
+    source: &Arc<Source>,
+    span: Range<usize>,
+    label: &str,
+) -> Diagnostic {
+    Diagnostic::error(message).code(code).at(Place::new(source, span), label)
+}

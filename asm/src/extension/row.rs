@@ -1,0 +1,356 @@
+//! The text of a row: mnemonic, operands, picture, exits with their costs, as a row of the table has them.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use isa::diagnostic::{Diagnostic, Source, did_you_mean};
+use isa::picture::{CUSTOM, LETTERS, Picture, PictureError};
+use isa::row::{Exit, Kind, Operand, Row, RowError};
+use isa::{Class, Counts};
+
+use super::{MOST_COST, error};
+use crate::explain;
+use crate::token::{continues_name, starts_name};
+
+/// A row with the places of its parts.
+pub(super) struct Drawn {
+    pub row: Row,
+    pub name_at: Range<usize>,
+    pub picture_at: Range<usize>,
+    pub exits_at: Vec<Range<usize>>,
+    pub start: usize,
+    pub end: usize,
+}
+
+type Read<T> = Result<T, Box<Diagnostic>>;
+
+/// How a row is written, for hints.
+const WRITTEN: &str = "a row is written: name (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]";
+
+struct Scanner<'a> {
+    source: &'a Arc<Source>,
+    at: usize,
+}
+
+impl<'a> Scanner<'a> {
+    fn rest(&self) -> &'a str {
+        &self.source.text[self.at..]
+    }
+
+    fn skip_blanks(&mut self) {
+        self.at += self.rest().len() - self.rest().trim_start().len();
+    }
+
+    fn wrong(&self, message: impl Into<String>, span: Range<usize>, label: &str) -> Diagnostic {
+        error(explain::ROW, message, self.source, span, label)
+    }
+
+    /// Something else was expected here.
+    fn expected(&mut self, what: &str) -> Box<Diagnostic> {
+        self.skip_blanks();
+        let found: String = self.rest().chars().take_while(|c| !c.is_whitespace()).take(20).collect();
+        let message = match found.is_empty() {
+            true => format!("expected {what}, but the file ends"),
+            false => format!("expected {what}, found `{found}`"),
+        };
+        Box::new(self.wrong(message, self.at..self.at + found.len().min(1), "in this row").hint(WRITTEN))
+    }
+
+    fn accept(&mut self, mark: &str) -> bool {
+        self.skip_blanks();
+        let is_here = self.rest().starts_with(mark);
+        self.at += if is_here { mark.len() } else { 0 };
+        is_here
+    }
+
+    fn expect(&mut self, mark: &str) -> Read<()> {
+        if self.accept(mark) { Ok(()) } else { Err(self.expected(&format!("`{mark}`"))) }
+    }
+
+    fn word(&mut self, what: &str) -> Read<(&'a str, Range<usize>)> {
+        self.skip_blanks();
+        let rest = self.rest();
+        let length = rest.find(|c| !continues_name(c)).unwrap_or(rest.len());
+        if length == 0 || !rest.starts_with(starts_name) {
+            return Err(self.expected(what));
+        }
+        let span = self.at..self.at + length;
+        self.at = span.end;
+        Ok((&rest[..length], span))
+    }
+
+    fn number(&mut self) -> Read<(u64, Range<usize>)> {
+        self.skip_blanks();
+        let rest = self.rest();
+        let length = rest.find(|c: char| !(c.is_ascii_digit() || c == '_')).unwrap_or(rest.len());
+        if length == 0 || rest.starts_with('_') {
+            return Err(self.expected("a number of operations"));
+        }
+        let span = self.at..self.at + length;
+        self.at = span.end;
+        // Digits beyond 64 bits are too many in any case.
+        let digits: String = rest[..length].chars().filter(|&c| c != '_').collect();
+        let value = digits.parse().unwrap_or(u64::MAX);
+        if value > MOST_COST {
+            let message = format!("an exit costs at most {MOST_COST} operations of a class, not {digits}");
+            let hint = "a cost counts elementary operations: 3 for the addition of two vectors";
+            return Err(Box::new(self.wrong(message, span, "too many").hint(hint)));
+        }
+        Ok((value, span))
+    }
+}
+
+/// The row whose text starts at that octet.
+pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
+    let mut scanner = Scanner { source, at: start };
+    scanner.skip_blanks();
+    let start = scanner.at;
+    let (name, name_at) = scanner.word("the name of the instruction")?;
+    if name.chars().any(|c| c.is_ascii_uppercase() || c == '$') {
+        let message = format!("`{name}` is no name of an instruction");
+        return Err(Box::new(scanner.wrong(message, name_at, "small letters, digits and `_`")));
+    }
+    let operands = operands(&mut scanner)?;
+    let (picture, drawn, picture_at) = picture(&mut scanner, &operands)?;
+    let (exits, exits_at) = exits(&mut scanner)?;
+    let only: Vec<Operand> = operands.iter().map(|(operand, _)| *operand).collect();
+    if let Err(wrong) = Row::check(&only, &picture, exits.len()) {
+        return Err(misfit(&scanner, wrong, &operands, &picture, picture_at));
+    }
+    let row = Row {
+        name: name.to_owned().into(),
+        doc: "".into(),
+        room: "".into(),
+        operands: only.into(),
+        picture,
+        drawn: drawn.to_owned().into(),
+        exits: exits.into(),
+    };
+    Ok(Drawn { row, name_at, picture_at, exits_at, start, end: scanner.at })
+}
+
+fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
+    let mut operands: Vec<(Operand, Range<usize>)> = Vec::new();
+    scanner.expect("(")?;
+    if scanner.accept(")") {
+        return Ok(operands);
+    }
+    loop {
+        let (letter, letter_at) = scanner.word("the letter of an operand")?;
+        let is_letter = letter.len() == 1 && LETTERS.contains(&letter.as_bytes()[0]);
+        if !is_letter {
+            let message = format!("`{letter}` is no letter of an operand");
+            let hint = "`d e` are written, `x y` read and written, `a b c` read, `i j` immediate";
+            return Err(Box::new(scanner.wrong(message, letter_at, "not one of dexyabcij").hint(hint)));
+        }
+        scanner.expect(":")?;
+        let (kind_text, kind_at) = scanner.word("the kind of the operand")?;
+        let Some(kind) = Kind::from_name(kind_text) else {
+            let names = Kind::ALL.map(Kind::name);
+            let hint = match did_you_mean(kind_text, names) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("there are {}", names.join(", ")),
+            };
+            let message = format!("`{kind_text}` is no kind of operand");
+            return Err(Box::new(scanner.wrong(message, kind_at, "not known").hint(hint)));
+        };
+        let letter = letter.as_bytes()[0];
+        if matches!(letter, b'i' | b'j') != kind.register_file().is_none() {
+            let (is, wants) = match kind.register_file() {
+                Some(_) => ("a register", "one of d e x y a b c"),
+                None => ("an immediate", "`i` or `j`"),
+            };
+            let message = format!("`{}` is {is}, so its letter is {wants}", kind.name());
+            return Err(Box::new(scanner.wrong(message, letter_at, "the letter does not go with the kind")));
+        }
+        if operands.iter().any(|(other, _)| other.letter == letter) {
+            let message = format!("two operands have the letter `{}`", letter as char);
+            return Err(Box::new(scanner.wrong(message, letter_at, "second one")));
+        }
+        operands.push((Operand { letter, kind }, letter_at.start..kind_at.end));
+        if scanner.accept(")") {
+            return Ok(operands);
+        }
+        scanner.expect(",")?;
+    }
+}
+
+fn picture<'a>(
+    scanner: &mut Scanner<'a>,
+    operands: &[(Operand, Range<usize>)],
+) -> Read<(Picture, &'a str, Range<usize>)> {
+    scanner.expect("\"").map_err(|_| scanner.expected("the word as a picture, in quotation marks"))?;
+    let rest = scanner.rest();
+    let length = rest.find(['"', '\n']).filter(|&end| rest[end..].starts_with('"'));
+    let Some(length) = length else {
+        let start = scanner.at - 1;
+        return Err(Box::new(scanner.wrong(
+            "the picture has no closing quotation mark",
+            start..start + 1,
+            "opened here",
+        )));
+    };
+    let (text, span) = (&rest[..length], scanner.at..scanner.at + length);
+    scanner.at = span.end + 1;
+    let picture = Picture::parse(text).map_err(|wrong| {
+        let at = |octet: usize| {
+            span.start + octet..span.start + octet + text[octet..].chars().next().map_or(1, char::len_utf8)
+        };
+        let (place, hint) = match wrong {
+            PictureError::Character(octet) => {
+                (at(octet), String::from("0 and 1 are fixed bits, a letter is a bit of its operand, `-` is 0"))
+            }
+            PictureError::Split(letter) => {
+                let last = text.rfind(letter as char).unwrap_or(0);
+                (at(last), "the bits of a field stand side by side".to_owned())
+            }
+            PictureError::Length(bits) => {
+                let has_major = CUSTOM.iter().any(|(name, _)| text.starts_with(name));
+                let rule = if has_major { "`custom0` stands for 6 bits; " } else { "" };
+                let change = match bits < 32 {
+                    true => format!("add {} `-`", 32 - bits),
+                    false => format!("leave out {}", bits - 32),
+                };
+                (span.clone(), format!("{rule}{change}"))
+            }
+            PictureError::TooManyFields => (span.clone(), "leave out operands".to_owned()),
+        };
+        Box::new(scanner.wrong(wrong.to_string(), place, "cannot be read").hint(hint))
+    })?;
+    if !picture.is_custom() {
+        let wide: u32 =
+            operands.iter().filter_map(|(operand, _)| picture.field(operand.letter)).map(|f| u32::from(f.width)).sum();
+        let message = "the word stands outside of the opcodes kept for extensions";
+        let majors: Vec<String> = CUSTOM.iter().map(|(name, bits)| format!("{name} ({bits})")).collect();
+        let hint = format!(
+            "begin the picture with one of {}; 26 bits are left, of which operands take {wide}",
+            majors.join(", ")
+        );
+        let first = span.start..span.start + text.len().min(6);
+        return Err(Box::new(scanner.wrong(message, first, "the major opcode").hint(hint)));
+    }
+    Ok((picture, text, span))
+}
+
+fn misfit(
+    scanner: &Scanner,
+    wrong: RowError,
+    operands: &[(Operand, Range<usize>)],
+    picture: &Picture,
+    picture_at: Range<usize>,
+) -> Box<Diagnostic> {
+    let of = |letter: u8| operands.iter().find(|(operand, _)| operand.letter == letter);
+    match wrong {
+        RowError::Field(letter) => {
+            let Some((operand, at)) = of(letter) else {
+                return Box::new(scanner.wrong("a field without an operand", picture_at, "here"));
+            };
+            let (letter, kind) = (letter as char, operand.kind);
+            let message = match (picture.field(operand.letter), kind.width()) {
+                (Some(field), Some(width)) => {
+                    format!("the field `{letter}` has {} bits, but `{}` needs {width}", field.width, kind.name())
+                }
+                _ => format!("the picture has no field for operand `{letter}`"),
+            };
+            let hint = match kind.width() {
+                Some(width) => format!("draw it as {}", (letter.to_string()).repeat(width.into())),
+                None => format!("draw it with as many `{letter}` as it has bits"),
+            };
+            let message = scanner.wrong(message, at.clone(), "this operand");
+            Box::new(message.also(isa::diagnostic::Place::new(scanner.source, picture_at), "the picture").hint(hint))
+        }
+        RowError::Spare => {
+            let spare = picture.fields().iter().find(|field| of(field.letter).is_none());
+            let letter = spare.map_or('?', |field| field.letter as char);
+            let message = format!("the picture has a field `{letter}`, but the row no such operand");
+            let hint = format!(
+                "add an operand such as `{letter}: {}`, or draw the bits as `-`",
+                if matches!(letter, 'i' | 'j') { "Un" } else { "S" }
+            );
+            Box::new(scanner.wrong(message, picture_at, "in this picture").hint(hint))
+        }
+        RowError::Twice(_) | RowError::Letter(_) | RowError::NoExit => {
+            Box::new(scanner.wrong("the row cannot be read", picture_at, "here"))
+        }
+    }
+}
+
+fn exits(scanner: &mut Scanner) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
+    scanner.expect("[")?;
+    let (mut exits, mut places): (Vec<Exit>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    loop {
+        let (name, name_at) = scanner.word("the name of an exit, such as `Done`")?;
+        if exits.iter().any(|other| other.name == name) {
+            let message = format!("two exits are called `{name}`");
+            return Err(Box::new(scanner.wrong(message, name_at, "second one").hint("the name tells exits apart")));
+        }
+        scanner.expect("(")?;
+        let exit = cost(scanner, name)?;
+        if let Some(first) = exits.first()
+            && first.is_body != exit.is_body
+        {
+            let message = "either all exits cost what the body does, or none";
+            return Err(Box::new(
+                scanner
+                    .wrong(message, name_at, "not as the first one")
+                    .hint("what was executed is counted before it is known which exit is taken"),
+            ));
+        }
+        exits.push(exit);
+        places.push(name_at.start..scanner.at);
+        if exits.len() > 32 {
+            return Err(Box::new(scanner.wrong("an instruction has at most 32 exits", name_at, "one too many")));
+        }
+        if scanner.accept("]") {
+            return Ok((exits, places));
+        }
+        scanner.expect(",")?;
+    }
+}
+
+/// What stands in the parentheses of an exit, the closing one included.
+fn cost(scanner: &mut Scanner, name: &str) -> Read<Exit> {
+    let mut exit = Exit { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };
+    if scanner.accept(")") {
+        return Ok(exit);
+    }
+    let mut named: Vec<Class> = Vec::new();
+    loop {
+        if scanner.accept(";") {
+            let at = scanner.at - 1;
+            let hint = "the meaning of a built-in row reports units; a body costs what `body` or fixed numbers say";
+            return Err(Box::new(
+                scanner.wrong("an exit of an extension has no cost for each unit", at..at + 1, "here").hint(hint),
+            ));
+        }
+        let (class_text, class_at) = scanner.word("a class of operations")?;
+        if class_text == "body" && named.is_empty() {
+            exit.is_body = true;
+            scanner.expect(")")?;
+            return Ok(exit);
+        }
+        let Some(class) = Class::from_name(class_text) else {
+            let names = Class::ALL.iter().map(|class| class.name());
+            let hint = match did_you_mean(class_text, names.clone()) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => {
+                    format!("there are {}, and `body` for the sum of the body", names.collect::<Vec<_>>().join(", "))
+                }
+            };
+            let message = format!("`{class_text}` is no class of operations");
+            return Err(Box::new(scanner.wrong(message, class_at, "not known").hint(hint)));
+        };
+        if named.contains(&class) {
+            let message = format!("the class `{class_text}` is named twice");
+            return Err(Box::new(scanner.wrong(message, class_at, "second one")));
+        }
+        named.push(class);
+        (exit.cost[class], _) = scanner.number()?;
+        if scanner.accept(")") {
+            return Ok(exit);
+        }
+        if !scanner.rest().trim_start().starts_with(';') {
+            scanner.expect(",")?;
+        }
+    }
+}

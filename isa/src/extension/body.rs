@@ -1,0 +1,73 @@
+//! The body of an extension instruction: steps over template registers, with branches inside and explicit exits.
+
+use std::sync::Arc;
+
+use crate::diagnostic::{Place, Source};
+use crate::isa::Instruction;
+
+/// A number in a step that may depend on an immediate of the row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Immediate {
+    /// Always the same.
+    Number(i32),
+    /// `factor` times the row's immediate of that letter, plus `offset`.
+    Letter {
+        /// `i` or `j`.
+        letter: u8,
+        /// What the immediate is multiplied with.
+        factor: i32,
+        /// What is added.
+        offset: i32,
+    },
+}
+
+/// What a step does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Act {
+    /// An instruction on template registers; a branch distance counts steps.
+    Row {
+        /// The instruction. Its registers are numbered as [`super::registers`] says.
+        instruction: Instruction,
+        /// Its immediates `i` and `j`.
+        immediates: [Immediate; 2],
+    },
+    /// The end, by an exit of the row.
+    Exit {
+        /// Number of the exit.
+        exit: u8,
+        /// Whether the program goes on where the row's distance leads, instead of behind the instruction.
+        jumps: bool,
+    },
+}
+
+/// One step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// What it does.
+    pub act: Act,
+    /// Its line in the source of the body, from 1.
+    pub line: u32,
+}
+
+/// A body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Body {
+    /// The steps; the first one is executed first, the last one is an exit or does not fall through.
+    pub steps: Vec<Step>,
+    /// The file.
+    pub source: Arc<Source>,
+    /// Temporaries that it uses, by file (`s`, `v`, `w`): one more than the highest number.
+    pub temporaries: [u8; 3],
+}
+
+impl Body {
+    /// Place of a step's line, for messages.
+    pub fn place(&self, step: usize) -> Option<Place> {
+        let before = self.steps.get(step)?.line.checked_sub(1)? as usize;
+        let text = &self.source.text;
+        let start: usize = text.split_inclusive('\n').take(before).map(str::len).sum();
+        let line = text.get(start..)?.lines().next()?;
+        let blanks = line.len() - line.trim_start().len();
+        Some(Place::new(&self.source, start + blanks..start + blanks + line.trim().len()))
+    }
+}

@@ -1,0 +1,234 @@
+//! What can be known of a body without running it: which steps and exits are reached, whether it may go on for ever, and that no step
+//! reads a register that nothing has written.
+
+use super::body::{Act, Body};
+use super::registers;
+use crate::isa::Isa;
+use crate::row::{Kind, Row};
+use crate::table::Op;
+
+/// What makes a body unusable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Defect {
+    /// The step reads a register that is not written on every way to it.
+    Unwritten {
+        /// The step.
+        step: usize,
+        /// File of the register.
+        file: char,
+        /// Its number in the body.
+        number: u8,
+    },
+    /// An exit is reached on a way on which a destination is not written.
+    Missing {
+        /// The exit's step.
+        step: usize,
+        /// Letter of the destination.
+        letter: u8,
+        /// Which of its registers.
+        offset: u8,
+    },
+    /// No exit is reached.
+    Endless,
+}
+
+/// What a body may do.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Whether each step can be reached.
+    pub reached: Vec<bool>,
+    /// The exits that can be reached, by number.
+    pub exits: Vec<bool>,
+    /// A step that can lead back to itself.
+    pub repeats: Option<usize>,
+    /// Steps that may stop the machine: accesses to memory, traps.
+    pub faults: Vec<usize>,
+    /// Steps that may divide by zero, which a machine can make a trap.
+    pub divisions: Vec<usize>,
+    /// Letters of operands that no step reads or writes.
+    pub unused: Vec<u8>,
+}
+
+/// The registers of the three files that hold something, a bit each.
+type Known = [u128; 3];
+
+fn place(file: char) -> usize {
+    match file {
+        's' => 0,
+        'v' => 1,
+        _ => 2,
+    }
+}
+
+/// The bits of an operand's registers.
+fn bits(kind: Kind, number: u8) -> u128 {
+    ((1 << kind.registers()) - 1) << number
+}
+
+impl Body {
+    /// The steps that may follow a step.
+    pub fn successors(&self, step: usize, isa: &Isa) -> impl Iterator<Item = usize> + use<> {
+        let (next, target) = match self.steps[step].act {
+            Act::Exit { .. } => (None, None),
+            Act::Row { instruction, .. } => {
+                let row = isa.row(instruction.op);
+                let distance = row.operands.iter().find(|operand| operand.kind == Kind::Rel);
+                let target = distance.map(|operand| (step as i64 + instruction.fields.get(operand.letter)) as usize);
+                let falls = instruction.op != Op::trap && (target.is_none() || row.exits.len() > 1);
+                (falls.then_some(step + 1), target)
+            }
+        };
+        next.into_iter().chain(target)
+    }
+
+    /// Registers (file, number in the body, how many) that a step reads or writes.
+    fn operands(&self, step: usize, isa: &Isa, is_written: bool) -> Vec<(char, u8, Kind)> {
+        let Act::Row { instruction, .. } = self.steps[step].act else { return Vec::new() };
+        let operands = isa.row(instruction.op).operands.iter();
+        let wanted = operands.filter(|operand| if is_written { operand.is_written() } else { operand.is_read() });
+        let found = wanted.filter_map(|operand| {
+            let number = instruction.fields.get(operand.letter) as u8;
+            operand.kind.register_file().map(|file| (file, number, operand.kind))
+        });
+        found.collect()
+    }
+
+    /// What the body of a row may do.
+    ///
+    /// # Errors
+    /// Why it cannot be executed, by the lowest step.
+    pub fn summary(&self, row: &Row, isa: &Isa) -> Result<Summary, Defect> {
+        let mut known: Vec<Option<Known>> = vec![None; self.steps.len()];
+        let mut first: Known = [1, 0, 0];
+        for operand in row.operands.iter().filter(|operand| operand.is_read()) {
+            if let Some(file) = operand.kind.register_file() {
+                first[place(file)] |= bits(operand.kind, registers::operand(operand.letter, 0));
+            }
+        }
+        known[0] = Some(first);
+        let mut open = vec![0];
+        while let Some(step) = open.pop() {
+            let mut after = known[step].expect("what is open has been reached");
+            for (file, number, kind) in self.operands(step, isa, true) {
+                after[place(file)] |= bits(kind, number);
+            }
+            for next in self.successors(step, isa) {
+                let merged = match known[next] {
+                    None => after,
+                    Some(before) => std::array::from_fn(|file| before[file] & after[file]),
+                };
+                if known[next] != Some(merged) {
+                    known[next] = Some(merged);
+                    open.push(next);
+                }
+            }
+        }
+        self.check(row, isa, &known)?;
+        Ok(self.summarize(row, isa, &known))
+    }
+
+    fn check(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
+        let mut has_exit = false;
+        for (step, known) in known.iter().enumerate() {
+            let Some(known) = known else { continue };
+            for (file, number, kind) in self.operands(step, isa, false) {
+                let missing = (0..kind.registers()).find(|at| known[place(file)] >> (number + at) & 1 == 0);
+                if let Some(at) = missing {
+                    return Err(Defect::Unwritten { step, file, number: number + at });
+                }
+            }
+            if !matches!(self.steps[step].act, Act::Exit { .. }) {
+                continue;
+            }
+            has_exit = true;
+            for operand in row.operands.iter().filter(|operand| operand.is_written()) {
+                let Some(file) = operand.kind.register_file() else { continue };
+                let number = registers::operand(operand.letter, 0);
+                let missing = (0..operand.kind.registers()).find(|at| known[place(file)] >> (number + at) & 1 == 0);
+                if let Some(offset) = missing {
+                    return Err(Defect::Missing { step, letter: operand.letter, offset });
+                }
+            }
+        }
+        if has_exit { Ok(()) } else { Err(Defect::Endless) }
+    }
+
+    fn summarize(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Summary {
+        let mut summary = Summary {
+            reached: known.iter().map(Option::is_some).collect(),
+            exits: vec![false; row.exits.len()],
+            ..Summary::default()
+        };
+        let mut used = Vec::new();
+        for step in (0..self.steps.len()).filter(|&step| known[step].is_some()) {
+            match self.steps[step].act {
+                Act::Exit { exit, jumps } => {
+                    summary.exits[usize::from(exit)] = true;
+                    used.extend(
+                        jumps
+                            .then_some(row.operands.iter().filter(|o| o.kind == Kind::Rel))
+                            .into_iter()
+                            .flatten()
+                            .map(|o| o.letter),
+                    );
+                }
+                Act::Row { instruction, immediates } => {
+                    let inner = isa.row(instruction.op);
+                    if instruction.op == Op::trap || matches!(&*inner.room, "local" | "bus") {
+                        summary.faults.push(step);
+                    }
+                    if inner.exits.iter().any(|exit| exit.cost[crate::Class::Div] != 0) {
+                        summary.divisions.push(step);
+                    }
+                    let registers =
+                        [false, true].into_iter().flat_map(|is_written| self.operands(step, isa, is_written));
+                    used.extend(
+                        registers.filter_map(|(_, number, _)| registers::letter(number)).map(|(letter, _)| letter),
+                    );
+                    used.extend(immediates.iter().filter_map(|immediate| match immediate {
+                        super::Immediate::Letter { letter, .. } => Some(*letter),
+                        super::Immediate::Number(_) => None,
+                    }));
+                    if summary.repeats.is_none() && self.leads_to(step, isa).contains(&step) {
+                        summary.repeats = Some(step);
+                    }
+                }
+            }
+        }
+        summary.unused = row.operands.iter().map(|o| o.letter).filter(|letter| !used.contains(letter)).collect();
+        summary
+    }
+
+    /// The steps that may come after a step, in their order.
+    pub fn leads_to(&self, step: usize, isa: &Isa) -> Vec<usize> {
+        let mut is_reached = vec![false; self.steps.len()];
+        let mut open: Vec<usize> = self.successors(step, isa).collect();
+        while let Some(at) = open.pop() {
+            if !std::mem::replace(&mut is_reached[at], true) {
+                open.extend(self.successors(at, isa));
+            }
+        }
+        (0..self.steps.len()).filter(|&at| is_reached[at]).collect()
+    }
+
+    /// Whether a step after one that writes some of these registers may read some of those; numbers are those of the body, a bit each.
+    pub fn reads_after_writing(&self, isa: &Isa, file: char, written: u128, read: u128) -> bool {
+        let touches = |step: usize, is_written: bool, wanted: u128| {
+            self.operands(step, isa, is_written)
+                .into_iter()
+                .any(|(of, number, kind)| of == file && bits(kind, number) & wanted != 0)
+        };
+        let writes = (0..self.steps.len()).filter(|&step| touches(step, true, written));
+        let mut is_reached = vec![false; self.steps.len()];
+        let mut open: Vec<usize> = writes.flat_map(|step| self.successors(step, isa)).collect();
+        while let Some(at) = open.pop() {
+            if !std::mem::replace(&mut is_reached[at], true) {
+                if touches(at, false, read) {
+                    return true;
+                }
+                open.extend(self.successors(at, isa));
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,7 @@
+//! What an extension is worth: what its file makes one suspect, and a scene drawn without and with it.
+
+mod comparison;
+mod findings;
+
+pub use comparison::{Comparison, SCHEMA, Variant, compare};
+pub use findings::findings;

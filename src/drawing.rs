@@ -123,6 +123,11 @@ fn picture(image: &Image, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
 }
 
 impl Drawing {
+    /// Pixels that had no ray of their own.
+    pub fn interpolated(&self) -> u64 {
+        (self.words.len() - self.frame.items.len()) as u64
+    }
+
     /// Elementary operations of each pixel, row 0 first.
     pub fn operations(&self) -> Vec<u64> {
         let mut operations = vec![0; self.words.len()];

@@ -113,10 +113,13 @@ impl Job {
         job.memory = MemoryOptions {
             word: job.machine.arithmetic.word,
             layout: arguments.machine.layout.unwrap_or(arguments.kernels.profile.layout()),
-            kd_depth: arguments.effort.kd_depth,
+            kd_depth: arguments.effort.tree.kd_depth,
+            kd_method: arguments.effort.tree.kd_build,
             formats: overrides::collect(&arguments.numbers.formats),
         };
         job.kernels.profile = arguments.kernels.profile;
+        job.kernels.interpolate = arguments.effort.interpolate;
+        job.kernels.skips = arguments.effort.skips();
         job.kernels.weight_cutoff = arguments.effort.weight_cutoff;
         for (function, path) in &arguments.kernels.replaced {
             job.kernels.replaced.push((*function, files::source(path)?));

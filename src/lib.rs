@@ -15,6 +15,7 @@ pub mod load;
 pub mod machine;
 pub mod manual;
 pub mod result;
+pub mod savings;
 pub mod scaling;
 pub mod stress;
 pub mod summary;

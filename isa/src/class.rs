@@ -126,6 +126,11 @@ impl Counts {
         self.iter().filter(|(class, _)| class.is_elementary()).map(|(_, count)| count).sum()
     }
 
+    /// Sum of all classes but moves, which are wiring, and octets, which are no operations: what kernels are compared by.
+    pub fn operations(&self) -> u64 {
+        self.iter().filter(|(class, _)| !matches!(class, Class::Move | Class::Octet)).map(|(_, count)| count).sum()
+    }
+
     /// The counts with their classes, in order.
     pub fn iter(&self) -> impl Iterator<Item = (Class, u64)> + '_ {
         Class::ALL.iter().map(|&class| (class, self[class]))

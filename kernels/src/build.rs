@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
+use scenes::cadrage::Formats;
 use scenes::image::Image;
 use scenes::model::{Scene, View};
 
 use crate::function::{Function, Profile};
 use crate::prelude;
+use crate::skip::{Skip, Skips};
 
 /// What of a scene decides which code its programs contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,29 +23,42 @@ pub struct Features {
     pub bounces: u32,
     /// Weight (in the weight format) that a secondary ray must exceed.
     pub cutoff: i32,
+    /// What its programs leave out.
+    pub skips: Skips,
+    /// Difference of a component (in the colour format) up to which the corners around a pixel agree, so that it is interpolated; `None`
+    /// when every pixel has its ray.
+    pub agreement: Option<i32>,
 }
 
 impl Features {
     /// The features of a scene.
-    pub fn new(scene: &Scene, view: &View, cutoff: i32) -> Features {
+    pub fn new(scene: &Scene, view: &View, formats: &Formats, options: &Options) -> Features {
+        let raw = |value: f64, bits: u32| (value * f64::from(bits).exp2()).floor() as i32;
         let any =
             |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
         Features {
             has_mirror: any(&|m| scene.materials[m].reflection > 0.0),
             is_transparent: any(&|m| scene.materials[m].transmission() > 0.0),
             bounces: view.bounces,
-            cutoff,
+            cutoff: raw(options.weight_cutoff, formats.weight),
+            skips: options.skips.known_to(options.profile),
+            agreement: options.interpolate.map(|difference| raw(difference, formats.colour)),
         }
     }
 
     /// Whether any ray has children.
     pub fn has_tree(&self) -> bool {
-        self.bounces > 0 && (self.has_mirror || self.is_transparent)
+        self.bounces > 0 && (self.has_mirror || self.is_transparent || !self.skips.has(Skip::Features))
     }
 
     /// Whether any ray is refracted.
     pub fn has_glass(&self) -> bool {
-        self.bounces > 0 && self.is_transparent
+        self.bounces > 0 && (self.is_transparent || !self.skips.has(Skip::Features))
+    }
+
+    /// Weight that a secondary ray must exceed to be followed; -1 where one of weight 0 is followed, too.
+    pub fn least_weight(&self) -> i32 {
+        if self.cutoff == 0 && !self.skips.has(Skip::Weightless) { -1 } else { self.cutoff }
     }
 }
 
@@ -71,11 +86,23 @@ pub struct Options {
     pub crop: Option<Crop>,
     /// Weight that a secondary ray must exceed, in [0, 1].
     pub weight_cutoff: f64,
+    /// What is left out because the scene or a ray does not need it.
+    pub skips: Skips,
+    /// Difference of a component up to which the corners around a pixel agree, so that it is interpolated; `None` when every pixel has its
+    /// ray (report 6.4).
+    pub interpolate: Option<f64>,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { profile: Profile::default(), replaced: Vec::new(), crop: None, weight_cutoff: 0.0 }
+        Options {
+            profile: Profile::default(),
+            replaced: Vec::new(),
+            crop: None,
+            weight_cutoff: 0.0,
+            skips: Skips::default(),
+            interpolate: None,
+        }
     }
 }
 
@@ -97,8 +124,7 @@ pub struct Build {
 /// # Errors
 /// What the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
 pub fn build(scene: &Scene, view: &View, image: &Image, isa: &Isa, options: &Options) -> Result<Build, Report> {
-    let cutoff = (options.weight_cutoff * f64::from(image.formats.weight).exp2()).floor() as i32;
-    let features = Features::new(scene, view, cutoff);
+    let features = Features::new(scene, view, &image.formats, options);
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
     let mut warnings = Report::default();
     let mut program = |is_main: bool| -> Result<Program, Report> {
@@ -122,7 +148,7 @@ fn assemble(
     let walk = options.profile.walk(&replaced);
     let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, walk, is_main))];
     files.extend(prelude::included(image.layout));
-    for function in Function::of_program(is_main, features.has_tree(), features.has_glass()) {
+    for function in Function::of_program(is_main, features) {
         let own = options.replaced.iter().rev().find(|(other, _)| *other == function).map(|(_, source)| source.clone());
         let ours = || {
             let (path, text) = function.file(options.profile, &replaced)?;

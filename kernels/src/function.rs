@@ -8,6 +8,9 @@ use scenes::layout::Layout;
 
 use crate::prelude::Walk;
 
+use crate::build::Features;
+use crate::skip::Skip;
+
 /// A set of kernels that differ only by which file serves a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Profile {
@@ -52,6 +55,19 @@ impl Profile {
     }
 }
 
+impl Profile {
+    /// Whether the profile's kernels know how to leave something out. Those of the report test every triangle of a packet, whole, and
+    /// search as it is printed.
+    pub const fn knows(self, skip: Skip) -> bool {
+        match self {
+            Profile::Report => {
+                matches!(skip, Skip::Features | Skip::Weightless | Skip::Unlit | Skip::AnyHit | Skip::Beyond)
+            }
+            Profile::Vector | Profile::Ray => true,
+        }
+    }
+}
+
 impl fmt::Display for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
@@ -85,6 +101,8 @@ enum Need {
     Tree,
     /// Some material is transparent.
     Glass,
+    /// Pixels between others that agree are interpolated.
+    Interpolation,
 }
 
 /// Path (below the folder of the kernels) and text of a file.
@@ -209,6 +227,8 @@ functions! {
     Refract "refract" Core Glass { Report "report/refract.s" Vector "vector/refract.s" }
     /// Makes the camera rays and feeds the cores.
     Dispatch "dispatch" Main Always { Vector "vector/dispatch.s" }
+    /// A pixel between others that agree.
+    Interpolate "interpolate" Main Interpolation { Vector "vector/interpolate.s" }
     /// The first packet of a camera ray.
     FirstPacket "first_packet" Main Always { Report "report/first_packet.s" Vector "vector/first_packet.s" }
 }
@@ -223,8 +243,10 @@ impl Function {
         }
     }
 
-    /// The functions of the program of a core, or of the main processor, for a scene with or without secondary rays and glass.
-    pub fn of_program(is_main: bool, has_tree: bool, has_glass: bool) -> impl Iterator<Item = Function> {
+    /// The functions of the program of a core, or of the main processor, for what a scene needs.
+    pub fn of_program(is_main: bool, features: &Features) -> impl Iterator<Item = Function> {
+        let (has_tree, has_glass) = (features.has_tree(), features.has_glass());
+        let interpolates = features.agreement.is_some();
         Function::ALL.iter().copied().filter(move |function| {
             let is_here = match function.place() {
                 Place::Both => true,
@@ -236,6 +258,7 @@ impl Function {
                     Need::Always => true,
                     Need::Tree => has_tree,
                     Need::Glass => has_glass,
+                    Need::Interpolation => interpolates,
                 }
         })
     }
@@ -254,7 +277,7 @@ impl FromStr for Function {
 }
 
 /// The error for a name that is none of `known`.
-fn unknown(what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) -> Box<Diagnostic> {
+pub(crate) fn unknown(what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) -> Box<Diagnostic> {
     let known: Vec<&str> = known.into_iter().collect();
     let hint = match did_you_mean(name, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),

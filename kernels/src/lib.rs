@@ -7,7 +7,9 @@ pub mod build;
 pub mod constants;
 pub mod function;
 pub mod prelude;
+pub mod skip;
 pub mod twin;
 
 pub use build::{Build, Options, build};
 pub use function::{Function, Profile};
+pub use skip::{Skip, Skips};

@@ -13,12 +13,16 @@ use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
 use crate::constants::Constants;
+use crate::skip::Skip;
 
 /// Octets of the buffer's tables of materials and lights (report 6.2); what does not fit stays in global memory.
 const TABLES: u32 = 768;
 
 /// References that are fetched at once.
 const REFERENCES_AT_ONCE: u32 = 128;
+
+/// Triangles of a ray that its core remembers, a power of two.
+const TESTED_PLACES: u32 = 16;
 
 /// Trap number of a ray that visits more packets than there are.
 const TRAP_STUCK: u32 = 1;
@@ -67,7 +71,10 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
     if is_main {
-        camera(&mut text, &image.camera)
+        camera(&mut text, &image.camera);
+        if features.agreement.is_some() {
+            text.push_str("CORNERS: .space 4 * sizeof(pixel)\n");
+        }
     } else {
         core(&mut text, image, features, walk)
     }
@@ -92,7 +99,7 @@ fn largest_packet(image: &Image) -> usize {
 fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
     let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
         Constants::new(image);
-    vec![
+    let mut constants = vec![
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
         ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
@@ -116,7 +123,7 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("REFERENCES_AT_ONCE", REFERENCES_AT_ONCE.into()),
         ("AMBIENT", image.ambient.into()),
         ("BOUNCES", features.bounces.into()),
-        ("CUTOFF", features.cutoff.into()),
+        ("CUTOFF", features.least_weight().into()),
         ("HAS_TREE", features.has_tree().into()),
         ("HAS_GLASS", features.has_glass().into()),
         ("HAS_BACKGROUND", (image.background != [0; 3]).into()),
@@ -125,7 +132,12 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("FIRST_ROW", crop.row.into()),
         ("WIDTH", crop.width.into()),
         ("HEIGHT", crop.height.into()),
-    ]
+        ("TESTED_PLACES", TESTED_PLACES.into()),
+        ("INTERPOLATES", features.agreement.is_some().into()),
+        ("AGREEMENT", features.agreement.unwrap_or(0).into()),
+    ];
+    constants.extend(Skip::ALL.iter().map(|&skip| (skip.constant(), features.skips.has(skip).into())));
+    constants
 }
 
 /// What a walk with boxes needs in any buffer.
@@ -150,6 +162,12 @@ fn core(text: &mut String, image: &Image, features: &Features, walk: Walk) {
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
     );
+    if features.skips.has(Skip::Tested) {
+        text.push_str("TESTED: .space 4 * TESTED_PLACES\n");
+    }
+    if !features.skips.has(Skip::Unlit) {
+        text.push_str("SHADE_FACING: .space 8\n");
+    }
     // The profile that walks from the root brings nodes of its own.
     if features.has_tree() && walk != Walk::Restart {
         text.push_str("NODES: .space (BOUNCES + 1) * sizeof(raynode)\n");
@@ -231,7 +249,7 @@ fn camera(text: &mut String, camera: &RawCamera) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub fn included(layout: Layout) -> [Arc<Source>; 4] {
+pub fn included(layout: Layout) -> [Arc<Source>; 5] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -241,7 +259,7 @@ pub fn included(layout: Layout) -> [Arc<Source>; 4] {
         Layout::Report => file!("report.inc"),
         Layout::Wide => file!("wide.inc"),
     };
-    [file!("registers.inc"), file!("materials.inc"), file!("scalar.inc"), structures]
+    [file!("registers.inc"), file!("materials.inc"), file!("scalar.inc"), structures, file!("tested.inc")]
 }
 
 /// Assembles files one after the other as one program; `name` stands for the program in messages.

@@ -39,6 +39,8 @@ pub struct Variant {
     pub bounces: u32,
     /// Weight that a secondary ray must exceed.
     pub cutoff: f64,
+    /// Difference up to which corners agree, so that a pixel between them is interpolated; `None` when every pixel has its ray.
+    pub interpolate: Option<f64>,
 }
 
 impl Variant {
@@ -64,6 +66,9 @@ impl fmt::Display for Variant {
         if self.cutoff != 0.0 {
             write!(f, " cutoff {}", self.cutoff)?;
         }
+        if let Some(difference) = self.interpolate {
+            write!(f, " interpolated {difference}")?;
+        }
         Ok(())
     }
 }
@@ -86,6 +91,8 @@ pub struct Choice {
     pub bounces: Vec<u32>,
     /// Weights that a secondary ray must exceed.
     pub cutoffs: Vec<f64>,
+    /// Differences up to which corners agree.
+    pub interpolate: Vec<Option<f64>>,
 }
 
 impl Choice {
@@ -99,12 +106,14 @@ impl Choice {
             layout: *self.layouts.first()?,
             bounces: *self.bounces.first()?,
             cutoff: *self.cutoffs.first()?,
+            interpolate: *self.interpolate.first()?,
         };
         let mut kinds: Vec<Variant> = self.profiles.iter().map(|&profile| base.with(profile)).collect();
         kinds.extend(self.roundings[1..].iter().map(|&rounding| Variant { rounding, ..base }));
         kinds.extend(self.layouts[1..].iter().map(|&layout| Variant { layout, ..base }));
         kinds.extend(self.bounces[1..].iter().map(|&bounces| Variant { bounces, ..base }));
         kinds.extend(self.cutoffs[1..].iter().map(|&cutoff| Variant { cutoff, ..base }));
+        kinds.extend(self.interpolate[1..].iter().map(|&interpolate| Variant { interpolate, ..base }));
         Some(kinds.iter().flat_map(|&kind| self.words.iter().map(move |&word| Variant { word, ..kind })).collect())
     }
 }
@@ -128,6 +137,8 @@ pub struct Measured {
     pub bounces: u32,
     /// Weight that a secondary ray must exceed.
     pub cutoff: f64,
+    /// Difference up to which corners agree, so that a pixel between them is interpolated; null when every pixel has its ray.
+    pub interpolate: Option<f64>,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: crate::result::Formats,
     /// The picture against double precision with five bounces and no cut-off.
@@ -160,6 +171,7 @@ pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -
     job.view = View { bounces: variant.bounces, ..view.clone() };
     job.kernels.profile = variant.profile;
     job.kernels.weight_cutoff = variant.cutoff;
+    job.kernels.interpolate = variant.interpolate;
     job.memory.word = variant.word;
     job.memory.layout = variant.layout;
     job.machine.arithmetic.word = variant.word;
@@ -182,6 +194,7 @@ pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -
         layout: variant.layout.name(),
         bounces: variant.bounces,
         cutoff: variant.cutoff,
+        interpolate: variant.interpolate,
         error,
         rays,
         clocks: each(result.clocks),

@@ -51,7 +51,7 @@ impl RayErrors {
         modes: Modes,
     ) -> Result<RayErrors, Report> {
         let image = image::build(scene, view, memory)?;
-        let features = Features::new(scene, view, 0);
+        let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
         let twin = Twin::new(&image, &features, profile, modes).expect("an image that was built can be read");
         let (width, height) = view.size;
         let ended: Vec<Ended> = (0..width * height)

@@ -7,6 +7,7 @@ mod kernel;
 mod machine;
 mod numbers;
 pub mod overrides;
+mod tree;
 mod value;
 mod view;
 
@@ -15,5 +16,6 @@ pub use extension::{ExtensionArguments, extend};
 pub use kernel::{KernelArguments, plain};
 pub use machine::{MachineArguments, layout};
 pub use numbers::NumberArguments;
+pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};
 pub use view::{CameraKind, ViewArguments};

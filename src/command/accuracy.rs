@@ -61,6 +61,9 @@ pub struct AccuracyArguments {
     /// Weights that a secondary ray must exceed, in [0, 1].
     #[arg(long, value_name = "W,..", value_delimiter = ',', value_parser = weight, default_value = "0,0.0078125")]
     cutoffs: Vec<f64>,
+    /// Differences of a component up to which the corners around a pixel agree, so that it is interpolated, in [0, 1]; or `none`.
+    #[arg(long, value_name = "D,..", value_delimiter = ',', value_parser = difference, default_value = "none,0.01")]
+    interpolate: Vec<Agreement>,
     /// Table as comma-separated values.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -73,6 +76,17 @@ pub struct AccuracyArguments {
     /// Adds the host's nanoseconds a pixel.
     #[arg(long)]
     timing: bool,
+}
+
+/// Difference up to which corners agree; none when every pixel has its ray.
+#[derive(Clone, Copy, Debug)]
+struct Agreement(Option<f64>);
+
+fn difference(text: &str) -> Result<Agreement, String> {
+    match text {
+        "none" => Ok(Agreement(None)),
+        _ => weight(text).map(|difference| Agreement(Some(difference))),
+    }
 }
 
 fn profile(text: &str) -> Result<Profile, String> {
@@ -139,6 +153,7 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
         layouts: arguments.layouts.clone(),
         bounces: arguments.bounces.clone(),
         cutoffs: arguments.cutoffs.clone(),
+        interpolate: arguments.interpolate.iter().map(|agreement| agreement.0).collect(),
     };
     let variants = choice.variants().ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
     let (mut measured, mut refused) = (Vec::new(), Vec::new());
@@ -216,7 +231,7 @@ fn text(results: &Results) -> String {
 
 fn csv(measured: &[Measured]) -> String {
     let mut text = String::from(
-        "scene,variant,profile,word,rounding,layout,bounces,cutoff,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,\
+        "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,\
          misclassified_per_million,t_p99,t_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
     );
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
@@ -231,6 +246,7 @@ fn csv(measured: &[Measured]) -> String {
             one.layout.to_owned(),
             one.bounces.to_string(),
             one.cutoff.to_string(),
+            number(one.interpolate),
             one.clocks.to_string(),
             one.instructions.to_string(),
             one.octets.to_string(),

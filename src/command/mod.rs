@@ -18,6 +18,7 @@ mod run_arguments;
 mod run_result;
 mod scene;
 mod schema;
+mod skips;
 mod stress;
 mod trace;
 
@@ -57,6 +58,7 @@ enum Command {
     Disassemble(disassemble::DisassembleArguments),
     Annex(annex::AnnexArguments),
     Scene(scene::SceneArguments),
+    Skips(Box<skips::SkipsArguments>),
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
     Trace(Box<trace::TraceArguments>),
@@ -83,6 +85,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
         Some(Command::Annex(arguments)) => annex::execute(arguments, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
+        Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),

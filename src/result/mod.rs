@@ -83,6 +83,8 @@ pub struct Render {
     pub triangles: usize,
     /// Rays by kind.
     pub rays: Rays,
+    /// Pixels that were interpolated and have no camera ray.
+    pub interpolated: u64,
     /// Instructions of all cores.
     pub instructions: u64,
     /// Operations of all cores, by class.
@@ -128,7 +130,7 @@ pub struct Render {
 /// Rays by kind, counted from calls of the kernels' functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Rays {
-    /// One a pixel.
+    /// One a pixel that is not interpolated.
     pub camera: u64,
     /// Reflected ones, total reflection included.
     pub reflected: u64,
@@ -289,7 +291,8 @@ impl Render {
             height: drawing.crop.height,
             crop: (!whole).then_some(crop),
             triangles: job.scene.triangles.len(),
-            rays: Rays::new(drawing.words.len() as u64, frame.profile.as_ref()),
+            interpolated: drawing.interpolated(),
+            rays: Rays::new(drawing.words.len() as u64 - drawing.interpolated(), frame.profile.as_ref()),
             instructions: cores.iter().map(|core| core.instructions).sum(),
             counts: ByClass(counts),
             octets: cores.iter().map(|core| core.octets.0).sum(),

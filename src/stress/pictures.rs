@@ -41,7 +41,7 @@ fn shifted(scene: &Scene) -> View {
 fn drawn(scene: &Scene, view: &View) -> Result<(Image, Vec<Vector>), String> {
     let refused = |report: isa::diagnostic::Report| report.render(false);
     let image = image::build(scene, view, &image::Options::default()).map_err(refused)?;
-    let features = Features::new(scene, view, 0);
+    let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
     let (width, height) = view.size;
     let crop = Crop { column: 0, row: 0, width, height };
     let pixels = twin::render(&image, &features, &crop, Profile::Ray, Modes::default()).map_err(|f| f.to_string())?;
@@ -137,7 +137,7 @@ pub fn colours(_: u64, trials: Range<u64>) -> Tally {
         let mut options = image::Options::default();
         options.formats.colour = Some(30);
         let image = image::build(&scene, &view, &options).map_err(|report| report.render(false))?;
-        let features = Features::new(&scene, &view, 0);
+        let features = Features::new(&scene, &view, &image.formats, &kernels::Options::default());
         let crop = Crop { column: 0, row: 0, width: 40, height: 30 };
         let pixels = twin::render(&image, &features, &crop, Profile::Ray, Modes::default());
         let pixels = picture(&image, &pixels.map_err(|failure| failure.to_string())?).pixels;

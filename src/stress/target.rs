@@ -47,7 +47,7 @@ impl Target {
         };
         let view = View::new(scene.size);
         let image = image::build(&scene, &view, &image::Options::default()).expect("the mesh fits the grid");
-        let features = Features::new(&scene, &view, 0);
+        let features = Features::new(&scene, &view, &image.formats, &kernels::Options::default());
         let twin = Twin::new(&image, &features, profile, Nearest32).expect("an image that was built can be read");
         let mut splits = [vec![], vec![], vec![]];
         for node in &twin.stage.nodes {

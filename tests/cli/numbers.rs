@@ -76,7 +76,8 @@ fn a_case_of_the_catalogue_is_tried_and_taken_up() {
 #[test]
 fn variants_are_measured_and_the_front_is_marked() {
     let session = Session::new();
-    let arguments = "accuracy cornell --size 16x12 --words 32,20 --cutoffs 0 --csv all.csv --svg all.svg";
+    let arguments =
+        "accuracy cornell --size 16x12 --words 32,20 --cutoffs 0 --interpolate none --csv all.csv --svg all.svg";
     let measured = session.json(arguments);
     let variants = measured["variants"].as_array().unwrap();
     let names: Vec<&str> = variants.iter().map(|one| one["variant"].as_str().unwrap()).collect();

@@ -13,7 +13,7 @@ mod vectors;
 use isa::diagnostic::Report;
 use isa::number::Modes;
 use kernels::Profile;
-use kernels::build::Features;
+use kernels::build::{Features, Options};
 use kernels::twin::Twin;
 use scenes::image::{self, Image};
 use scenes::model::{Scene, View};
@@ -31,7 +31,7 @@ struct Subject {
 impl Subject {
     fn new(scene: Scene, view: View, modes: Modes, options: image::Options) -> Result<Subject, Report> {
         let image = image::build(&scene, &view, &image::Options { word: modes.word, ..options })?;
-        let features = Features::new(&scene, &view, 0);
+        let features = Features::new(&scene, &view, &image.formats, &Options::default());
         Ok(Subject { scene, view, image, features, modes, profile: Profile::Vector })
     }
 

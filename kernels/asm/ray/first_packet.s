@@ -11,11 +11,36 @@
     li    packet_refs, ROOT
     call  link_step, descend
     lwide came_by, NOTES + note.plane(last_note)
+first_leave:
     wlow  s12, came_by
     vput  box_low, s12, 0
     whigh s12, came_by
     vput  box_low, s12, 1
     ret   link_packet
-1:  movi  packet_count, -1
+1:
+.if SKIP_MISSED
+    movi  packet_count, -1
     ret   link_packet
+.else
+    ; A packet is searched all the same, and left as if by the scene's box.
+    rexit came_by, origin, v6
+  .if LAYOUT_REPORT
+    first_node
+2:  next_node 3f
+    go_left
+    jump  2b
+3:  lw    packet_refs, node.trig(packet_count)
+    lhu   packet_count, node.pnum(packet_count)
+  .else
+    li    packet_refs, ROOT
+2:  ldwide split, (packet_refs)
+    whigh s12, split
+    andi  s13, s12, 3
+    xor   packet_refs, s12, s13
+    isubi s13, s13, 3
+    bnez  s13, 2b
+    wlow  packet_count, split
+  .endif
+    jump  first_leave
+.endif
 .endfunc

@@ -4,10 +4,15 @@
 ; and 3. Scratch: s12 to s15, v6, v7, w0 to w2.
 .func next_packet
     lwide came_by, NOTES + note.plane(last_note)
+.if SKIP_ANY_HIT
     beqz  any_hit, 1f
     bnez  near, 4f
-1:  rbefore s12, origin, came_by, near_t, dir + t - pos
+1:
+.endif
+.if SKIP_BEYOND
+    rbefore s12, origin, came_by, near_t, dir + t - pos
     bnez  s12, 4f
+.endif
     beqz  last_note, 3f
     lw    packet_refs, NOTES + note.far(last_note)
     lea   last_note, -sizeof(note)(last_note)
@@ -25,8 +30,12 @@
     wjoin came_by, s12, s13
     bweq  came_by, leaves_by, 4f
     li    packet_refs, ROOT
+.if SKIP_BEYOND
     rbefore s12, origin, came_by, near_t, dir + t - pos
     beqz  s12, 2b
+.else
+    jump  2b
+.endif
 4:  movi  packet_count, -1
     ret   link_packet
 .endfunc

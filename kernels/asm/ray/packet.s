@@ -3,14 +3,31 @@
 ;
 ; The test is part of the loop: a triangle's vertices go from global memory to registers, its other octets are read with a hit that is
 ; the nearest so far (of the report's layout it goes to the buffer whole, beside the nearest one).
-; Scratch: s12 to s15, v6 to v9; packet_count and packet_refs are used up.
+; Scratch: s12 to s15, tested, v6 to v9; packet_count and packet_refs are used up.
+
+; On to the next triangle when the ray has met this one, s15.
+.macro pass_tested
+  .if SKIP_TESTED
+    tested_place s12, s15
+    lw    tested, TESTED(s12)
+    beq   tested, s15, packet_rest
+    sw    s15, TESTED(s12)
+  .endif
+.endm
+
 .func packet
+.if SKIP_EMPTY
     blez  packet_count, packet_end
+.endif
 .if LAYOUT_REPORT
     mov   s14, packet_count
+  .if !SKIP_EMPTY
+    beqz  s14, packet_end
+  .endif
 packet_next:
     next_reference
-    movi  s12, sizeof(triangle)
+    pass_tested
+    triangle_octets s12
     load  slot, s15, s12
     load_triangle slot
 .else
@@ -30,8 +47,12 @@ packet_block:
     load  s13, packet_refs, s14
   .endif
     addr  s14, s13, s14
+  .if !SKIP_EMPTY
+    beq   s13, s14, packet_end
+  .endif
 packet_next:
     lwp   s15, 4(s13)
+    pass_tested
     ldv3  v6, triangle.v0(s15)
 .endif
 .region triangle
@@ -55,11 +76,17 @@ packet_nearer:
     bgeu  s15, near, packet_rest
 1:  mov   near_t, s12
     mov   near, s15
+.if SKIP_ANY_HIT
     bnez  any_hit, packet_end
+.endif
 .if LAYOUT_REPORT
     mov   s12, slot
     mov   slot, near_slot
     mov   near_slot, s12
+.elseif SKIP_OCTETS
+    sv    v6, triangle.v0(near_slot)
+    sv    v7, triangle.v1(near_slot)
+    sv    v8, triangle.v2(near_slot)
 .else
     movi  s12, sizeof(triangle)
     load  near_slot, s15, s12

@@ -3,13 +3,19 @@
 ; stops at the first packet with a hit, which may lie in a later one.
 ; In: the ray, the packet's box, near, near_t, any_hit. Out: the packet and its box. Returns by link_packet.
 .func next_packet
+.if SKIP_ANY_HIT
     beqz  any_hit, 1f
     bnez  near, 4f
-1:  call  link_step, exit_face
+1:
+.endif
+    call  link_step, exit_face
+.if SKIP_BEYOND
     bnez  any_hit, 2f
     beqz  near, 3f
 2:  blt   near_t, exit_t, 4f
-3:  lv    v6, ROOT_HIGH(s0)
+3:
+.endif
+    lv    v6, ROOT_HIGH(s0)
     vgetr s12, direction, exit_axis
     bgez  s12, 5f
     lv    v6, ROOT_LOW(s0)

@@ -23,7 +23,14 @@ shade_light:
     vnorm v6, s13, v26
     call  link_step, unit
     dot_product facing, v6, dir
+  .if SKIP_UNLIT
     blez  s12, shade_next
+  .else
+    beqz  s12, shade_next               ; in the surface, or the light itself: there is no ray
+    bgez  s12, 1f
+    mov   s12, s0
+1:
+  .endif
     sw    s12, SHADE_COSINE(s0)
     vmov  origin, point
     vmov  direction, v6

@@ -4,15 +4,24 @@
 .reg row,       s22
 .reg started,   s23        ; cores that have work
 .reg target,    s19
+.reg pass,      s18        ; 0: the corners, 1: what lies between them
 .reg answer,    v18        ; (pixel, -, -) and the colour
 .entry dispatch
 .func dispatch
-    mov   pixel_at, s0
     mov   started, s0
+.if INTERPOLATES
+    mov   pass, s0
+dispatch_pass:
+.endif
+    mov   pixel_at, s0
     li    row, FIRST_ROW
 dispatch_row:
     li    column, FIRST_COLUMN
 dispatch_pixel:
+.if INTERPOLATES
+    call  link_node, interpolate
+    bnez  s12, dispatch_next
+.endif
     call  link_node, camera
     call  link_packet, first_packet
     cores s12
@@ -27,6 +36,7 @@ dispatch_send:
     vput  message, packet_count, 1
     vput  message, packet_refs, 2
     send5 target, message
+dispatch_next:
     iaddi pixel_at, pixel_at, 1
     iaddi column, column, 1
     li    s12, FIRST_COLUMN + WIDTH
@@ -34,10 +44,20 @@ dispatch_send:
     iaddi row, row, 1
     li    s12, FIRST_ROW + HEIGHT
     blt   row, s12, dispatch_row
+.if INTERPOLATES
+    beqz  started, dispatch_drained
+.endif
 dispatch_drain:
     call  link_node, receive
     isubi started, started, 1
     bnez  started, dispatch_drain
+.if INTERPOLATES
+dispatch_drained:
+    bnez  pass, 1f
+    movi  pass, 1
+    jump  dispatch_pass
+1:
+.endif
     halt
 .endfunc
 

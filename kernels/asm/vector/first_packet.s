@@ -52,6 +52,17 @@
     call  link_step, descend
     ret   link_packet
 first_missed:
+.if SKIP_MISSED
     movi  packet_count, -1
+.else
+    ; A packet is searched all the same, and left as if by the scene's box.
+    movi  exit_axis, 3
+    mov   exit_run, s0
+    movi  exit_slope, 1
+    vmov  fars, zero_vector
+    call  link_step, descend
+    lv    box_low, ROOT_LOW(s0)
+    lv    box_high, ROOT_HIGH(s0)
+.endif
     ret   link_packet
 .endfunc

@@ -3,15 +3,26 @@
 ; In: the ray, the packet's box, near, near_t, any_hit. Out: the packet and its box. Returns by link_packet. Report, pseudo codes 2 and 3.
 .func next_packet
     call  link_step, exit_face
+.if SKIP_ANY_HIT
     beqz  any_hit, 1f
     bnez  near, 4f
+  .if SKIP_BEYOND
     jump  2f
-1:  beqz  near, 3f
+  .endif
+1:
+.endif
+.if SKIP_BEYOND
+  .if !SKIP_ANY_HIT
+    bnez  any_hit, 2f
+  .endif
+    beqz  near, 3f
 2:  wextend w0, exit_slope, 0
     wmac  w0, near_t, exit_slope            ; (t + 1) |D_k|: t + 1 itself may not fit a word
     wextend w1, exit_run, t + dir - pos
     bwlt  w0, w1, 4f
-3:  srl   s13, backwards, exit_axis
+3:
+.endif
+    srl   s13, backwards, exit_axis
     andi  s13, s13, 1
     movi  s12, ROOT_HIGH
     element s12, s12, s13, ROOT_LOW - ROOT_HIGH

@@ -3,9 +3,14 @@
 ; A triangle at a time is loaded beside the nearest one, so any packet fits the buffer; references that are an array come in blocks.
 ; Scratch: s12 to s15 and what triangle needs; packet_count and packet_refs are used up.
 .func packet
+.if SKIP_EMPTY
     blez  packet_count, 4f
+.endif
 .if LAYOUT_REPORT
     mov   s14, packet_count
+  .if !SKIP_EMPTY
+    beqz  s14, 4f
+  .endif
 2:  next_reference
 .else
 packet_block:
@@ -18,9 +23,18 @@ packet_block:
     load  s13, packet_refs, s12
     addr  s14, s13, s12
     addr  packet_refs, packet_refs, s12
+  .if !SKIP_EMPTY
+    beq   s13, s14, 4f
+  .endif
 2:  lwp   s15, 4(s13)
 .endif
-    movi  s12, sizeof(triangle)
+.if SKIP_TESTED
+    tested_place s12, s15
+    lw    tested, TESTED(s12)
+    beq   tested, s15, 3f
+    sw    s15, TESTED(s12)
+.endif
+    triangle_octets s12
     load  slot, s15, s12
     call  link_step, triangle
     blt   near_t, s12, 3f
@@ -40,6 +54,10 @@ packet_nearer:
     mov   s12, slot
     mov   slot, near_slot
     mov   near_slot, s12
+.if SKIP_ANY_HIT
     beqz  any_hit, 3b
     ret   link_packet
+.else
+    jump  3b
+.endif
 .endfunc

@@ -7,7 +7,9 @@
     mov   refracted_weight, s0
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.transmission(s12)
+.if SKIP_WEIGHTLESS
     beqz  s13, 3f
+.endif
     mul   refracted_weight, weight_now, s13, weight
     lw    s14, material.index(s12)
     bnez  inside, 1f
@@ -20,7 +22,11 @@
     sub   s13, s15, s13
     bgez  s13, 2f
     mov   reflected_weight, refracted_weight
+.if SKIP_WEIGHTLESS
     mov   refracted_weight, s0
+.else
+    movi  refracted_weight, -1              ; there is no such ray, not even one of weight 0
+.endif
     ret   link_node
 2:  sw    s13, raynode.k(node)
     sw    s14, raynode.eta(node)

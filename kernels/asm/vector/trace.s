@@ -3,6 +3,9 @@
 ; Out: near (0: nothing), near_t, near_slot. Returns by link_trace.
 .func trace
     vabs  steep, direction
+.if SKIP_TESTED
+    forget_tested
+.endif
     li    steps, MOST_STEPS
 1:  call  link_packet, packet
     call  link_packet, next_packet

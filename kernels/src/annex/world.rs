@@ -10,9 +10,10 @@ use scenes::layout::Layout;
 use scenes::model::{Light, Material, Scene, Triangle, View};
 
 use super::Row;
-use crate::build::{Crop, Features};
+use crate::build::{Crop, Features, Options};
 use crate::function::{Function, Profile};
 use crate::prelude;
+use crate::skip::Skips;
 
 /// Octets of global memory that every driver is content with.
 pub const MEMORY: usize = 128 << 10;
@@ -29,9 +30,13 @@ const DRIVERS: &[(&str, &str)] = files! {
     "annex/first_packet.s" "annex/next_packet.s" "annex/node.s" "annex/pixel.s" "report.inc" "scalar.inc"
 };
 
+/// A scene that needs every function.
+const EVERYTHING: Features =
+    Features { has_mirror: true, is_transparent: true, bounces: 1, cutoff: 0, skips: Skips::ALL, agreement: None };
+
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let core = Function::of_program(false, true, true).filter(|&function| function != Function::Pixel);
+    let core = Function::of_program(false, &EVERYTHING).filter(|&function| function != Function::Pixel);
     core.chain([Function::FirstPacket]).filter_map(|function| function.file(Profile::Report, &[]))
 }
 
@@ -66,7 +71,8 @@ impl Row {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
-        let features = Features::new(&scene, &view, 0);
+        let options = Options { profile: Profile::Report, ..Options::default() };
+        let features = Features::new(&scene, &view, &image.formats, &options);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
         let text = prelude::text(&image, &features, &crop, Profile::Report.walk(&[]), false);
         let mut files: Vec<Arc<Source>> = vec![Source::new("<assumptions>", text)];

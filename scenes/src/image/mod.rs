@@ -28,15 +28,23 @@ pub struct Options {
     pub word: u32,
     /// How triangles and tree are stored.
     pub layout: Layout,
-    /// Levels of the kd tree below the root.
-    pub kd_depth: u32,
+    /// How high the kd tree may be.
+    pub kd_depth: kdtree::Depth,
+    /// How the kd tree is built.
+    pub kd_method: kdtree::Method,
     /// Fraction bits set by the user.
     pub formats: Overrides,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { word: 32, layout: Layout::Wide, kd_depth: kdtree::DEPTH, formats: Overrides::default() }
+        Options {
+            word: 32,
+            layout: Layout::Wide,
+            kd_depth: kdtree::Depth::default(),
+            kd_method: kdtree::Method::default(),
+            formats: Overrides::default(),
+        }
     }
 }
 
@@ -151,9 +159,8 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
         scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
     let triangles: Vec<[[i32; 3]; 3]> =
         scene.triangles.iter().map(|t| t.vertices.map(|v| vertices[v as usize])).collect();
-    let boxes: Vec<Bounds> = triangles.iter().map(Bounds::of_triangle).collect();
     let unit = 1 << shift;
-    let inner = boxes.iter().copied().reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
+    let inner = triangles.iter().map(Bounds::of_triangle).reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
         let Bounds { low, high } = grid.bounds();
         Bounds { low: low.map(|x| stored(x, shift) << shift), high: high.map(|x| stored(x, shift) << shift) }
     });
@@ -168,7 +175,7 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
     };
     let ambient = colour("the ambient intensity", view.ambient)?;
     let background = three(view.background, |x| colour("the background", x))?;
-    let tree = kdtree::build(&boxes, bounds, options.kd_depth)?;
+    let tree = kdtree::build(&triangles, bounds, options.kd_depth, options.kd_method)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
     let (bytes, regions) = encode::memory(&tree, scene, &triangles, &tables, layout, shift, view.size)?;
     let root = regions[1].1.start;

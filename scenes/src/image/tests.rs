@@ -135,8 +135,9 @@ proptest! {
             }
         }
         // The tree is the one of the triangles as they are stored.
-        let boxes: Vec<Bounds> = contents.triangles.iter().map(|t| Bounds::of_triangle(&t.vertices)).collect();
-        prop_assert_eq!(kdtree::build(&boxes, image.bounds, kdtree::DEPTH).unwrap(), contents.tree);
+        let vertices: Vec<_> = contents.triangles.iter().map(|t| t.vertices).collect();
+        let tree = kdtree::build(&vertices, image.bounds, kdtree::Depth::default(), kdtree::Method::default());
+        prop_assert_eq!(tree.unwrap(), contents.tree);
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! The report's kd tree, level by level, on the grid's integers (report 5.3). How a node is divided is decided in [`split`], by exact
 //! comparisons; nothing here knows of memory layouts or of how rays walk through the tree.
 
+mod clip;
+mod growth;
+mod membership;
 pub mod split;
 mod statistics;
 #[cfg(test)]
@@ -8,7 +11,8 @@ mod tests;
 
 use isa::diagnostic::{Diagnostic, Report};
 
-use split::{Division, Side};
+use growth::TooMany;
+use membership::{ByBox, ByPart};
 pub use statistics::Statistics;
 
 /// Levels below the root that the report's tree has at most.
@@ -100,53 +104,83 @@ pub struct KdTree {
     pub nodes: Vec<Node>,
 }
 
-/// Builds the tree of `triangles` in the box `root`, with at most `depth` levels below the root (capped at [`DEEPEST`]).
+/// How high a tree may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// At most so many levels below the root, capped at [`DEEPEST`].
+    Levels(u32),
+    /// 8 + 1.3 log2 n levels for n triangles, to the nearest: what suits the cost model (Wald and Havran 2006) where the report's 16 would
+    /// leave large packets.
+    Auto,
+}
+
+impl Default for Depth {
+    fn default() -> Depth {
+        Depth::Levels(DEPTH)
+    }
+}
+
+impl Depth {
+    /// Levels below the root for a number of triangles.
+    pub fn levels(self, triangles: usize) -> u32 {
+        match self {
+            Depth::Levels(levels) => levels,
+            Depth::Auto => (8.0 + 1.3 * (triangles.max(1) as f64).log2()).round() as u32,
+        }
+        .min(DEEPEST)
+    }
+}
+
+/// Which triangles a node holds, and where it may be divided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The report's: a triangle is in a node when its box reaches into it, planes cross the longest axis.
+    #[default]
+    Report,
+    /// A triangle is in a node when a part of it is, planes cross any axis: fewer references and cheaper trees, for a longer build.
+    Exact,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Method; 2] = [Method::Report, Method::Exact];
+
+    /// Name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::Report => "report",
+            Method::Exact => "exact",
+        }
+    }
+}
+
+/// Builds the tree of `triangles`, given by their vertices, in the box `root`.
 ///
-/// `root` has to contain the triangles; the rule is that of [`split::best`] at every node, until it finds no division that pays.
+/// `root` has to contain the triangles. A node is divided at the plane of the lowest cost, as [`split::best`] has it, until no plane pays.
+/// Sorting is by digits, so a level takes time linear in its references; both sides of a large node are built at the same time, on all
+/// threads of the current pool. The tree is the same for any number of them.
 ///
 /// # Errors
 /// When the leaves would hold more than [`MOST_REFERENCES`] triangles together.
-pub fn build(triangles: &[Bounds], root: Bounds, depth: u32) -> Result<KdTree, Report> {
-    let all = (0..triangles.len() as u32).collect();
-    let mut nodes = vec![Node { bounds: root, next: None, content: Content::Leaf { triangles: all } }];
-    let mut references = triangles.len();
-    let mut sweep = split::Sweep::default();
-    let mut level = 0..1;
-    for _ in 0..depth.min(DEEPEST) {
-        for number in level.clone() {
-            let left = nodes.len() as u32;
-            let Node { bounds, content, .. } = &mut nodes[number];
-            let Content::Leaf { triangles: packet } = content else { continue };
-            let Some(division) = sweep.best(bounds, packet.iter().map(|&index| &triangles[index as usize])) else {
-                continue;
-            };
-            let bounds = *bounds;
-            let (below, above) = divide(packet, triangles, &division);
-            references = references - packet.len() + below.len() + above.len();
-            if references > MOST_REFERENCES {
-                return Err(Diagnostic::error(format!(
-                    "the kd tree would hold more than {MOST_REFERENCES} references to {} triangles",
-                    triangles.len()
-                ))
-                .hint("ask for a lower tree with --kd-depth")
-                .into());
-            }
-            *content = Content::Inner { axis: division.axis, at: division.at, left };
-            let (lower, upper) = division.children(&bounds);
-            nodes.push(Node { bounds: lower, next: Some(left + 1), content: Content::Leaf { triangles: below } });
-            nodes.push(Node { bounds: upper, next: Some(left + 2), content: Content::Leaf { triangles: above } });
+pub fn build(triangles: &[[[i32; 3]; 3]], root: Bounds, depth: Depth, method: Method) -> Result<KdTree, Report> {
+    let levels = depth.levels(triangles.len());
+    let tree = match method {
+        Method::Report => {
+            let boxes: Vec<Bounds> = triangles.iter().map(Bounds::of_triangle).collect();
+            let all = (0..boxes.len() as u32).collect();
+            growth::grow(&ByBox { triangles: &boxes }, all, root, levels)
         }
-        if nodes.len() == level.end {
-            break;
+        Method::Exact => {
+            let membership = ByPart { triangles };
+            growth::grow(&membership, membership.whole(), root, levels)
         }
-        level = level.end..nodes.len();
-        nodes[level.end - 1].next = None;
-    }
-    Ok(KdTree { nodes })
-}
-
-fn divide(packet: &[u32], triangles: &[Bounds], division: &Division) -> (Vec<u32>, Vec<u32>) {
-    let side = |index: u32, side| division.reaches(&triangles[index as usize], side);
-    let of = |wanted| packet.iter().copied().filter(|&index| side(index, wanted)).collect();
-    (of(Side::Left), of(Side::Right))
+    };
+    tree.map_err(|TooMany| {
+        Diagnostic::error(format!(
+            "the kd tree would hold more than {MOST_REFERENCES} references to {} triangles",
+            triangles.len()
+        ))
+        .hint("ask for a lower tree with --kd-depth")
+        .into()
+    })
 }

@@ -15,6 +15,16 @@ pub enum Side {
     Right,
 }
 
+impl Side {
+    /// The other child.
+    pub fn other(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+}
+
 /// A plane that divides a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Division {
@@ -53,18 +63,34 @@ pub fn half_surface(bounds: &Bounds) -> u128 {
     x * y + y * z + z * x
 }
 
-/// Cost of dividing a node, times half its surface: `left` and `right` are half surface and number of triangles of each child.
-pub fn scaled_cost(node: u128, left: (u128, usize), right: (u128, usize)) -> u128 {
-    node + left.0 * left.1 as u128 + right.0 * right.1 as u128
+/// Half the surface of the part of a node below a plane, as a function of its length along the plane's axis: it is linear.
+struct Slice {
+    /// Surface per unit of length.
+    slope: u128,
+    /// Surface at length 0: one face across the axis.
+    face: u128,
 }
 
-/// The best plane of a node: among the bounds of its triangles strictly inside it, on its longest axis, the one with the lowest cost (of
-/// equal costs the lowest coordinate), `None` when no plane costs less than not dividing or the node's surface is 0.
+impl Slice {
+    fn new(node: &Bounds, axis: usize) -> Slice {
+        let [a, b] = [(axis + 1) % 3, (axis + 2) % 3].map(|other| u128::from(node.side(other)));
+        Slice { slope: a + b, face: a * b }
+    }
+
+    fn half_surface(&self, length: u32) -> u128 {
+        self.slope * u128::from(length) + self.face
+    }
+}
+
+/// The best plane of a node on `axis`, and its cost times half the node's surface: among the bounds of its triangles strictly inside it the
+/// one with the lowest cost (of equal costs the lowest coordinate), `None` when no plane costs less than not dividing.
 ///
-/// Triangles lying in the plane all go to the side that makes the cost lower, at equal cost to the left.
-/// `lows`, `highs` and `flats` are the sorted bounds of the node's triangles on `axis`, `flats` those of triangles with `low == high`.
-pub fn best(node: &Bounds, axis: usize, lows: &[i32], highs: &[i32], flats: &[i32]) -> Option<Division> {
+/// Triangles lying in the plane all go to the side that makes the cost lower, at equal cost to the left. A node whose surface is 0 is not
+/// divided. `lows`, `highs` and `flats` are the sorted bounds of the node's triangles on `axis`, `flats` those of triangles with
+/// `low == high`.
+pub fn best(node: &Bounds, axis: usize, lows: &[i32], highs: &[i32], flats: &[i32]) -> Option<(Division, u128)> {
     let surface = half_surface(node);
+    let slice = Slice::new(node, axis);
     let count = lows.len();
     let mut lowest = surface * count as u128;
     let mut found = None;
@@ -82,21 +108,24 @@ pub fn best(node: &Bounds, axis: usize, lows: &[i32], highs: &[i32], flats: &[i3
         let before = flat;
         flat += flats[flat..].iter().take_while(|&&x| x <= at).count();
         // Those before the candidate were counted away with their own coordinate, so what remains lies in the plane.
-        let (right, in_plane) = (count - high, flat - before);
+        let (right, in_plane) = ((count - high) as u128, (flat - before) as u128);
         if at >= node.high[axis] {
             return found;
         }
         if at <= node.low[axis] {
             continue;
         }
-        let (lower, upper) = Division { axis, at, flat: Side::Left }.children(node);
-        let (lower, upper) = (half_surface(&lower), half_surface(&upper));
-        let flat_left = scaled_cost(surface, (lower, left + in_plane), (upper, right));
-        let flat_right = scaled_cost(surface, (lower, left), (upper, right + in_plane));
-        let (cost, side) = if flat_right < flat_left { (flat_right, Side::Right) } else { (flat_left, Side::Left) };
+        let lower = slice.half_surface(at.abs_diff(node.low[axis]));
+        let upper = slice.half_surface(at.abs_diff(node.high[axis]));
+        let cost = surface + lower * left as u128 + upper * right;
+        let (cost, flat) = match upper < lower {
+            true => (cost + upper * in_plane, Side::Right),
+            false => (cost + lower * in_plane, Side::Left),
+        };
+        let flat = if in_plane == 0 { Side::Left } else { flat };
         if cost < lowest {
             lowest = cost;
-            found = Some(Division { axis, at, flat: side });
+            found = Some((Division { axis, at, flat }, cost));
         }
     }
 }
@@ -110,9 +139,13 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// The best plane of a node that holds `triangles`, see [`best`].
-    pub fn best<'a>(&mut self, node: &Bounds, triangles: impl Iterator<Item = &'a Bounds>) -> Option<Division> {
-        let axis = node.longest_axis();
+    /// The best plane across `axis` of a node that holds `triangles`, and its cost, see [`best`].
+    pub fn best<'a>(
+        &mut self,
+        node: &Bounds,
+        axis: usize,
+        triangles: impl Iterator<Item = &'a Bounds>,
+    ) -> Option<(Division, u128)> {
         self.lows.clear();
         self.highs.clear();
         self.flats.clear();
@@ -124,9 +157,16 @@ impl Sweep {
                 self.flats.push(low);
             }
         }
-        self.lows.sort_unstable();
-        self.highs.sort_unstable();
-        self.flats.sort_unstable();
+        for bounds in [&mut self.lows, &mut self.highs, &mut self.flats] {
+            sort(bounds);
+        }
         best(node, axis, &self.lows, &self.highs, &self.flats)
     }
+}
+
+/// Coordinates from which sorting digit by digit beats comparing.
+const WORTH_DIGITS: usize = 512;
+
+fn sort(coordinates: &mut [i32]) {
+    if coordinates.len() < WORTH_DIGITS { coordinates.sort_unstable() } else { radsort::sort(coordinates) }
 }

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Content, KdTree};
+use super::split::half_surface;
+use super::{Content, KdTree, Node};
 
 /// Size and shape of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
@@ -22,6 +23,9 @@ pub struct Statistics {
     pub mean_triangles: f64,
     /// Largest number of triangles of a leaf.
     pub most_triangles: usize,
+    /// What the cost model expects of a ray that crosses the whole tree: nodes visited plus triangles tested, each weighted with its
+    /// node's share of the root's surface (report 5.3.2). 0 for a root without surface.
+    pub expected_cost: f64,
 }
 
 impl KdTree {
@@ -45,6 +49,19 @@ impl KdTree {
             depth: levels as u32 - 1,
             mean_triangles: references as f64 / leaves as f64,
             most_triangles: packets().max().unwrap_or(0),
+            expected_cost: self.expected_cost(),
         }
+    }
+
+    fn expected_cost(&self) -> f64 {
+        let root = half_surface(&self.nodes[0].bounds) as f64;
+        if root == 0.0 {
+            return 0.0;
+        }
+        let cost = |node: &Node| match &node.content {
+            Content::Inner { .. } => 1.0,
+            Content::Leaf { triangles } => triangles.len() as f64,
+        };
+        self.nodes.iter().map(|node| half_surface(&node.bounds) as f64 / root * cost(node)).sum()
     }
 }

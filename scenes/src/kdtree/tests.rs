@@ -86,6 +86,11 @@ fn levels(tree: &KdTree) -> Vec<Vec<u32>> {
     }
 }
 
+/// Triangles with these boxes.
+fn with_boxes(boxes: &[Bounds]) -> Vec<[[i32; 3]; 3]> {
+    boxes.iter().map(|bounds| [bounds.low, bounds.high, bounds.low]).collect()
+}
+
 fn check(triangles: &[Bounds], unit: i32, depth: u32) -> KdTree {
     let root = triangles
         .iter()
@@ -93,7 +98,7 @@ fn check(triangles: &[Bounds], unit: i32, depth: u32) -> KdTree {
         .reduce(|a, b| a.union(&b))
         .unwrap_or(Bounds { low: [0; 3], high: [0; 3] })
         .grown(unit);
-    let tree = build(triangles, root, depth).unwrap();
+    let tree = build(&with_boxes(triangles), root, Depth::Levels(depth), Method::Report).unwrap();
     assert_eq!(as_model(&tree, 0), model((0..triangles.len() as u32).collect(), triangles, root, depth));
     let mut expected = 0;
     for level in levels(&tree) {
@@ -208,30 +213,117 @@ fn the_statistics_of_a_small_tree_are_right() {
     let statistics = tree.statistics();
     assert_eq!((statistics.nodes, statistics.leaves, statistics.empty_leaves), (3, 2, 0));
     assert_eq!((statistics.references, statistics.depth, statistics.mean_triangles), (4, 1, 2.0));
+    // The halves of a box of 303 x 52 x 52: 1 + (SA(left) n(left) + SA(right) n(right)) / SA(root).
+    let half = |side: f64| side * 104.0 + 2704.0;
+    let Content::Inner { at, .. } = tree.nodes[0].content else { panic!("one division") };
+    let (left, right) = (f64::from(at + 1), f64::from(302 - at));
+    let below = many.iter().filter(|bounds| bounds.low[0] < at).count() as f64;
+    let expected = 1.0 + (half(left) * below + half(right) * (4.0 - below)) / half(303.0);
+    assert!((statistics.expected_cost - expected).abs() < 1e-12, "{statistics:?}, {expected}");
+}
+
+/// A landscape of 2 n^2 triangles.
+fn terrain(n: i32) -> Vec<[[i32; 3]; 3]> {
+    let height = |x: i32, z: i32| ((x * 37 + z * 91) % 101 + (x * x + z * 3) % 57) * 300_000;
+    let step = 2_000_000_000 / n;
+    let corner = |x: i32, z: i32| [(x - n / 2) * step, height(x, z), (z - n / 2) * step];
+    (0..n)
+        .flat_map(|x| (0..n).map(move |z| (x, z)))
+        .flat_map(|(x, z)| {
+            let [a, b, c, d] = [corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1)];
+            [[a, b, c], [b, d, c]]
+        })
+        .collect()
+}
+
+fn root(triangles: &[[[i32; 3]; 3]]) -> Bounds {
+    triangles.iter().map(Bounds::of_triangle).reduce(|a, b| a.union(&b)).unwrap().grown(1)
 }
 
 #[test]
 fn a_terrain_of_sixty_thousand_triangles_takes_moments() {
-    let height = |x: i32, z: i32| ((x * 37 + z * 91) % 101 + (x * x + z * 3) % 57) * 300_000;
-    let corner = |x: i32, z: i32| [(x - 86) * 12_000_000, height(x, z), (z - 87) * 12_000_000];
-    let triangles: Vec<Bounds> = (0..173)
-        .flat_map(|x| (0..174).map(move |z| (x, z)))
-        .flat_map(|(x, z)| {
-            let [a, b, c, d] = [corner(x, z), corner(x + 1, z), corner(x, z + 1), corner(x + 1, z + 1)];
-            [Bounds::of_triangle(&[a, b, c]), Bounds::of_triangle(&[b, d, c])]
-        })
-        .collect();
-    let root = triangles.iter().copied().reduce(|a, b| a.union(&b)).unwrap().grown(1);
-    let tree = build(&triangles, root, DEPTH).unwrap();
-    let statistics = tree.statistics();
-    assert_eq!(statistics.depth, DEPTH);
+    let triangles = terrain(173);
+    let tree = build(&triangles, root(&triangles), Depth::default(), Method::Report).unwrap();
+    assert_eq!(tree.statistics().depth, DEPTH);
     // Every triangle is in every leaf that its box reaches into.
     for node in &tree.nodes {
         if let Content::Leaf { triangles: packet } = &node.content {
             assert!(packet.is_sorted());
             for &index in packet {
-                let (t, b) = (&triangles[index as usize], &node.bounds);
+                let (t, b) = (Bounds::of_triangle(&triangles[index as usize]), &node.bounds);
                 assert!((0..3).all(|k| t.low[k] <= b.high[k] && t.high[k] >= b.low[k]));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tree_does_not_depend_on_threads() {
+    let triangles = terrain(60);
+    for method in Method::ALL {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| build(&triangles, root(&triangles), Depth::Auto, method).unwrap())
+        };
+        assert_eq!(on(1), on(3), "{method:?}");
+    }
+}
+
+#[test]
+fn depth_grows_with_the_scene_where_it_is_automatic() {
+    let levels = [0, 1, 2, 1000, 60_000, 1_000_000, 1 << 30].map(|n| Depth::Auto.levels(n));
+    // 8, 8, 9.3, 20.96, 28.6, 33.9, 47
+    assert_eq!(levels, [8, 8, 9, 21, 29, 34, DEEPEST]);
+    assert_eq!(Depth::Levels(99).levels(5), DEEPEST);
+}
+
+#[test]
+fn parts_make_a_better_tree_than_boxes() {
+    // A landscape that leans over, so that no triangle fills its box.
+    let triangles: Vec<_> =
+        terrain(30).iter().map(|t| t.map(|[x, y, z]| [x / 4 + z / 4, y + z / 4, z / 4 - y])).collect();
+    let cost = |method| {
+        let tree = build(&triangles, root(&triangles), Depth::Levels(12), method).unwrap();
+        tree.statistics().expected_cost
+    };
+    let (boxes, parts) = (cost(Method::Report), cost(Method::Exact));
+    assert!(parts < 0.95 * boxes, "{parts} by parts, {boxes} by boxes");
+}
+
+/// A point of the triangle, by barycentric weights in 64ths, rounded down; it is off by less than a unit.
+fn point([a, b, c]: &[[i32; 3]; 3], u: i64, v: i64) -> [i64; 3] {
+    [0, 1, 2].map(|k| {
+        let [a, b, c] = [a[k], b[k], c[k]].map(i64::from);
+        ((64 - u - v) * a + u * b + v * c).div_euclid(64)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_leaf_holds_every_triangle_of_which_a_part_is_in_it(
+        triangles in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-200..200)), 1..40),
+        scale in 0u32..23,
+    ) {
+        let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| x << scale))).collect();
+        let tree = build(&triangles, root(&triangles), Depth::Levels(10), Method::Exact).unwrap();
+        for node in &tree.nodes {
+            let Content::Leaf { triangles: packet } = &node.content else { continue };
+            prop_assert!(packet.is_sorted());
+            for (index, triangle) in (0..).zip(&triangles) {
+                let is_inside = |p: [i64; 3]| {
+                    (0..3).all(|k| i64::from(node.bounds.low[k]) < p[k] && p[k] + 1 < i64::from(node.bounds.high[k]))
+                };
+                let reaches = (0..=64).flat_map(|u| (0..=64 - u).map(move |v| (u, v)));
+                if reaches.map(|(u, v)| point(triangle, u, v)).any(is_inside) {
+                    prop_assert!(packet.contains(&index), "{triangle:?} in {:?}", node.bounds);
+                }
+                // None is there by its box alone: its own box reaches in, too.
+                let whole = Bounds::of_triangle(triangle);
+                if packet.contains(&index) {
+                    prop_assert!((0..3).all(|k| whole.low[k] <= node.bounds.high[k] && whole.high[k] >= node.bounds.low[k]));
+                }
             }
         }
     }

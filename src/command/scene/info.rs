@@ -8,7 +8,7 @@ use scenes::image::Options;
 use scenes::info::SceneInfo;
 use scenes::layout::Layout;
 
-use crate::arguments::overrides;
+use crate::arguments::{TreeArguments, overrides};
 use crate::failure::{Exit, Failure};
 use crate::table::{count, grouped, row, table};
 use crate::terminal::Terminal;
@@ -35,9 +35,8 @@ pub struct InfoArguments {
     /// Structures of global memory.
     #[arg(long, value_name = "NAME", value_parser = layout(), default_value = Layout::Wide.name())]
     layout: Layout,
-    /// Levels of the kd tree below its root, 0 to 40.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=40), default_value = "16")]
-    kd_depth: u32,
+    #[command(flatten)]
+    tree: TreeArguments,
     /// Bits of a word, 8 to 32.
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32), default_value = "32")]
     word: u32,
@@ -61,7 +60,8 @@ pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Res
     let options = Options {
         word: arguments.word,
         layout: arguments.layout,
-        kd_depth: arguments.kd_depth,
+        kd_depth: arguments.tree.kd_depth,
+        kd_method: arguments.tree.kd_build,
         formats: overrides::collect(&arguments.formats),
     };
     let facts = SceneInfo::new(&loaded.scene, &options)?;
@@ -96,7 +96,7 @@ fn text(facts: &SceneInfo) -> String {
     text += &memory(facts);
     let tree = &facts.tree;
     text += &format!(
-        "\nkd tree: {} on {}, {} ({} empty), {} ({:.1} a leaf, at most {})\n",
+        "\nkd tree: {} on {}, {} ({} empty), {} ({:.1} a leaf, at most {}); expected cost of a ray {:.1}\n",
         count(tree.nodes as u64, "node", "nodes"),
         count(u64::from(tree.depth) + 1, "level", "levels"),
         count(tree.leaves as u64, "leaf", "leaves"),
@@ -104,6 +104,7 @@ fn text(facts: &SceneInfo) -> String {
         count(tree.references as u64, "reference", "references"),
         tree.mean_triangles,
         grouped(tree.most_triangles as u64),
+        tree.expected_cost,
     );
     let formats: Vec<String> = facts.formats.0.iter().skip(1).map(|(name, bits)| format!("{name} {bits}")).collect();
     text += &format!("formats: word {}, fraction bits {}\n", facts.formats.0[0].1, formats.join(", "));

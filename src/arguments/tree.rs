@@ -1,0 +1,29 @@
+//! How the kd tree is built.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use scenes::kdtree::{DEEPEST, Depth, Method};
+
+/// Options of the kd tree.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct TreeArguments {
+    /// Levels of the kd tree below its root, 0 to 40; `auto` for 8 + 1.3 log2 of the number of triangles.
+    #[arg(long, value_name = "N", value_parser = depth, default_value = "16")]
+    pub kd_depth: Depth,
+    /// Which triangles a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node.
+    #[arg(long, value_name = "METHOD", value_parser = method(), default_value = Method::default().name())]
+    pub kd_build: Method,
+}
+
+fn depth(text: &str) -> Result<Depth, String> {
+    match text.parse() {
+        Ok(levels @ 0..=DEEPEST) => Ok(Depth::Levels(levels)),
+        _ if text == "auto" => Ok(Depth::Auto),
+        _ => Err(format!("a number from 0 to {DEEPEST} or `auto` is expected")),
+    }
+}
+
+fn method() -> impl TypedValueParser<Value = Method> {
+    let names = PossibleValuesParser::new(Method::ALL.map(Method::name));
+    names.map(|name| *Method::ALL.iter().find(|m| m.name() == name).expect("the parser lets only names pass"))
+}

@@ -1,0 +1,134 @@
+//! What is left out where a scene does not need it: the picture stays as it is, and less is done.
+
+use std::collections::BTreeSet;
+
+use kernels::{Profile, Skip};
+use lancer::drawing::Comparison;
+use lancer::job::Job;
+use lancer::savings::{self, Saving, Savings};
+use scenes::generate::{self, SCENES};
+use scenes::layout::Layout;
+
+/// A generated scene, small enough for a dozen pictures.
+fn job(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Job {
+    let smaller = |name: &str| match name {
+        "terrain" => (None, Some(300)),
+        "cornell" => (Some(2), None),
+        "sphereflake" => (Some(0), None),
+        "slabs" => (Some(3), None),
+        "mirrors" | "slivers" => (Some(1), None),
+        _ => (None, None),
+    };
+    let (level, triangles) = smaller(name);
+    let scene = generate::scene(name, &generate::Options { level, triangles, size }).unwrap();
+    let mut job = Job::new(scene);
+    job.view.shift = [0.137, 0.071];
+    job.kernels.profile = profile;
+    job.memory.layout = layout;
+    job
+}
+
+fn measured(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Savings {
+    savings::measure(&job(name, profile, layout, size), &|| {}).unwrap_or_else(|error| panic!("{name}: {error:?}"))
+}
+
+fn saving<'a>(savings: &'a Savings, name: &str) -> &'a Saving {
+    savings.rows.iter().find(|saving| saving.name == name).unwrap()
+}
+
+#[test]
+fn no_skip_changes_a_picture() {
+    for scene in SCENES {
+        for &profile in &Profile::ALL {
+            for layout in Layout::ALL {
+                let savings = measured(scene.name, profile, layout, (7, 5));
+                for saving in savings.rows.iter().filter(|saving| saving.claims_identity) {
+                    assert!(
+                        saving.is_identical && saving.image_hash == savings.rows[0].image_hash,
+                        "{} with {profile} kernels in the {layout} layout: {} changes the picture",
+                        scene.name,
+                        saving.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn each_skip_saves_something_somewhere() {
+    let scenes = ["cornell", "slabs", "terrain"];
+    let all: Vec<Savings> = scenes.iter().map(|name| measured(name, Profile::Vector, Layout::Wide, (12, 9))).collect();
+    for skip in Skip::ALL {
+        let saves = |savings: &Savings| {
+            let saving = saving(savings, skip.name());
+            saving.operations_saved > 0.0
+                || saving.octets_saved > 0.0
+                || saving.program_words < savings.rows[0].program_words
+        };
+        assert!(all.iter().any(saves), "{skip} saves nothing on any of {scenes:?}");
+    }
+}
+
+#[test]
+fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
+    for scene in &SCENES[..5] {
+        let job = job(scene.name, Profile::Vector, Layout::Wide, (16, 12));
+        let has_secondary = job.scene.materials.iter().any(|m| m.reflection > 0.0 || m.transmission() > 0.0);
+        let savings = savings::measure(&job, &|| {}).unwrap();
+        let saved = saving(&savings, "all").operations_saved;
+        assert!(!has_secondary || saved >= 0.3, "{}: {saved}", scene.name);
+    }
+}
+
+#[test]
+fn a_diffuse_scene_has_no_word_of_secondary_rays() {
+    let job = job("terrain", Profile::Vector, Layout::Wide, (8, 6));
+    let image = scenes::image::build(&job.scene, &job.view, &job.memory).unwrap();
+    let build = kernels::build(&job.scene, &job.view, &image, &isa::Isa::base(), &job.kernels).unwrap();
+    let functions: BTreeSet<&str> = build.cores.regions.iter().map(|region| region.name.as_str()).collect();
+    let absent = ["ray_tree", "reflects", "reflect", "refracts", "refract"];
+    assert_eq!(absent.iter().filter(|name| functions.contains(*name)).count(), 0, "{functions:?}");
+    assert!(functions.contains("shade"));
+    assert!(!build.cores.symbols.contains_key("NODES"), "the ray tree has no place in the buffer");
+}
+
+/// The colour of a pixel between corners that agree, from the picture that has all rays: report 6.4 without a kernel.
+fn interpolated(words: &[[i32; 3]], size: (usize, usize), (x, y): (usize, usize), agreement: i32) -> Option<[i32; 3]> {
+    let beside = |at: usize, last: usize| if at % 2 == 1 && at != last { [at - 1, at + 1] } else { [at; 2] };
+    let (columns, rows) = (beside(x, size.0 - 1), beside(y, size.1 - 1));
+    if columns[0] == x && rows[0] == y {
+        return None;
+    }
+    let corners = rows.map(|row| columns.map(|column| words[row * size.0 + column])).concat();
+    let component = |k: usize| corners.iter().map(move |corner| corner[k]);
+    let agrees = |k: usize| component(k).max().unwrap() - component(k).min().unwrap() <= agreement;
+    // A quarter of each, rounded to nearest, ties up.
+    let mean = |k: usize| component(k).map(|x| (x + 2) >> 2).sum();
+    (0..3).all(agrees).then(|| [0, 1, 2].map(mean))
+}
+
+#[test]
+fn pixels_between_corners_that_agree_are_their_mean() {
+    for (name, size, difference) in [("cornell", (17, 12), 0.02), ("terrain", (8, 9), 0.3), ("triangle", (1, 6), 0.0)] {
+        for profile in [Profile::Vector, Profile::Ray] {
+            let mut job = job(name, profile, Layout::Wide, size);
+            let drawn = |job: &Job| lancer::drawing::draw(job, Comparison::None, &mut |_| {}).unwrap();
+            let whole = drawn(&job);
+            job.kernels.interpolate = Some(difference);
+            let drawing = drawn(&job);
+            let agreement = (difference * f64::from(drawing.image.formats.colour).exp2()).floor() as i32;
+            let (width, height) = (size.0 as usize, size.1 as usize);
+            let mut count = 0;
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let mean = interpolated(&whole.words, (width, height), (x, y), agreement);
+                count += u64::from(mean.is_some());
+                let expected = mean.unwrap_or(whole.words[y * width + x]);
+                assert_eq!(drawing.words[y * width + x], expected, "{name} at {x}, {y}");
+            }
+            assert_eq!(drawing.interpolated(), count, "{name}");
+            assert!(count > 0, "{name}: nothing agrees");
+            assert!(drawing.frame.clocks < whole.frame.clocks, "{name}");
+        }
+    }
+}

@@ -12,9 +12,9 @@ mod vectors;
 
 use isa::diagnostic::Report;
 use isa::number::Modes;
-use kernels::Profile;
 use kernels::build::{Features, Options};
 use kernels::twin::Twin;
+use kernels::{Profile, Skips};
 use scenes::image::{self, Image};
 use scenes::model::{Scene, View};
 
@@ -37,7 +37,8 @@ impl Subject {
 
     /// The same with other kernels.
     fn with(self, profile: Profile) -> Subject {
-        Subject { profile, ..self }
+        let features = Features { skips: Skips::default().known_to(profile), ..self.features };
+        Subject { features, profile, ..self }
     }
 
     fn twin(&self) -> Twin<Modes> {

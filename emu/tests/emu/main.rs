@@ -10,4 +10,5 @@ mod profile;
 mod ray;
 mod replay;
 mod saturation;
+mod totals;
 mod traps;

@@ -1,0 +1,133 @@
+//! Generated programs with calls, loops and nested regions: what regions are said to cost adds up, and is what a model says.
+
+use emu::machine::Config;
+use emu::machine::single::{self, Single};
+use emu::octets::Memory;
+use emu::profile::Profile;
+use emu::registers::Registers;
+use isa::{Class, Counts, Isa, Op, Program};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use super::builder::{Builder, Label, program};
+
+/// A piece of a function's body.
+#[derive(Clone, Debug)]
+enum Piece {
+    /// So many additions.
+    Adds(u64),
+    /// A call of one of the functions behind this one, by its distance; none when there is none.
+    Call(usize),
+    /// A region of its own.
+    Region(Vec<Piece>),
+    /// A loop of so many turns.
+    Loop(i32, Vec<Piece>),
+}
+
+fn pieces() -> impl Strategy<Value = Vec<Piece>> {
+    let leaf = prop_oneof![(0u64..5).prop_map(Piece::Adds), (1usize..4).prop_map(Piece::Call)];
+    let piece = leaf.prop_recursive(3, 12, 4, |inner| {
+        let body = prop::collection::vec(inner, 0..4);
+        prop_oneof![
+            body.clone().prop_map(Piece::Region),
+            (1i32..4, body).prop_map(|(turns, body)| Piece::Loop(turns, body))
+        ]
+    });
+    prop::collection::vec(piece, 0..5)
+}
+
+/// Writes pieces; names the regions in the order in which they begin.
+fn write(builder: &mut Builder, body: &[Piece], function: usize, labels: &[Label], loops: i64, regions: &mut usize) {
+    for piece in body {
+        match piece {
+            Piece::Adds(count) => {
+                for _ in 0..*count {
+                    builder.emit(Op::iadd, &[1, 1, 1]);
+                }
+            }
+            Piece::Call(distance) => {
+                if let Some(&label) = labels.get(function + distance) {
+                    // A link a function: calls lead to later ones only.
+                    builder.branch(Op::call, &[20 + (function + distance) as i64], label);
+                }
+            }
+            Piece::Region(inner) => {
+                let name = format!("region {regions}");
+                *regions += 1;
+                builder.region(&name, |builder| {
+                    // Running into a region takes an instruction of it.
+                    builder.emit(Op::mov, &[2, 2]);
+                    write(builder, inner, function, labels, loops, regions);
+                });
+            }
+            Piece::Loop(turns, inner) => {
+                // Each function has counters of its own, one a depth.
+                let counter = 3 + 4 * function as i64 + loops;
+                builder.repeat(counter, *turns, |builder| write(builder, inner, function, labels, loops + 1, regions));
+            }
+        }
+    }
+}
+
+fn written(functions: &[Vec<Piece>]) -> Program {
+    program(|builder| {
+        let labels: Vec<Label> = functions.iter().map(|_| builder.label()).collect();
+        builder.branch(Op::call, &[20], labels[0]).emit(Op::iadd, &[1, 1, 1]).emit(Op::halt, &[]);
+        let mut regions = 0;
+        for (number, body) in functions.iter().enumerate() {
+            builder.function(&format!("function {number}"), |builder| {
+                builder.place(labels[number]);
+                write(builder, body, number, &labels, 0, &mut regions);
+                builder.emit(Op::ret, &[20 + number as i64]);
+            });
+        }
+    })
+}
+
+/// What a call of a function adds, by the model: its own pieces and all that they call.
+fn adds(functions: &[Vec<Piece>], function: usize) -> u64 {
+    let Some(body) = functions.get(function) else { return 0 };
+    body.iter().map(|piece| adds_of(functions, function, piece)).sum()
+}
+
+fn adds_of(functions: &[Vec<Piece>], function: usize, piece: &Piece) -> u64 {
+    let all = |inner: &[Piece]| inner.iter().map(|piece| adds_of(functions, function, piece)).sum::<u64>();
+    match piece {
+        Piece::Adds(count) => *count,
+        Piece::Call(distance) => adds(functions, function + distance),
+        Piece::Region(inner) => all(inner),
+        Piece::Loop(turns, inner) => *turns as u64 * all(inner),
+    }
+}
+
+fn run(program: &Program) -> (Profile, Counts) {
+    let (isa, config) = (Isa::base(), Config::default());
+    let registers = Registers::default();
+    let single = Single { config: &config, isa: &isa, program, registers, step_limit: 1_000_000, has_profile: true };
+    let run = single::run(&single, Memory::default()).expect("the setup is right");
+    assert_eq!(run.trap, None);
+    let code = emu::code::Code::new(program, &isa, config.timing());
+    (run.profile.expect("a profile was asked for"), run.tally.counts(&code))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(0x70_7a15), failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn totals_are_the_sum_over_regions(functions in prop::collection::vec(pieces(), 1..4)) {
+        let (profile, counts) = run(&written(&functions));
+        let sum = profile.regions.iter().fold(profile.outside, |sum, region| sum + region.exclusive);
+        prop_assert_eq!(sum, counts);
+        prop_assert_eq!(profile.total(), counts);
+        prop_assert_eq!(counts[Class::Add], 1 + adds(&functions, 0));
+        for (number, _) in functions.iter().enumerate() {
+            let name = format!("function {number}");
+            let region = profile.regions.iter().find(|region| region.name == name).expect("each function is listed");
+            let each = adds(&functions, number);
+            prop_assert_eq!(region.inclusive[Class::Add], region.calls * each, "{}", name);
+            if region.calls > 0 {
+                prop_assert_eq!((region.least[Class::Add], region.most[Class::Add]), (each, each), "{}", name);
+            }
+        }
+    }
+}

@@ -14,6 +14,10 @@ use crate::result::{ByClass, image_hash};
 /// Difference of a component up to which corners agree, where a job names none.
 pub const DIFFERENCE: f64 = 0.01;
 
+/// Names of the pictures without any skip and with all.
+const NONE: &str = "none";
+const ALL: &str = "all";
+
 /// Version of [`Savings`].
 pub const SCHEMA: &str = "lancer-skips-1";
 
@@ -85,7 +89,21 @@ struct Way {
 /// # Errors
 /// What keeps any of them from being drawn.
 pub fn measure(job: &Job, done: &dyn Fn()) -> Result<Savings, Failure> {
-    let drawings: Vec<(Way, Drawing)> = ways(job)
+    compare(job, ways(job), done)
+}
+
+/// Draws a job's picture without any skip and with all.
+///
+/// # Errors
+/// What keeps it from being drawn.
+pub fn together(job: &Job) -> Result<Savings, Failure> {
+    let ways = ways(job).into_iter().filter(|way| [NONE, ALL].contains(&way.name.as_str())).collect();
+    compare(job, ways, &|| {})
+}
+
+/// The first of the ways is what the others are compared with.
+fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<Savings, Failure> {
+    let drawings: Vec<(Way, Drawing)> = ways
         .into_iter()
         .map(|way| {
             let drawing = drawing::draw(&way.job, Comparison::None, &mut |_| {})?;
@@ -117,10 +135,10 @@ fn ways(job: &Job) -> Vec<Way> {
         job.kernels.skips = skips;
         Way { name: name.to_owned(), description: description.to_owned(), job }
     };
-    let mut ways = vec![way("none", "Nothing.", Skips::NONE)];
+    let mut ways = vec![way(NONE, "Nothing.", Skips::NONE)];
     let known = Skip::ALL.iter().filter(|&&skip| job.kernels.profile.knows(skip));
     ways.extend(known.map(|&skip| way(skip.name(), skip.description(), Skips::NONE.with(skip))));
-    ways.push(way("all", "All of these.", Skips::ALL));
+    ways.push(way(ALL, "All of these.", Skips::ALL));
     let difference = job.kernels.interpolate.unwrap_or(DIFFERENCE);
     let mut interpolated = way("interpolate", "All, and pixels whose corners agree are interpolated.", Skips::ALL);
     interpolated.job.kernels.interpolate = Some(difference);

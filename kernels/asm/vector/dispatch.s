@@ -4,7 +4,7 @@
 .reg row,       s22
 .reg started,   s23        ; cores that have work
 .reg target,    s19
-.reg pass,      s18        ; 0: the corners, 1: what lies between them
+.reg pass,      s24        ; 0: the corners, 1: what lies between them; no function of this program uses it
 .reg answer,    v18        ; (pixel, -, -) and the colour
 .entry dispatch
 .func dispatch

@@ -62,7 +62,7 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
         kernels: arguments.kernels.clone(),
         machine: arguments.machine.clone(),
         numbers: arguments.numbers.clone(),
-        effort: arguments.effort,
+        effort: arguments.effort.clone(),
     };
     let mut extended = Job::from_arguments(&job)?;
     terminal.show(&extended.warnings);

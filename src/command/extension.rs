@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod suggest;
 
 use clap::{Args, Subcommand};
 
@@ -11,6 +12,7 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   lancer extension check slab.isa
+  lancer extension suggest cornell --size 40x30
   lancer extension compare slab.isa --scene cornell --kernel exit_face=slab.s --size 80x60
 
 docs/extensions.md describes the files.";
@@ -27,6 +29,7 @@ pub struct ExtensionsArguments {
 enum ExtensionCommand {
     Check(check::CheckArguments),
     Compare(Box<compare::CompareArguments>),
+    Suggest(Box<suggest::SuggestArguments>),
 }
 
 /// Carries out what is asked for.
@@ -34,5 +37,6 @@ pub(super) fn execute(arguments: &ExtensionsArguments, terminal: &mut Terminal) 
     match &arguments.command {
         ExtensionCommand::Check(arguments) => check::execute(arguments, terminal),
         ExtensionCommand::Compare(arguments) => compare::execute(arguments, terminal),
+        ExtensionCommand::Suggest(arguments) => suggest::execute(arguments, terminal),
     }
 }

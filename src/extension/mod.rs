@@ -2,6 +2,8 @@
 
 mod comparison;
 mod findings;
+mod suggestion;
 
 pub use comparison::{Comparison, SCHEMA, Variant, compare};
 pub use findings::findings;
+pub use suggestion::{Suggestion, Suggestions, suggest};

@@ -103,3 +103,34 @@ fn a_bad_file_is_refused_by_every_command_that_takes_one() {
         session.fail(command, 1, "bad.isa:2:8");
     }
 }
+
+#[test]
+fn suggestions_save_what_they_say_and_draw_the_same_picture() {
+    let session = Session::new();
+    let options = "--size 16x12 --shift 0.137,0.071";
+    let text = session.succeed(&format!("extension suggest cornell {options} -o fast"));
+    assert!(text.contains("The pictures are identical"), "{text}");
+    assert!(text.lines().filter(|line| line.starts_with(" fast")).count() >= 3, "{text}");
+    assert_eq!(session.run("extension check fast.isa").code, 0);
+    let names = session.names();
+    let kernels = names.iter().filter_map(|name| name.strip_prefix("fast-")?.strip_suffix(".s"));
+    let kernels: Vec<String> = kernels.map(|name| format!("--kernel {name}=fast-{name}.s")).collect();
+    let plain = session.json(&format!("render cornell {options}"));
+    let fused = session.json(&format!("render cornell {options} --ext fast.isa {}", kernels.join(" ")));
+    assert_eq!(fused["image_hash"], plain["image_hash"]);
+    assert_eq!((&fused["counts"], &fused["clocks"]), (&plain["counts"], &plain["clocks"]));
+    let instructions = |result: &serde_json::Value| result["instructions"].as_u64().unwrap();
+    let (before, after) = (instructions(&plain), instructions(&fused));
+    assert!(after * 100 <= before * 85, "{after} of {before}");
+    let saved = format!("together {} of", grouped(before - after));
+    assert!(text.contains(&saved), "{saved}\n{text}");
+    session.fail("extension suggest cornell --size 4x3 --profile ray", 2, "made for each other");
+    session.fail("extension suggest cornell --size 4x3 -o Fast", 2, "small letters");
+}
+
+/// 1234567 as 1,234,567.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let parts: Vec<&str> = digits.as_bytes().rchunks(3).rev().map(|part| std::str::from_utf8(part).unwrap()).collect();
+    parts.join(",")
+}

@@ -1,0 +1,119 @@
+//! `lancer extension suggest`: which instructions would pay, from a run.
+
+use std::path::PathBuf;
+
+use asm::extension;
+use clap::Args;
+use isa::diagnostic::{Diagnostic, Source};
+use isa::table::Op;
+use kernels::Profile;
+
+use crate::command::render;
+use crate::drawing::Comparison;
+use crate::extension::{Suggestions, compare, suggest};
+use crate::failure::{Exit, Failure};
+use crate::files;
+use crate::job::{Job, JobArguments};
+use crate::table::{grouped, percent, row, table};
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer extension suggest cornell --size 40x30
+  lancer extension suggest house.dsc --most 4 -o out/house
+
+Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 4 a picture changed, 5 step limit.";
+
+/// Finds the sequences of instructions that would pay most as one instruction, and tries them.
+///
+/// A sequence stands in one basic block. Its operands are the registers that it reads from before and that are read after it; constants
+/// become part of it. Written are PREFIX.isa with an instruction for each and PREFIX-FUNCTION.s, the function's code for this scene with
+/// the instructions in their place; then the scene is drawn without and with them.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct SuggestArguments {
+    #[command(flatten)]
+    job: JobArguments,
+    /// Most instructions.
+    #[arg(long, value_name = "N", default_value = "8", value_parser = clap::value_parser!(u64).range(1..=64), help_heading = "Results")]
+    most: u64,
+    /// What the names of the files begin with.
+    #[arg(short, long, value_name = "PREFIX", default_value = "fused", help_heading = "Results")]
+    output: PathBuf,
+}
+
+/// Draws, looks, writes and compares.
+pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let mut plain = Job::from_arguments(&arguments.job)?;
+    terminal.show(&plain.warnings);
+    if plain.kernels.profile == Profile::Ray {
+        let message = "the files of the profile `ray` are made for each other and cannot be replaced one by one";
+        return Err(Failure::usage(Diagnostic::error(message).hint("choose `--profile vector` or `--profile report`")));
+    }
+    let file = arguments.output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    asm::check_outside_name(&file, &plain.isa).map_err(|why| Failure::usage(Diagnostic::error(why)))?;
+    if file.chars().any(|c| c.is_ascii_uppercase()) {
+        let message = format!("`{file}` names instructions: small letters, digits and `_`");
+        return Err(Failure::usage(Diagnostic::error(message)));
+    }
+    let path = |end: &str| arguments.output.with_file_name(format!("{file}{end}"));
+    files::check_target(&path(".isa"))?;
+    let drawing = render::draw(&plain, Comparison::None, terminal)?;
+    let suggestions = suggest(&plain, &drawing, &file, arguments.most as usize);
+    if suggestions.found.is_empty() {
+        terminal.print("no sequence of instructions would save anything\n")?;
+        return Ok(Exit::Done);
+    }
+    let mut written: Vec<(PathBuf, &str)> = vec![(path(".isa"), &suggestions.extension)];
+    written.extend(
+        suggestions.kernels.iter().map(|(function, text)| (path(&format!("-{}.s", function.name())), text.as_str())),
+    );
+    files::write_all(&written)?;
+    terminal.print(&text(&suggestions))?;
+    let mut extended = plain.clone();
+    let source = Source::new(path(".isa").display().to_string(), suggestions.extension.as_str());
+    let loaded = extension::load(&mut extended.isa, &source, &|_, _| Err("nothing is included".into()))?;
+    let ops: Vec<Op> = loaded.iter().map(|loaded| loaded.op).collect();
+    for (function, text) in &suggestions.kernels {
+        let name = path(&format!("-{}.s", function.name())).display().to_string();
+        extended.kernels.replaced.push((*function, Source::new(name, text.as_str())));
+    }
+    plain.warnings.0.clear();
+    let comparison = compare(source.name.clone(), &ops, &plain, &extended, &mut || {})?;
+    terminal.print(&format!("\n{}", comparison.text()))?;
+    let names: Vec<String> = written.iter().map(|(path, _)| path.display().to_string()).collect();
+    terminal.print(&format!("written: {}\n", names.join(", ")))?;
+    Ok(if comparison.is_identical { Exit::Done } else { Exit::Tolerance })
+}
+
+/// The sequences, the one that saves most first.
+fn text(suggestions: &Suggestions) -> String {
+    let mut rows =
+        vec![row(["instruction", "for", "operands", "places", "executed", "saves", "clocks", "chain", "at most"])];
+    for found in &suggestions.found {
+        // What an instruction of its chain's length would leave of the time of all cores.
+        let saved = found.executions * (found.serial - found.critical);
+        let most = suggestions.clocks as f64 / (suggestions.clocks.saturating_sub(saved)).max(1) as f64;
+        let operands = found.row.split(['(', ')']).nth(1).unwrap_or_default().split(", ").count();
+        rows.push(vec![
+            found.name.clone(),
+            found.functions.join(" "),
+            operands.to_string(),
+            found.places.to_string(),
+            grouped(found.executions),
+            percent(found.saved(), suggestions.instructions),
+            found.serial.to_string(),
+            found.critical.to_string(),
+            format!("{most:.3} x"),
+        ]);
+    }
+    let saved: u64 = suggestions.found.iter().map(|found| found.saved()).sum();
+    format!(
+        "{}saves: share of all instructions; clocks: one after the other, and along the longest chain of results;\nat most: how much \
+         faster the cores compute when the instruction takes as long as its chain (Amdahl)\ntogether {} of {} instructions, {}\n",
+        table(rows),
+        grouped(saved),
+        grouped(suggestions.instructions),
+        percent(saved, suggestions.instructions)
+    )
+}

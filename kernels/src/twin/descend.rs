@@ -4,35 +4,22 @@ use std::cmp::Ordering;
 
 use super::lanes::Lanes;
 use super::ray::{Exit, Packet, Ray};
-use super::stage::{Node, Stage};
+use super::stage::Stage;
 
 /// The packet in which the ray is just behind the plane (for [`Exit::START`], in which it starts).
 ///
 /// At a split s of axis j the point's coordinate O_j + D_j run / slope is compared with s as products.
 pub fn descend(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray, exit: &Exit) -> Packet {
     let runs = ray.direction.map(|direction| arithmetic.wide_product(exit.run, direction));
-    let mut bounds = stage.bounds;
-    let mut number = 0;
-    loop {
-        let (axis, at, left) = match stage.nodes[number as usize] {
-            Node::Inner { axis, at, left } => (axis, at, left),
-            Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
-        };
+    stage.descend(|axis, at| {
         let split = arithmetic.wide_product(arithmetic.minus(at, ray.origin[axis]), exit.slope);
-        let is_right = match split.cmp(&runs[axis]) {
+        match split.cmp(&runs[axis]) {
             Ordering::Less => true,
             Ordering::Greater => false,
             // Behind a plane that is crossed lies the side to which the ray goes, ahead of one that is not the other.
             Ordering::Equal => has_crossed(ray, exit, axis, at) != ray.is_backwards(axis),
-        };
-        if is_right {
-            bounds.low[axis] = at;
-            number = left + 1;
-        } else {
-            bounds.high[axis] = at;
-            number = left;
         }
-    }
+    })
 }
 
 /// Whether a split that is met together with the exit plane is met before it, the direction being moved by (e, e^2, e^3).

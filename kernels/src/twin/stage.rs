@@ -6,6 +6,8 @@ use isa::number::Vector;
 use scenes::image::{Image, StoredTriangle};
 use scenes::kdtree::{Bounds, Content, KdTree};
 
+use super::ray::Packet;
+
 /// A node of the kd tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Node {
@@ -79,6 +81,25 @@ impl Stage {
             lights: contents.lights.iter().map(|fields| Light::new(fields)).collect::<Option<_>>()?,
         };
         stage.is_sound().then_some(stage)
+    }
+
+    /// From the root down to a packet; `is_right` decides at each split, by its axis and coordinate.
+    pub fn descend(&self, is_right: impl Fn(usize, i32) -> bool) -> Packet {
+        let mut bounds = self.bounds;
+        let mut number = 0;
+        loop {
+            let (axis, at, left) = match self.nodes[number as usize] {
+                Node::Inner { axis, at, left } => (axis, at, left),
+                Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
+            };
+            if is_right(axis, at) {
+                bounds.low[axis] = at;
+                number = left + 1;
+            } else {
+                bounds.high[axis] = at;
+                number = left;
+            }
+        }
     }
 
     /// Whether every search ends and finds what it looks for: there is a root, children come after their parents, materials exist.

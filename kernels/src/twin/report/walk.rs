@@ -6,25 +6,11 @@ use super::crossing::exit_face;
 use crate::constants::Constants;
 use crate::twin::lanes::Lanes;
 use crate::twin::ray::{Packet, Ray, Search};
-use crate::twin::stage::{Node, Stage};
+use crate::twin::stage::Stage;
 
 /// From the root down to the packet that has a point; in the plane of a split the ray's direction decides.
 pub fn descend(stage: &Stage, ray: &Ray, point: Vector) -> Packet {
-    let mut bounds = stage.bounds;
-    let mut number = 0;
-    loop {
-        let (axis, at, left) = match stage.nodes[number as usize] {
-            Node::Inner { axis, at, left } => (axis, at, left),
-            Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
-        };
-        if point[axis] > at || point[axis] == at && !ray.is_backwards(axis) {
-            bounds.low[axis] = at;
-            number = left + 1;
-        } else {
-            bounds.high[axis] = at;
-            number = left;
-        }
-    }
+    stage.descend(|axis, at| point[axis] > at || point[axis] == at && !ray.is_backwards(axis))
 }
 
 /// The packet in which a ray starts that starts inside the scene's box.

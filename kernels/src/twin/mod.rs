@@ -143,10 +143,7 @@ impl<A: Arithmetic> Twin<A> {
     fn pixel(&self, column: u32, row: u32, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
         let ray = self.camera_ray(column, row);
         let first = self.camera_packet(&ray);
-        match self.profile {
-            Profile::Report => self.literal_ray_tree(ray, first),
-            Profile::Vector | Profile::Ray => self.ray_tree(ray, first, branches),
-        }
+        self.ray_tree(ray, first, branches)
     }
 
     /// The ray of a pixel, row 0 on top.

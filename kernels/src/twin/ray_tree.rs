@@ -7,7 +7,9 @@ use super::lanes::Lanes;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::reflect::{reflect, reflects};
 use super::refract::{Refraction, refract, refracts};
+use super::report;
 use super::surface::Surface;
+use crate::function::Profile;
 
 /// A node of the ray tree that is still to be visited.
 #[derive(Clone, Debug)]
@@ -59,23 +61,40 @@ impl<A: Arithmetic> Twin<A> {
     /// Adds the children of a node; the reflected one, which is visited first, as the last.
     fn grow(&self, branch: &Branch, surface: &Surface, branches: &mut Vec<Branch>) {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
-        let mut child = |weight: i32, origin: Vector, inside: bool, direction: &dyn Fn() -> Vector| {
+        let mut child = |weight: i32, origin: Vector, inside: bool, direction: Vector| {
             if weight > self.features.cutoff {
-                let ray = Ray::new(arithmetic, origin, direction());
+                let ray = Ray::new(arithmetic, origin, direction);
                 let packet = self.own_packet(&ray);
                 branches.push(Branch { ray, packet, weight, inside, level: branch.level + 1 });
             }
         };
-        let mut total = 0;
-        match refracts(arithmetic, constants, surface, branch.weight, branch.inside) {
-            Refraction::Opaque => {}
-            Refraction::Total(weight) => total = weight,
-            Refraction::Through { weight, k, eta } => {
-                let direction = || refract(arithmetic, constants, surface, k, eta);
-                child(weight, surface.behind, !branch.inside, &direction);
-            }
+        let (total, refracted) = self.transmitted(surface, branch.weight, branch.inside);
+        if let Some((weight, direction)) = refracted {
+            child(weight, surface.behind, !branch.inside, direction);
         }
         let weight = reflects(arithmetic, constants, surface, branch.weight, total);
-        child(weight, surface.point, branch.inside, &|| reflect(arithmetic, constants, surface));
+        child(weight, surface.point, branch.inside, self.reflected(surface));
+    }
+
+    /// What becomes of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
+    /// direction of the refracted one.
+    fn transmitted(&self, surface: &Surface, weight: i32, inside: bool) -> (i32, Option<(i32, Vector)>) {
+        let (arithmetic, constants) = (&self.arithmetic, &self.constants);
+        if self.profile == Profile::Report {
+            return report::transmitted(arithmetic, constants, surface, weight, inside);
+        }
+        match refracts(arithmetic, constants, surface, weight, inside) {
+            Refraction::Opaque => (0, None),
+            Refraction::Total(weight) => (weight, None),
+            Refraction::Through { weight, k, eta } => {
+                (0, Some((weight, refract(arithmetic, constants, surface, k, eta))))
+            }
+        }
+    }
+
+    /// The direction of the reflected ray.
+    fn reflected(&self, surface: &Surface) -> Vector {
+        let reflect = if self.profile == Profile::Report { report::reflect } else { reflect };
+        reflect(&self.arithmetic, &self.constants, surface)
     }
 }

@@ -5,9 +5,12 @@ use isa::number::{Arithmetic, Vector};
 use super::Twin;
 use super::lanes::Lanes;
 use super::ray::{Ray, Search, Stuck};
+use super::report;
 use super::stage::Light;
 use super::surface::Surface;
 use super::unit::unit;
+use crate::constants::Constants;
+use crate::function::Profile;
 
 impl<A: Arithmetic> Twin<A> {
     /// colour (ambient + kd sum over visible lights of (N . L) light colour), in the colour format.
@@ -31,18 +34,26 @@ impl<A: Arithmetic> Twin<A> {
     fn visible(&self, surface: &Surface, light: &Light) -> Result<Option<i32>, Stuck> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let way = arithmetic.difference(light.position, surface.point);
-        if arithmetic.wide_dot(surface.facing, way) <= 0 {
-            return Ok(None);
-        }
-        let bits = constants.formats.direction;
-        let direction = unit(arithmetic, bits, arithmetic.normalized(way.map(i64::from)));
-        let cosine = arithmetic.dot(surface.facing, direction, bits);
+        let is_literal = self.profile == Profile::Report;
+        let lit = if is_literal { report::lit } else { lit };
+        let Some((direction, cosine)) = lit(arithmetic, constants, surface.facing, way) else { return Ok(None) };
+        let dot = if is_literal { report::dot } else { A::dot };
         let ray = Ray::new(arithmetic, surface.point, direction);
-        let distance = arithmetic.dot(direction, way, constants.across());
+        let distance = dot(arithmetic, direction, way, constants.across());
         let mut search = Search { t: distance, triangle: None, takes_any: true };
         if let Some(packet) = self.own_packet(&ray) {
             self.trace(&ray, packet, &mut search)?;
         }
         Ok(search.triangle.is_none().then_some(cosine))
     }
+}
+
+/// Whether a surface faces a light that lies `way` from it: the direction to the light and the cosine of its angle with the normal.
+fn lit(arithmetic: &impl Lanes, constants: &Constants, facing: Vector, way: Vector) -> Option<(Vector, i32)> {
+    if arithmetic.wide_dot(facing, way) <= 0 {
+        return None;
+    }
+    let bits = constants.formats.direction;
+    let direction = unit(arithmetic, bits, arithmetic.normalized(way.map(i64::from)));
+    Some((direction, arithmetic.dot(facing, direction, bits)))
 }

@@ -5,9 +5,11 @@ use isa::number::{Arithmetic, Vector};
 use super::Twin;
 use super::lanes::Lanes;
 use super::ray::Ray;
+use super::report;
 use super::stage::Material;
 use super::unit::unit;
 use crate::constants::Constants;
+use crate::function::Profile;
 
 /// The place where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,9 +63,19 @@ impl<A: Arithmetic> Twin<A> {
     /// The surface that a ray meets: triangle `index` at distance `t`.
     pub fn surface(&self, ray: &Ray, t: i32, index: u32) -> Surface {
         let triangle = &self.stage.triangles[index as usize];
-        let bits = self.constants.formats.direction;
-        let (facing, cosine) = normal(&self.arithmetic, bits, ray.direction, &triangle.vertices);
-        let (point, behind) = sides(&self.arithmetic, &self.constants, ray, t, facing);
+        let (arithmetic, constants) = (&self.arithmetic, &self.constants);
+        let bits = constants.formats.direction;
+        let (facing, cosine, point, behind) = match self.profile {
+            Profile::Report => {
+                let normal = report::normal(arithmetic, bits, &triangle.vertices);
+                report::sides(arithmetic, constants, ray, t, normal)
+            }
+            Profile::Vector | Profile::Ray => {
+                let (facing, cosine) = normal(arithmetic, bits, ray.direction, &triangle.vertices);
+                let (point, behind) = sides(arithmetic, constants, ray, t, facing);
+                (facing, cosine, point, behind)
+            }
+        };
         let material = self.stage.materials[triangle.material as usize];
         Surface { point, behind, facing, incident: ray.direction, cosine, material }
     }

@@ -2,13 +2,12 @@
 
 mod crossing;
 mod scalar;
-mod shade;
 mod surface;
-mod tree;
 mod triangle;
 mod walk;
 
 pub use crossing::{Exit, exit_face, first_packet};
-pub use surface::{Refraction, normal, reflect, refract, sides, unit};
+pub use scalar::dot;
+pub use surface::{Refraction, lit, normal, reflect, refract, sides, transmitted, unit};
 pub use triangle::triangle;
 pub use walk::{descend, next_packet, own_packet};

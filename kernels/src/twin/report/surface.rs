@@ -1,13 +1,11 @@
 //! What a hit looks like, and the secondary rays that start there (report 4.1, 4.2): each asks for the normal anew.
 
-use isa::number::{Arithmetic, Vector};
+use isa::number::Vector;
 
 use super::scalar::{cross, dot};
 use crate::constants::Constants;
-use crate::twin::Twin;
 use crate::twin::lanes::Lanes;
 use crate::twin::ray::Ray;
-use crate::twin::stage::Material;
 use crate::twin::surface::{self, Surface};
 use crate::twin::unit::sqrt;
 
@@ -80,13 +78,29 @@ pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface
     Refraction::Through(arithmetic.difference(along, arithmetic.scaled(surface.facing, root, bits)))
 }
 
-impl<A: Arithmetic> Twin<A> {
-    /// The surface that a ray meets: triangle `index` at distance `t`.
-    pub(super) fn literal_surface(&self, ray: &Ray, t: i32, index: u32) -> Surface {
-        let triangle = &self.stage.triangles[index as usize];
-        let normal = normal(&self.arithmetic, self.constants.formats.direction, &triangle.vertices);
-        let (facing, cosine, point, behind) = sides(&self.arithmetic, &self.constants, ray, t, normal);
-        let material: Material = self.stage.materials[triangle.material as usize];
-        Surface { point, behind, facing, incident: ray.direction, cosine, material }
+/// What becomes of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
+/// direction of the refracted one.
+pub fn transmitted(
+    arithmetic: &impl Lanes,
+    constants: &Constants,
+    surface: &Surface,
+    weight: i32,
+    inside: bool,
+) -> (i32, Option<(i32, Vector)>) {
+    if surface.material.transmission == 0 {
+        return (0, None);
     }
+    let weight = arithmetic.times(weight, surface.material.transmission, constants.formats.weight);
+    match refract(arithmetic, constants, surface, inside) {
+        Refraction::Total => (weight, None),
+        Refraction::Through(direction) => (0, Some((weight, direction))),
+    }
+}
+
+/// Whether a surface faces a light that lies `way` from it: the direction to the light and the cosine of its angle with the normal.
+pub fn lit(arithmetic: &impl Lanes, constants: &Constants, facing: Vector, way: Vector) -> Option<(Vector, i32)> {
+    let bits = constants.formats.direction;
+    let direction = unit(arithmetic, bits, arithmetic.normalized(way.map(i64::from)));
+    let cosine = dot(arithmetic, facing, direction, bits);
+    (cosine > 0).then_some((direction, cosine))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use isa::Class;
-use kernels::annex::{self as printed, Term};
+use kernels::annex::{self as printed, Peer, Term};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -113,21 +113,6 @@ pub struct Derivation {
     pub scenes: Vec<SceneFigures>,
     /// Table 3.
     pub table_3: Vec<Peer>,
-}
-
-/// A machine of table 3.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Peer {
-    /// Its name.
-    pub name: String,
-    /// Servers that work in parallel.
-    pub servers: u32,
-    /// Width and height of a picture in pixels.
-    pub resolution: [u32; 2],
-    /// What rays are tested against.
-    pub primitive: String,
-    /// Time of a pixel in microseconds.
-    pub pixel_us: f64,
 }
 
 /// A figure.
@@ -258,13 +243,7 @@ impl Derivation {
             primitive: "triangles".to_owned(),
             pixel_us,
         });
-        let others = printed::peers().iter().map(|peer| Peer {
-            name: peer.name.clone(),
-            servers: peer.servers,
-            resolution: peer.resolution,
-            primitive: peer.primitive.clone(),
-            pixel_us: peer.pixel_us,
-        });
+        let others = printed::peers().iter().cloned();
         Derivation { figures: figures.collect(), table_3: others.chain(ours).collect(), scenes: scene_figures }
     }
 }

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use isa::{Class, Counts};
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{Row, Term, world};
 
@@ -41,8 +42,7 @@ pub struct Erratum {
 }
 
 /// A machine of table 3.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 pub struct Peer {
     /// Its name.
     pub name: String,

@@ -133,7 +133,7 @@ pub fn measure(
         schema: SCHEMA,
         scene: scene.to_owned(),
         pixels: frames[0].item_count,
-        report_quotient: Demand::REPORT.quotient().unwrap_or_default(),
+        report_quotient: Demand::report().quotient().unwrap_or_default(),
         machines: curves.collect(),
     })
 }

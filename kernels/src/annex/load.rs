@@ -6,12 +6,6 @@ use isa::{Isa, Program};
 
 use crate::prelude;
 
-/// Clocks of computing of a pixel on the report's machine.
-pub const COMPUTING: u64 = 203_000;
-
-/// Clocks of its transfers there.
-pub const TRANSFER: u64 = 49_600;
-
 /// Octets of global memory that the load reads.
 pub const MEMORY: usize = 1_240;
 

@@ -74,6 +74,11 @@ pub fn figures() -> &'static [Figure] {
     &DATA.figures
 }
 
+/// A derived figure as it is printed, by its name; `None` where the report leaves it out.
+pub fn printed(figure: &str) -> Option<f64> {
+    figures().iter().find(|other| other.id == figure)?.printed
+}
+
 /// What is odd in the printed figures.
 pub fn errata() -> &'static [Erratum] {
     &DATA.errata

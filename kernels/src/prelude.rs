@@ -249,7 +249,7 @@ fn camera(text: &mut String, camera: &RawCamera) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub fn included(layout: Layout) -> [Arc<Source>; 5] {
+pub fn included(layout: Layout) -> [Arc<Source>; 7] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -259,7 +259,15 @@ pub fn included(layout: Layout) -> [Arc<Source>; 5] {
         Layout::Report => file!("report.inc"),
         Layout::Wide => file!("wide.inc"),
     };
-    [file!("registers.inc"), file!("materials.inc"), file!("scalar.inc"), structures, file!("tested.inc")]
+    [
+        file!("registers.inc"),
+        file!("materials.inc"),
+        file!("scalar.inc"),
+        file!("surface.inc"),
+        file!("search.inc"),
+        structures,
+        file!("tested.inc"),
+    ]
 }
 
 /// Assembles files one after the other as one program; `name` stands for the program in messages.

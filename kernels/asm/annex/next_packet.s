@@ -6,9 +6,7 @@
     lv    direction, WAY(s0)
     lv    box_low, LOW(s0)
     lv    box_high, HIGH(s0)
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     movi  steps, 2
     call  link_packet, next_packet
     halt

@@ -7,12 +7,7 @@
     store_triangles 1, SURFACE, "step_z SURFACE"
     store_triangles PACKET - 1, ASIDE, "step_z ASIDE"
     root_packet
-    lv    origin, START(s0)
-    lv    direction, WAY(s0)
-    vmov  pixel_colour, zero_vector
-    call  link_packet, first_packet
-    call  link_tree, ray_tree
-    halt
+    trace_pixel
 .endfunc
 .buffer
 START:   .fixed pos, -0.1875, -0.25, 1.25

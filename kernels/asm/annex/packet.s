@@ -6,9 +6,7 @@
     store_triangles PACKET, PATTERN, "step_z PATTERN"
     lv    origin, ABOVE(s0)
     lv    direction, DOWN(s0)
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     movi  packet_count, PACKET
     li    packet_refs, REFERENCES_AT
     call  link_packet, packet

@@ -9,12 +9,7 @@
     movi  s23, ONE / 64
     store_triangles PACKET - 5, ASIDE, "step_z ASIDE"
     root_packet
-    lv    origin, START(s0)
-    lv    direction, WAY(s0)
-    vmov  pixel_colour, zero_vector
-    call  link_packet, first_packet
-    call  link_tree, ray_tree
-    halt
+    trace_pixel
 .endfunc
 .buffer
 START:   .fixed pos, -0.25, -0.5, 1.25

@@ -2,14 +2,7 @@
 ; code 4. In: origin, direction. Out: the packet; box_low = the plane by which the ray leaves it (coordinate, axis). Returns by
 ; link_packet. Scratch: s12 to s15, v6, v7, w0 to w2.
 .func first_packet
-    lv    v6, ROOT_LOW(s0)
-    lv    v7, ROOT_HIGH(s0)
-    rbox  came_by, leaves_by, origin, v6
-    bwltz leaves_by, 1f
-    mov   last_note, s0
-    swide leaves_by, NOTES + note.plane(s0)
-    li    packet_refs, ROOT
-    call  link_step, descend
+    enter_scene 1f
     lwide came_by, NOTES + note.plane(last_note)
 first_leave:
     wlow  s12, came_by

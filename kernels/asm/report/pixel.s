@@ -10,9 +10,7 @@
 .if HAS_TREE
     call  link_tree, ray_tree
 .else
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     call  link_trace, trace
   .if !HAS_BACKGROUND
     beqz  near, 1f

@@ -68,9 +68,7 @@ TREE: .space (2 * BOUNCES + 1) * sizeof(treenode)
     sw    weight_now, treenode.weight(node)
     sv    origin, treenode.origin(node)
     sv    direction, treenode.direction(node)
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     call  link_trace, trace
     bnez  near, tree_visit
 .if HAS_BACKGROUND

@@ -1,9 +1,7 @@
 ; Whether the reflected ray meets a surface: the search for its nearest hit. In: the ray. Out: near (0: none), near_t, near_slot.
 ; Returns by link_node.
 .func reflects
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     call  link_packet, own_packet
     call  link_trace, trace
     ret   link_node

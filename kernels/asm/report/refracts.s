@@ -3,9 +3,7 @@
 .func refracts
     lv    origin, treenode.origin(node)
     lv    direction, treenode.direction(node)
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     call  link_packet, own_packet
     call  link_trace, trace
     ret   link_node

@@ -15,21 +15,7 @@
 1:  neg   cosine, s12
 2:  scale_vector v6, direction, near_t, t + dir - pos
     add_vectors v6, origin, v6
-    ; The distance is not exact, so the point may lie on the wrong side: it moves along the normal's major axis by more than that error.
-    vmajor s12, facing
-    vgetr s13, facing, s12
-    vgetr s14, v6, s12
-    movi  s15, LITERAL_OFFSET
-    bgez  s13, 3f
-    movi  s15, -LITERAL_OFFSET
-3:  add   s13, s14, s15
-    vmov  point, v6
-    vputr point, s13, s12
-.if HAS_GLASS
-    sub   s13, s14, s15
-    vmov  behind, v6
-    vputr behind, s13, s12
-.endif
+    move_off LITERAL_OFFSET
     load_material
     ret   link_trace
 .endfunc

@@ -1,9 +1,7 @@
 ; Follows the ray of a node and adds what it sees, times the weight of the path, to the pixel. Report, pseudo code 5.
 ; In: the ray and its first packet, weight_now. Out: pixel_colour, near (0: nothing was hit), and the surface. Returns by link_node.
 .func contribution
-    li    near_t, NEVER
-    mov   near, s0
-    mov   any_hit, s0
+    seek_nearest
     bltz  packet_count, 1f
     call  link_trace, trace
     beqz  near, 1f

@@ -28,6 +28,7 @@ macro_rules! files {
 const DRIVERS: &[(&str, &str)] = files! {
     "annex/world.inc" "annex/sqrt.s" "annex/triangle.s" "annex/packet.s" "annex/normal.s" "annex/exit_face.s" "annex/descend.s"
     "annex/first_packet.s" "annex/next_packet.s" "annex/node.s" "annex/pixel.s" "report.inc" "scalar.inc"
+    "surface.inc"
 };
 
 /// A scene that needs every function.

@@ -1,12 +1,10 @@
 //! Function by function: the assembly on random operands against its twin, in several words and modes.
 
-use isa::number::{Modes, Overflow, Quantization};
-use kernels::constants::Constants;
+use isa::number::{Modes, Overflow, Quantization, Vector};
 use kernels::twin::descend::{descend, own_packet};
 use kernels::twin::exit_face::exit_face;
-use kernels::twin::first_packet::first_packet;
 use kernels::twin::ray::{Exit, Packet, Ray, Search};
-use kernels::twin::triangle::triangle;
+use kernels::twin::report;
 use kernels::twin::unit::{sqrt, unit};
 use kernels::{Function, Profile};
 use proptest::prelude::*;
@@ -31,6 +29,9 @@ pub(super) const MODES: [Modes; 5] = [
     Modes { word: 21, quantization: Quantization::RndConv, overflow: Overflow::SatSym },
     Modes { word: 27, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) },
 ];
+
+/// The profiles whose kernels are in all functions different.
+const PROFILES: [Profile; 2] = [Profile::Vector, Profile::Report];
 
 /// A generated scene with a small picture.
 pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
@@ -99,7 +100,7 @@ fn square_roots() {
     let body = "    call link_leaf, sqrt\n";
     let experiment = Experiment { functions: &[Function::Sqrt], operands, body, results };
     for modes in MODES {
-        for profile in [Profile::Vector, Profile::Report] {
+        for profile in PROFILES {
             let subject = subject("slabs", Some(4), modes).with(profile);
             agree(&subject, &experiment, squares(modes.word).prop_map(wide_words), |case| {
                 let (square, root) = (i128::from(wide(case)), sqrt(&modes, wide(case)));
@@ -121,11 +122,14 @@ fn units() {
         results: &[Place::Vector("v6")],
     };
     for modes in MODES {
-        let subject = subject("slabs", Some(4), modes);
-        let lane = || number(modes.word - 2);
-        agree(&subject, &experiment, [lane(), lane(), lane()].prop_map(|v| v.to_vec()), |case| {
-            unit(&modes, subject.image.formats.direction, vector(case, 0)).to_vec()
-        });
+        for profile in PROFILES {
+            let subject = subject("slabs", Some(4), modes).with(profile);
+            let unit = if profile == Profile::Report { report::unit } else { unit };
+            let lane = || number(modes.word - 2);
+            agree(&subject, &experiment, [lane(), lane(), lane()].prop_map(|v| v.to_vec()), |case| {
+                unit(&modes, subject.image.formats.direction, vector(case, 0)).to_vec()
+            });
+        }
     }
 }
 
@@ -158,36 +162,68 @@ pub(super) const CORNERS_AND_RAY: &[Place] = &[
     Place::Vector("direction"),
 ];
 
+/// The nearest triangle, a ray, and the distance at which it hits.
+pub(super) const HIT: &[Place] = &[
+    Place::Triple("NEAR_SLOT + triangle.v0"),
+    Place::Triple("NEAR_SLOT + triangle.v1"),
+    Place::Triple("NEAR_SLOT + triangle.v2"),
+    Place::Vector("origin"),
+    Place::Vector("direction"),
+    Place::Scalar("near_t"),
+];
+
+/// Cases for [`HIT`], with distances up to `most`.
+pub(super) fn hit(word: u32, most: i32) -> impl Strategy<Value = Vec<i32>> {
+    (triangle_and_ray(word), 0..=most).prop_map(|(case, t)| [&case[..], &[t]].concat())
+}
+
+/// The triangle that starts a case.
+pub(super) fn vertices(case: &[i32]) -> [Vector; 3] {
+    [0, 3, 6].map(|at| vector(case, at))
+}
+
 #[test]
 fn triangles() {
     let body = "    movi slot, SLOT\n    call link_step, triangle\n";
     let (operands, results) = (CORNERS_AND_RAY, &[Place::Scalar("s12")]);
     let experiment = Experiment { functions: &[Function::Triangle], operands, body, results };
     for modes in MODES {
-        let subject = subject("slabs", Some(4), modes);
-        let constants = Constants::new(&subject.image);
-        agree(&subject, &experiment, triangle_and_ray(modes.word), |case| {
-            let ray = Ray::new(&modes, vector(case, 9), vector(case, 12));
-            vec![triangle(&modes, &constants, &ray, &[0, 3, 6].map(|at| vector(case, at)))]
-        });
+        for profile in PROFILES {
+            let subject = subject("slabs", Some(4), modes).with(profile);
+            let twin = subject.twin();
+            agree(&subject, &experiment, triangle_and_ray(modes.word), |case| {
+                vec![twin.triangle(&ray(&modes, case, 9), &vertices(case))]
+            });
+        }
     }
 }
 
-/// Two corners of a box.
-pub(super) fn corners(bits: u32) -> impl Strategy<Value = [[i32; 3]; 2]> {
-    (point(bits), point(bits)).prop_map(|(a, b)| [[0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k]))])
+pub(super) const RAY_AND_BOX: &[Place] =
+    &[Place::Vector("origin"), Place::Vector("direction"), Place::Vector("box_low"), Place::Vector("box_high")];
+
+/// Origin, direction and the corners of a box, for [`RAY_AND_BOX`].
+pub(super) fn ray_and_box(bits: u32) -> impl Strategy<Value = Vec<i32>> {
+    (point(bits), direction(bits), point(bits), point(bits)).prop_map(|(origin, direction, a, b)| {
+        let (low, high) = ([0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k])));
+        words(&[origin, direction, low, high], &[])
+    })
+}
+
+/// The ray whose origin and direction start at a word of a case.
+pub(super) fn ray(modes: &Modes, case: &[i32], at: usize) -> Ray {
+    Ray::new(modes, vector(case, at), vector(case, at + 3))
+}
+
+/// The box whose corners start at a word of a case.
+pub(super) fn bounds(case: &[i32], at: usize) -> Bounds {
+    Bounds { low: vector(case, at), high: vector(case, at + 3) }
 }
 
 #[test]
 fn exit_faces() {
     let experiment = Experiment {
         functions: &[Function::ExitFace],
-        operands: &[
-            Place::Vector("origin"),
-            Place::Vector("direction"),
-            Place::Vector("box_low"),
-            Place::Vector("box_high"),
-        ],
+        operands: RAY_AND_BOX,
         body: "    vabs steep, direction\n    vlt backwards, direction, zero_vector\n    call link_step, exit_face\n",
         results: &[
             Place::Scalar("exit_axis"),
@@ -198,11 +234,8 @@ fn exit_faces() {
     };
     for modes in MODES {
         let subject = subject("slabs", Some(4), modes);
-        let bits = modes.word - 2;
-        let cases = (point(bits), direction(bits), corners(bits));
-        agree(&subject, &experiment, cases.prop_map(|(o, d, [low, high])| words(&[o, d, low, high], &[])), |case| {
-            let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-            let bounds = Bounds { low: vector(case, 6), high: vector(case, 9) };
+        agree(&subject, &experiment, ray_and_box(modes.word - 2), |case| {
+            let (ray, bounds) = (ray(&modes, case, 0), bounds(case, 6));
             let Exit { axis, plane, run, slope } = exit_face(&modes, &ray, &bounds);
             vec![axis as i32, plane, run, slope]
         });
@@ -283,18 +316,17 @@ fn first_packets() {
     let experiment = Experiment {
         functions: &[Function::FirstPacket, Function::Descend],
         operands: &[Place::Vector("origin"), Place::Vector("direction")],
-        body: "    mov packet_refs, s0\n    vmov box_low, zero_vector\n    vmov box_high, zero_vector\n    \
-               call link_packet, first_packet\n",
+        body: "    call link_packet, first_packet\n    bgez packet_count, 1f\n    mov packet_refs, s0\n    \
+               vmov box_low, zero_vector\n    vmov box_high, zero_vector\n1:\n",
         results: PACKET,
     };
     for modes in MODES {
-        for subject in trees(modes) {
+        for subject in PROFILES.into_iter().flat_map(|profile| trees(modes).map(|subject| subject.with(profile))) {
             let twin = subject.twin();
             let origin = prop_oneof![point_of_tree(&subject), point(modes.word - 2)];
             let cases = (origin, direction(modes.word - 2)).prop_map(|(o, d)| words(&[o, d], &[]));
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                packet_words(&subject, first_packet(&modes, &twin.stage, &ray))
+                packet_words(&subject, twin.camera_packet(&ray(&modes, case, 0)))
             });
         }
     }
@@ -319,7 +351,7 @@ fn next_packets() {
         results: PACKET,
     };
     for modes in MODES {
-        for subject in trees(modes) {
+        for subject in PROFILES.into_iter().flat_map(|profile| trees(modes).map(|subject| subject.with(profile))) {
             let twin = subject.twin();
             let most = twin.constants.missed;
             let cases = (
@@ -329,17 +361,16 @@ fn next_packets() {
                 any::<bool>(),
                 any::<bool>(),
             );
-            let stage = twin.stage.clone();
+            let walker = subject.twin();
             let cases = cases.prop_map(move |(origin, direction, t, near, any)| {
-                let Packet { bounds, .. } = own_packet(&modes, &stage, &Ray::new(&modes, origin, direction));
+                let Packet { bounds, .. } =
+                    walker.own_packet(&Ray::new(&modes, origin, direction)).expect("the ray starts in the scene");
                 words(&[origin, direction, bounds.low, bounds.high], &[t, i32::from(near), i32::from(any)])
             });
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                let packet =
-                    Packet { bounds: Bounds { low: vector(case, 6), high: vector(case, 9) }, references: 0..0 };
+                let packet = Packet { bounds: bounds(case, 6), references: 0..0 };
                 let search = Search { t: case[12], triangle: (case[13] == 1).then_some(0), takes_any: case[14] == 1 };
-                packet_words(&subject, twin.next_packet(&ray, &packet, &search))
+                packet_words(&subject, twin.next_packet(&ray(&modes, case, 0), &packet, &search))
             });
         }
     }

@@ -5,82 +5,38 @@ use std::iter::successors;
 use isa::number::Modes;
 use kernels::constants::Constants;
 use kernels::twin::Twin;
-use kernels::twin::ray::{Packet, Ray, Search};
+use kernels::twin::ray::{Ray, Search};
 use kernels::twin::report::{self, Exit, Refraction};
 use kernels::twin::surface::Surface;
 use kernels::{Function, Profile};
 use proptest::prelude::*;
-use scenes::kdtree::Bounds;
 
 use super::Subject;
 use super::bench::{Experiment, Place};
 use super::functions::{
-    CORNERS_AND_RAY, MODES, PACKET, agree, corners, for_all, packet_words, point_of_tree, subject, trees,
-    triangle_and_ray,
+    HIT, MODES, PACKET, RAY_AND_BOX, agree, bounds, for_all, hit, packet_words, point_of_tree, ray, ray_and_box,
+    subject, trees, triangle_and_ray, vertices,
 };
-use super::operands::{direction, number, point, vector, words};
+use super::operands::{direction, vector, words};
 
 fn literal(modes: Modes) -> Subject {
     subject("slabs", Some(4), modes).with(Profile::Report)
 }
 
 #[test]
-fn units() {
-    let experiment = Experiment {
-        functions: &[Function::Unit, Function::Sqrt],
-        operands: &[Place::Vector("v6")],
-        body: "    call link_step, unit\n",
-        results: &[Place::Vector("v6")],
-    };
-    for modes in MODES {
-        let subject = literal(modes);
-        let lane = || number(modes.word - 2);
-        agree(&subject, &experiment, [lane(), lane(), lane()].prop_map(|v| v.to_vec()), |case| {
-            report::unit(&modes, subject.image.formats.direction, vector(case, 0)).to_vec()
-        });
-    }
-}
-
-#[test]
-fn triangles() {
-    let experiment = Experiment {
-        functions: &[Function::Triangle],
-        operands: CORNERS_AND_RAY,
-        body: "    movi slot, SLOT\n    call link_step, triangle\n",
-        results: &[Place::Scalar("s12")],
-    };
-    for modes in MODES {
-        let subject = literal(modes);
-        let constants = Constants::new(&subject.image);
-        agree(&subject, &experiment, triangle_and_ray(modes.word), |case| {
-            let ray = Ray::new(&modes, vector(case, 9), vector(case, 12));
-            vec![report::triangle(&modes, &constants, &ray, &[0, 3, 6].map(|at| vector(case, at)))]
-        });
-    }
-}
-
-#[test]
 fn surfaces() {
     let experiment = Experiment {
         functions: &[Function::Surface, Function::Normal, Function::Unit, Function::Sqrt],
-        operands: &[
-            Place::Triple("NEAR_SLOT + triangle.v0"),
-            Place::Triple("NEAR_SLOT + triangle.v1"),
-            Place::Triple("NEAR_SLOT + triangle.v2"),
-            Place::Vector("origin"),
-            Place::Vector("direction"),
-            Place::Scalar("near_t"),
-        ],
+        operands: HIT,
         body: "    movi near_slot, NEAR_SLOT\n    call link_trace, surface\n",
         results: &[Place::Vector("point"), Place::Vector("behind"), Place::Vector("facing"), Place::Scalar("cosine")],
     };
     for modes in MODES {
         let subject = literal(modes);
         let constants = Constants::new(&subject.image);
-        let cases = (triangle_and_ray(modes.word), 0..=constants.never);
-        agree(&subject, &experiment, cases.prop_map(|(case, t)| words(&[], &[&case[..], &[t]].concat())), |case| {
-            let ray = Ray::new(&modes, vector(case, 9), vector(case, 12));
-            let normal = report::normal(&modes, constants.formats.direction, &[0, 3, 6].map(|at| vector(case, at)));
+        agree(&subject, &experiment, hit(modes.word, constants.never), |case| {
+            let ray = ray(&modes, case, 9);
+            let normal = report::normal(&modes, constants.formats.direction, &vertices(case));
             let (facing, cosine, point, behind) = report::sides(&modes, &constants, &ray, case[15], normal);
             words(&[point, behind, facing], &[cosine])
         });
@@ -90,8 +46,8 @@ fn surfaces() {
 /// The surface that a case of a triangle, a ray and a distance gives, of the first material.
 fn surface(twin: &Twin<Modes>, case: &[i32]) -> Surface {
     let (modes, constants) = (&twin.arithmetic, &twin.constants);
-    let ray = Ray::new(modes, vector(case, 9), vector(case, 12));
-    let normal = report::normal(modes, constants.formats.direction, &[0, 3, 6].map(|at| vector(case, at)));
+    let ray = ray(modes, case, 9);
+    let normal = report::normal(modes, constants.formats.direction, &vertices(case));
     let (facing, cosine, point, behind) = report::sides(modes, constants, &ray, case[15], normal);
     Surface { point, behind, facing, incident: ray.direction, cosine, material: twin.stage.materials[0] }
 }
@@ -154,12 +110,7 @@ fn secondary_rays() {
 fn exit_faces() {
     let experiment = Experiment {
         functions: &[Function::ExitFace],
-        operands: &[
-            Place::Vector("origin"),
-            Place::Vector("direction"),
-            Place::Vector("box_low"),
-            Place::Vector("box_high"),
-        ],
+        operands: RAY_AND_BOX,
         body: "    vmov exit_point, zero_vector\n    call link_step, exit_face\n",
         results: &[
             Place::Scalar("exit_axis"),
@@ -171,11 +122,8 @@ fn exit_faces() {
     for modes in MODES {
         let subject = literal(modes);
         let constants = Constants::new(&subject.image);
-        let bits = modes.word - 2;
-        let cases = (point(bits), direction(bits), corners(bits));
-        agree(&subject, &experiment, cases.prop_map(|(o, d, [low, high])| words(&[o, d, low, high], &[])), |case| {
-            let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-            let bounds = Bounds { low: vector(case, 6), high: vector(case, 9) };
+        agree(&subject, &experiment, ray_and_box(modes.word - 2), |case| {
+            let (ray, bounds) = (ray(&modes, case, 0), bounds(case, 6));
             let Exit { axis, plane, t, point } = report::exit_face(&modes, &constants, &ray, &bounds);
             [vec![axis as i32, plane, t], words(&[point], &[])].concat()
         });
@@ -203,74 +151,6 @@ fn descents() {
     }
 }
 
-#[test]
-fn first_packets() {
-    let experiment = Experiment {
-        functions: &[Function::FirstPacket, Function::Descend],
-        operands: &[Place::Vector("origin"), Place::Vector("direction")],
-        body: "    call link_packet, first_packet\n    bgez packet_count, 1f\n    mov packet_refs, s0\n    \
-               vmov box_low, zero_vector\n    vmov box_high, zero_vector\n1:\n",
-        results: PACKET,
-    };
-    for modes in MODES {
-        for subject in trees(modes) {
-            let subject = subject.with(Profile::Report);
-            let twin = subject.twin();
-            let origin = prop_oneof![point_of_tree(&subject), point(modes.word - 2)];
-            let cases = (origin, direction(modes.word - 2)).prop_map(|(o, d)| words(&[o, d], &[]));
-            agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                packet_words(&subject, report::first_packet(&modes, &twin.constants, &twin.stage, &ray))
-            });
-        }
-    }
-}
-
-#[test]
-fn next_packets() {
-    let experiment = Experiment {
-        functions: &[Function::NextPacket, Function::ExitFace, Function::Descend],
-        operands: &[
-            Place::Vector("origin"),
-            Place::Vector("direction"),
-            Place::Vector("box_low"),
-            Place::Vector("box_high"),
-            Place::Scalar("near_t"),
-            Place::Scalar("near"),
-            Place::Scalar("any_hit"),
-        ],
-        body: "    movi steps, 2\n    call link_packet, next_packet\n    bgez packet_count, 1f\n    mov packet_refs, s0\n    \
-               vmov box_low, zero_vector\n    vmov box_high, zero_vector\n1:\n",
-        results: PACKET,
-    };
-    for modes in MODES {
-        for subject in trees(modes) {
-            let subject = subject.with(Profile::Report);
-            let twin = subject.twin();
-            let most = twin.constants.missed;
-            let cases = (
-                point_of_tree(&subject),
-                direction(modes.word - 2),
-                prop_oneof![0..=most, Just(most)],
-                any::<bool>(),
-                any::<bool>(),
-            );
-            let stage = twin.stage.clone();
-            let cases = cases.prop_map(move |(origin, direction, t, near, any)| {
-                let Packet { bounds, .. } = report::own_packet(&stage, &Ray::new(&modes, origin, direction));
-                words(&[origin, direction, bounds.low, bounds.high], &[t, i32::from(near), i32::from(any)])
-            });
-            agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                let packet =
-                    Packet { bounds: Bounds { low: vector(case, 6), high: vector(case, 9) }, references: 0..0 };
-                let search = Search { t: case[12], triangle: (case[13] == 1).then_some(0), takes_any: case[14] == 1 };
-                packet_words(&subject, twin.next_packet(&ray, &packet, &search))
-            });
-        }
-    }
-}
-
 /// A ray that starts inside the scene leaves it: each packet lies a plane farther than the one before, however the points are rounded.
 #[test]
 fn walks_end() {
@@ -281,7 +161,7 @@ fn walks_end() {
             let cases = (point_of_tree(&subject), direction(modes.word - 2));
             let cases = cases.prop_map(|(o, d)| words(&[o, d], &[]));
             for_all(cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
+                let ray = ray(&modes, case, 0);
                 let search = Search { t: twin.constants.never, triangle: None, takes_any: false };
                 let first = Some(report::own_packet(&twin.stage, &ray));
                 let packets = successors(first, |here| twin.next_packet(&ray, here, &search));

@@ -4,28 +4,20 @@ use isa::number::Modes;
 use kernels::Function;
 use kernels::constants::Constants;
 use kernels::twin::Twin;
-use kernels::twin::ray::Ray;
 use kernels::twin::reflect::{reflect, reflects};
 use kernels::twin::refract::{Refraction, refract, refracts};
 use kernels::twin::surface::{Surface, normal, sides};
 use proptest::prelude::*;
 
 use super::bench::{Experiment, Place};
-use super::functions::{MODES, agree, subject, triangle_and_ray};
+use super::functions::{HIT, MODES, agree, hit, ray, subject, vertices};
 use super::operands::{direction, point, vector, words};
 
 #[test]
 fn surfaces() {
     let experiment = Experiment {
         functions: &[Function::Surface, Function::Normal, Function::Unit, Function::Sqrt],
-        operands: &[
-            Place::Triple("NEAR_SLOT + triangle.v0"),
-            Place::Triple("NEAR_SLOT + triangle.v1"),
-            Place::Triple("NEAR_SLOT + triangle.v2"),
-            Place::Vector("origin"),
-            Place::Vector("direction"),
-            Place::Scalar("near_t"),
-        ],
+        operands: HIT,
         body: "    movi near_slot, NEAR_SLOT\n    call link_shade, surface\n",
         results: &[
             Place::Vector("point"),
@@ -38,11 +30,9 @@ fn surfaces() {
     for modes in MODES {
         let subject = subject("slabs", Some(4), modes);
         let constants = Constants::new(&subject.image);
-        let cases = (triangle_and_ray(modes.word), 0..=constants.never);
-        agree(&subject, &experiment, cases.prop_map(|(case, t)| words(&[], &[&case[..], &[t]].concat())), |case| {
-            let ray = Ray::new(&modes, vector(case, 9), vector(case, 12));
-            let corners = [0, 3, 6].map(|at| vector(case, at));
-            let (facing, cosine) = normal(&modes, constants.formats.direction, ray.direction, &corners);
+        agree(&subject, &experiment, hit(modes.word, constants.never), |case| {
+            let ray = ray(&modes, case, 9);
+            let (facing, cosine) = normal(&modes, constants.formats.direction, ray.direction, &vertices(case));
             let (point, behind) = sides(&modes, &constants, &ray, case[15], facing);
             words(&[point, behind, facing, ray.direction], &[cosine])
         });

@@ -3,7 +3,9 @@
 
 use std::time::{Duration, Instant};
 
+use emu::code::Code;
 use emu::machine::{self, Frame};
+use emu::profile::Profile;
 use isa::diagnostic::Report;
 use kernels::build::{Build, Crop};
 use rayon::prelude::*;
@@ -14,7 +16,7 @@ use scenes::model::Picture;
 use scenes::reference::{Method, Reference};
 
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Detail, Job};
 use crate::load::Load;
 
 /// Whether a picture is measured against double precision.
@@ -75,14 +77,21 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     };
     let crop = load.build.crop;
     let built = Instant::now();
-    let setup = load.setup(&job.machine, machine::Options { has_profile: true, has_items: true, window: None });
+    let has_profile = job.detail == Detail::Functions;
+    let options = machine::Options { has_profile, has_items: true, ..machine::Options::default() };
+    let setup = load.setup(&job.machine, options);
     let (frame, reference) = std::thread::scope(|scope| {
         let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
         let frame = timed(|| machine::run(&setup, load.memory.clone(), progress));
         (frame, beside.join().expect("the reference does not panic"))
     });
     let (frame, run) = frame;
-    let frame = frame?;
+    let mut frame = frame?;
+    if !has_profile {
+        let code = |program| Code::new(program, &load.isa, job.machine.timing());
+        frame.profile = Some(Profile::exclusive(&code(&load.build.cores), &frame.tally));
+        frame.main_profile = Some(Profile::exclusive(&code(&load.build.main), &frame.main_tally));
+    }
     let (reference, reference_time) = reference.map_or((None, Duration::ZERO), |(picture, time)| (Some(picture), time));
     let words = colour_words(&image, &frame, &crop);
     let picture = picture(&image, &words, (crop.width, crop.height));

@@ -20,6 +20,15 @@ use crate::{files, input, machine};
 /// Pixels of the largest picture.
 const MOST_PIXELS: u64 = 1 << 24;
 
+/// What is asked of a picture beside its colours, counts and clocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// Totals of functions and regions, which take the interpreter.
+    Functions,
+    /// Nothing more.
+    Totals,
+}
+
 /// Everything that decides a picture and what it costs.
 #[derive(Clone, Debug)]
 pub struct Job {
@@ -37,6 +46,8 @@ pub struct Job {
     pub machine_name: String,
     /// The machine.
     pub machine: Config,
+    /// What is recorded.
+    pub detail: Detail,
     /// What is likely a mistake in the scene's files.
     pub warnings: Report,
     /// All files that were read for it.
@@ -80,6 +91,7 @@ impl Job {
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
+            detail: Detail::Functions,
             warnings: Report::default(),
             files: Vec::new(),
         }

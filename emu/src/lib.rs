@@ -3,6 +3,8 @@
 pub mod checked;
 pub mod code;
 pub mod exec;
+pub mod fast;
+mod independence;
 pub mod machine;
 pub mod octets;
 pub mod profile;

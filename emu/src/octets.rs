@@ -16,22 +16,50 @@ fn range(address: u32, length: u32, size: usize) -> Option<std::ops::Range<usize
 }
 
 /// The local buffer of a core: octet addresses from 0, little-endian, any alignment.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Buffer {
     octets: Vec<u8>,
+    /// Which pieces were written since it was last as at first, a bit each.
+    written: u64,
+    /// A piece has 2^this octets, so that there are at most 64.
+    piece: u32,
 }
+
+impl PartialEq for Buffer {
+    fn eq(&self, other: &Buffer) -> bool {
+        self.octets == other.octets
+    }
+}
+
+impl Eq for Buffer {}
 
 impl Buffer {
     /// A buffer of `size` octets that starts with `image` and is poisoned beyond it; an image that is too long is cut.
     pub fn new(image: &[u8], size: u32) -> Buffer {
         let mut octets = image[..image.len().min(size as usize)].to_vec();
         octets.resize(size as usize, POISON);
-        Buffer { octets }
+        Buffer { octets, written: 0, piece: (u32::BITS - size.leading_zeros()).saturating_sub(6) }
     }
 
-    /// Makes it equal to another one of the same size.
+    /// Makes it equal again to the one that it was cloned from, which nobody has written to: only what was written is copied.
     pub fn reset_to(&mut self, initial: &Buffer) {
-        self.octets.copy_from_slice(&initial.octets);
+        let mut written = std::mem::take(&mut self.written);
+        while written != 0 {
+            let start = (written.trailing_zeros() as usize) << self.piece;
+            let end = (start + (1 << self.piece)).min(self.octets.len());
+            self.octets[start..end].copy_from_slice(&initial.octets[start..end]);
+            written &= written - 1;
+        }
+        debug_assert!(*self == *initial, "it is reset to what it was made from");
+    }
+
+    /// Notes that octets are written, which lie in it; there may be none.
+    #[inline]
+    fn note_written(&mut self, start: usize, octets: usize) {
+        if octets != 0 {
+            let (first, last) = (start >> self.piece, (start + octets - 1) >> self.piece);
+            self.written |= u64::MAX >> (63 - (last - first)) << first;
+        }
     }
 
     /// All octets.
@@ -65,6 +93,7 @@ impl Buffer {
             Some(slice) => slice.copy_from_slice(&octets),
             None => return Err(self.fault(address, N as u32)),
         }
+        self.note_written(start, N);
         Ok(())
     }
 
@@ -114,7 +143,10 @@ impl Buffer {
     /// A range that leaves the buffer.
     pub fn slice_mut(&mut self, address: u32, length: u32) -> Result<&mut [u8], Fault> {
         match range(address, length, self.octets.len()) {
-            Some(range) => Ok(&mut self.octets[range]),
+            Some(range) => {
+                self.note_written(range.start, range.len());
+                Ok(&mut self.octets[range])
+            }
             None => Err(self.fault(address, length)),
         }
     }

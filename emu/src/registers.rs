@@ -2,6 +2,15 @@
 
 use isa::number::Vector;
 
+/// Scalar registers that programs can name.
+pub const SCALARS: usize = 32;
+
+/// Vector registers that programs can name.
+pub const VECTORS: usize = 32;
+
+/// Wide accumulators that programs can name.
+pub const WIDES: usize = 8;
+
 /// Registers of a core, all zero after reset.
 ///
 /// Behind those that programs can name come hidden ones (scalars and vectors 32 to 63, wide accumulators 8 to 15), in which bodies of

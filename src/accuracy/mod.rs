@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use crate::drawing::{self, Comparison};
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Detail, Job};
 use crate::result::{ByClass, Render};
 pub use chart::svg;
 pub use front::rank;
@@ -176,6 +176,7 @@ pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -
     job.memory.layout = variant.layout;
     job.machine.arithmetic.word = variant.word;
     job.machine.arithmetic.quantization = variant.rounding;
+    job.detail = Detail::Totals;
     let start = Instant::now();
     let drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
     let host = start.elapsed();

@@ -16,7 +16,7 @@ use super::random::Random;
 use super::tally::{Tally, tally, tally_in_turn};
 use crate::drawing::{self, Comparison};
 use crate::failure::Failure;
-use crate::job::Job;
+use crate::job::{Detail, Job};
 
 /// Scenes that figures are quoted for.
 pub const MEASURED: u64 = 5;
@@ -95,6 +95,7 @@ pub fn kernels(_: u64, trials: Range<u64>) -> Tally {
         let mut job = Job::new(scene);
         job.view = shifted(&job.scene);
         job.kernels.profile = Profile::Ray;
+        job.detail = Detail::Totals;
         let drawing = drawing::draw(&job, Comparison::None, &mut |_| {}).map_err(|failure| match failure {
             Failure::Message { report, .. } => report.render(false),
             Failure::ClosedPipe => "nobody reads".into(),

@@ -99,14 +99,14 @@ pub trait Link {
 }
 
 /// What the bus rows work on: a core's buffer and its link to the machine.
-pub struct Port<'a> {
+pub struct Port<'a, L: ?Sized = dyn Link + 'a> {
     /// The local buffer.
     pub buffer: &'a mut Buffer,
     /// The machine.
-    pub link: &'a mut dyn Link,
+    pub link: &'a mut L,
 }
 
-impl Port<'_> {
+impl<L: Link + ?Sized> Port<'_, L> {
     /// Words from global memory, in one transfer.
     fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
         let mut words = [0; N];
@@ -115,7 +115,7 @@ impl Port<'_> {
     }
 }
 
-impl BusRoom for Port<'_> {
+impl<L: Link + ?Sized> BusRoom for Port<'_, L> {
     fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
         self.link.load(self.buffer, a, b, c as u32)?;
         Ok(Each(c as u32))

@@ -73,13 +73,7 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vdot(&self, a: Vector, b: Vector, i: i32) -> (i32, Done) {
-        let product = |k: usize| i64::from(a[k]) * i64::from(b[k]);
-        // The sum of products of 62 bits rarely needs more than 64.
-        let sum = product(0).checked_add(product(1)).and_then(|sum| sum.checked_add(product(2)));
-        let dot = match sum {
-            Some(sum) => self.narrow64(sum, i as u32),
-            None => self.narrow((0..3).map(|k| i128::from(product(k))).sum(), i as u32),
-        };
+        let dot = self.narrow_products(from_fn(|k| i64::from(a[k]) * i64::from(b[k])), i as u32);
         (dot, Done)
     }
 
@@ -116,7 +110,9 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vgetr(&self, a: Vector, b: i32) -> (i32, Done) {
-        (*a.get((b & 3) as usize).unwrap_or(&0), Done)
+        // Lane by lane: engines that compute many at once have no use for an index.
+        let lane = |k: usize| if b & 3 == k as i32 { a[k] } else { 0 };
+        (lane(0) | lane(1) | lane(2), Done)
     }
 
     #[inline]
@@ -125,11 +121,8 @@ impl<T: Arithmetic> VectorRoom for T {
     }
 
     #[inline]
-    fn vputr(&self, mut x: Vector, a: i32, b: i32) -> (Vector, Done) {
-        if let Some(lane) = x.get_mut((b & 3) as usize) {
-            *lane = a;
-        }
-        (x, Done)
+    fn vputr(&self, x: Vector, a: i32, b: i32) -> (Vector, Done) {
+        (from_fn(|k| if b & 3 == k as i32 { a } else { x[k] }), Done)
     }
 
     #[inline]

@@ -6,43 +6,39 @@ use isa::table::Done;
 
 use super::WideRoom;
 
-fn product(a: i32, b: i32) -> i128 {
-    (i64::from(a) * i64::from(b)).into()
-}
-
-fn dot(a: Vector, b: Vector) -> i128 {
-    product(a[0], b[0]) + product(a[1], b[1]) + product(a[2], b[2])
+fn product(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
 }
 
 impl<T: Arithmetic> WideRoom for T {
     #[inline]
     fn wmul(&self, a: i32, b: i32) -> (i64, Done) {
-        (self.widen(product(a, b), 0), Done)
+        (self.widen64(product(a, b)), Done)
     }
 
     #[inline]
     fn wmac(&self, x: i64, a: i32, b: i32) -> (i64, Done) {
-        (self.widen(i128::from(x) + product(a, b), 0), Done)
+        (self.widen_sum(x, product(a, b)), Done)
     }
 
     #[inline]
     fn wmsub(&self, x: i64, a: i32, b: i32) -> (i64, Done) {
-        (self.widen(i128::from(x) - product(a, b), 0), Done)
+        (self.widen_difference(x, product(a, b)), Done)
     }
 
     #[inline]
     fn wdot(&self, a: Vector, b: Vector) -> (i64, Done) {
-        (self.widen(dot(a, b), 0), Done)
+        (self.widen_products(std::array::from_fn(|k| product(a[k], b[k]))), Done)
     }
 
     #[inline]
     fn wadd(&self, a: i64, b: i64) -> (i64, Done) {
-        (self.widen(i128::from(a) + i128::from(b), 0), Done)
+        (self.widen_sum(a, b), Done)
     }
 
     #[inline]
     fn wsub(&self, a: i64, b: i64) -> (i64, Done) {
-        (self.widen(i128::from(a) - i128::from(b), 0), Done)
+        (self.widen_difference(a, b), Done)
     }
 
     #[inline]
@@ -52,7 +48,7 @@ impl<T: Arithmetic> WideRoom for T {
 
     #[inline]
     fn wneg(&self, a: i64) -> (i64, Done) {
-        (self.widen(-i128::from(a), 0), Done)
+        (self.widen_difference(0, a), Done)
     }
 
     #[inline]
@@ -128,7 +124,8 @@ impl<T: Arithmetic> WideRoom for T {
 
     #[inline]
     fn wcross(&self, a: Vector, b: Vector) -> ([i64; 3], Done) {
-        let minor = |j: usize, k: usize| self.widen(product(a[j], b[k]) - product(a[k], b[j]), 0);
+        // It fits 64 bits: see the cross product of the vectors.
+        let minor = |j: usize, k: usize| self.widen64(product(a[j], b[k]) - product(a[k], b[j]));
         ([minor(1, 2), minor(2, 0), minor(0, 1)], Done)
     }
 

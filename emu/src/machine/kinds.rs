@@ -11,6 +11,8 @@ use crate::quantity::Octets;
 pub struct Kinds {
     ranges: Vec<(Range<u32>, usize)>,
     totals: Vec<KindUse>,
+    /// The range that was met last: mostly it is met again.
+    last: (Range<u32>, usize),
     message: usize,
     other: usize,
 }
@@ -18,7 +20,7 @@ pub struct Kinds {
 impl Kinds {
     /// Nothing moved yet.
     pub fn new(named: &[(Range<u32>, String)]) -> Kinds {
-        let mut kinds = Kinds { ranges: Vec::new(), totals: Vec::new(), message: 0, other: 0 };
+        let mut kinds = Kinds { ranges: Vec::new(), totals: Vec::new(), last: (0..0, 0), message: 0, other: 0 };
         for (range, kind) in named {
             let number = kinds.number(kind);
             kinds.ranges.push((range.clone(), number));
@@ -42,12 +44,27 @@ impl Kinds {
     pub fn add(&mut self, request: Option<Request>) {
         match request {
             Some(Request::Transfer { address, octets, .. }) => {
+                let (range, kind) = self.last.clone();
+                if range.contains(&address) {
+                    self.totals[kind].octets += octets;
+                    return;
+                }
                 let after = self.ranges.partition_point(|(range, _)| range.start <= address);
                 let found = self.ranges[..after].last().filter(|(range, _)| range.contains(&address));
                 self.totals[found.map_or(self.other, |&(_, kind)| kind)].octets += octets;
+                if let Some(found) = found {
+                    self.last = found.clone();
+                }
             }
             Some(Request::Send { octets, .. }) => self.totals[self.message].octets += octets,
             _ => {}
+        }
+    }
+
+    /// Nothing moved again.
+    pub fn clear(&mut self) {
+        for total in &mut self.totals {
+            total.octets = Octets(0);
         }
     }
 

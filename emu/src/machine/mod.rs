@@ -5,9 +5,9 @@ pub mod arbiter;
 pub mod bus;
 pub mod cache;
 pub mod config;
+mod count;
 mod ending;
 pub mod frame;
-mod independence;
 mod kinds;
 mod library;
 pub mod mailbox;
@@ -35,6 +35,7 @@ use isa::number::Nearest32;
 use isa::{Isa, Program};
 
 pub use config::Config;
+pub use count::{Count, compute, count};
 pub use frame::{Frame, Item, KindUse, Method, ProcessorUse};
 pub use recorded::Recorded;
 
@@ -42,6 +43,7 @@ use trace::Window;
 
 use crate::code::check_bodies;
 use crate::exec::{Watch, Watching};
+use crate::fast::Features;
 use crate::octets::Memory;
 use crate::profile::{Observer, Profiler, Unobserved};
 use crate::trap::Trap;
@@ -64,6 +66,16 @@ pub struct Setup<'a> {
     pub options: Options,
 }
 
+/// Which engine runs what can run on several. The results are the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Engine {
+    /// Many work items in lock-step, with the host's vector instructions: [`crate::fast`].
+    #[default]
+    Fast,
+    /// The interpreter, one instruction after the other: [`crate::checked`].
+    Checked,
+}
+
 /// What a run records beyond counts and times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
@@ -73,6 +85,10 @@ pub struct Options {
     pub has_items: bool,
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,
+    /// What runs the work items. Runs with a profile, and on other arithmetic than the default one, always take the interpreter.
+    pub engine: Engine,
+    /// What the fast engine may use of the host at most; `None` for all that there is.
+    pub features: Option<Features>,
 }
 
 /// Why a run has no result.

@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 
 use super::ending::Ending;
 use super::library::{Batch, Library};
-use super::recorder::Prefix;
+use super::recorder::{Keeping, Prefix};
 use super::recording::Reason;
 use super::scout::{self, Survey};
 use super::{Failure, Frame, Setup, Work, check, choose, replay, schedule};
@@ -64,7 +64,7 @@ impl Work for Recording<'_> {
         let Recording { setup, memory } = self;
         let prefix = replay::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
-        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), &mut |batch| {
+        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Segments, &mut |batch| {
             batches.push(batch);
             true
         });

@@ -2,14 +2,15 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::Setup;
-use super::independence::Independence;
 use super::kinds::Kinds;
 use super::recording::{Reason, Recording, Segment};
 use super::station::{Access, Request};
+use super::{Engine, Setup};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
+use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Uncounted, Unusual, Wires};
+use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
 use crate::profile::Observer;
 use crate::quantity::Octets;
@@ -133,9 +134,141 @@ impl Room {
         self.taken.load(Ordering::Relaxed) > self.most
     }
 
+    /// Gives back what a group had taken.
+    fn give_back(&self, segments: usize) {
+        self.taken.fetch_sub(segments, Ordering::Relaxed);
+    }
+
     /// Takes room for segments; false when there is none.
     fn take(&self, segments: usize) -> bool {
         self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most
+    }
+}
+
+/// The work items of a group that is recorded in lock-step.
+struct Strands<'a> {
+    memory: &'a Memory,
+    main: u32,
+    room: &'a Room,
+    kinds: Kinds,
+    strands: Vec<Strand>,
+    keeping: Keeping,
+}
+
+/// What is kept of work items beside their answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeping {
+    /// Passes, and the segments that replaying them takes.
+    Segments,
+    /// Passes; segments not, as far as that saves time.
+    Passes,
+    /// Nothing, as far as that saves time.
+    Nothing,
+}
+
+/// One of them.
+#[derive(Debug, Default)]
+struct Strand {
+    message: Option<Message>,
+    sent: Vec<Message>,
+    segments: Vec<Segment>,
+    octets: Octets,
+    before: u64,
+}
+
+/// The link of one of them: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
+struct StrandLink<'s, 'a> {
+    all: &'s mut Strands<'a>,
+    lane: usize,
+    moment: Moment,
+}
+
+impl<'a> Wires for Strands<'a> {
+    #[inline(always)]
+    fn link(&mut self, lane: usize, moment: Moment) -> impl Link {
+        StrandLink { all: self, lane, moment }
+    }
+}
+
+impl StrandLink<'_, '_> {
+    fn enter(&mut self, request: Request) -> Result<(), Stop> {
+        let strand = &mut self.all.strands[self.lane];
+        if strand.message.is_some() {
+            return Err(Stop::Wait);
+        }
+        match self.all.keeping {
+            Keeping::Nothing => return Ok(()),
+            Keeping::Passes | Keeping::Segments => self.all.kinds.add(Some(request)),
+        }
+        if self.all.keeping == Keeping::Passes {
+            return Ok(());
+        }
+        let clocks = self.moment.clocks - strand.before;
+        let segment = Segment::new(clocks, self.moment.pc, request, strand.sent.len()).ok_or(Stop::Wait)?;
+        strand.octets += segment.octets();
+        strand.before = self.moment.clocks;
+        strand.segments.push(segment);
+        if strand.segments.len().is_multiple_of(Room::PORTION) && !self.all.room.take(Room::PORTION) {
+            return Err(Stop::Wait);
+        }
+        Ok(())
+    }
+
+    fn read_octets(&mut self, access: Access, from: u32, octets: u32) -> Result<&[u8], Stop> {
+        let memory = self.all.memory;
+        let found = memory.slice(from, octets)?;
+        self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })?;
+        Ok(found)
+    }
+}
+
+impl Link for StrandLink<'_, '_> {
+    #[inline]
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let place = buffer.slice_mut(to, octets)?;
+        place.copy_from_slice(self.read_octets(Access::Load, from, octets)?);
+        Ok(())
+    }
+
+    fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+
+    #[inline]
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        let octets = self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
+        for (word, octets) in words.iter_mut().zip(octets.chunks_exact(4)) {
+            *word = i32::from_le_bytes(std::array::from_fn(|at| octets[at]));
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+
+    fn fetch_add(&mut self, _: u32, _: i32) -> Result<i32, Stop> {
+        Err(Stop::Wait)
+    }
+
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        if u32::try_from(to).ok() != Some(self.all.main) {
+            return Err(Stop::Wait);
+        }
+        self.enter(Request::Send { to: self.all.main, octets: Octets(message.octets().into()) })?;
+        self.all.strands[self.lane].sent.push(message);
+        Ok(())
+    }
+
+    fn receive(&mut self) -> Result<(Message, u32), Stop> {
+        let strand = &mut self.all.strands[self.lane];
+        let message = strand.message.take().ok_or(Stop::Wait)?;
+        strand.before = self.moment.clocks;
+        Ok((message, self.all.main))
+    }
+
+    fn barrier(&mut self) -> Result<(), Stop> {
+        Err(Stop::Wait)
     }
 }
 
@@ -147,21 +280,44 @@ pub struct Recorder<'a, T, O> {
     seat: Seat,
     state: State,
     initial: Buffer,
-    /// Passes of all items.
-    pub tally: Tally,
+    keeping: Keeping,
+    tally: Tally,
     /// Octets of all items.
     pub kinds: Kinds,
     /// Who watches them.
     pub observer: Independence<O>,
+    lockstep: Option<Lockstep<'a>>,
+}
+
+/// What a core needs to record many items at once.
+struct Lockstep<'a> {
+    plan: Plan<'a>,
+    group: Box<Group>,
+    features: Features,
+    /// Words that groups executed, each for as many lanes as there were.
+    rounds: u64,
 }
 
 impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
+    /// Work items that may be recorded at once.
+    pub const AT_ONCE: usize = LANES;
+
     /// A core that has recorded nothing.
-    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T) -> Self {
+    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, keeping: Keeping) -> Self {
         let config = setup.config;
         let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
+        // Who watches each instruction has to see them one after the other.
+        let is_fast = setup.options.engine == Engine::Fast && !O::IS_ACTIVE && !T::IS_WATCHING;
+        let lockstep = is_fast.then(|| Plan::new(code)).flatten().map(|plan| Lockstep {
+            group: Box::new(Group::new(&plan, seat, &initial)),
+            plan,
+            features: setup.options.features.unwrap_or_else(Features::best),
+            rounds: 0,
+        });
         Recorder {
+            lockstep,
+            keeping,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
             kinds: Kinds::new(&setup.kinds),
@@ -204,11 +360,78 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         }
     }
 
+    /// Runs work items from reset to their ends, at most [`Recorder::AT_ONCE`], in the order of their messages.
+    ///
+    /// # Errors
+    /// Why one cannot be replayed.
+    pub fn record_all(&mut self, messages: &[Message], room: &Room) -> Vec<Result<Recording, Reason>> {
+        match self.record_group(messages, room) {
+            Ok(recordings) => recordings.into_iter().map(Ok).collect(),
+            Err(Unusual) => messages.iter().map(|&message| self.record(message, room)).collect(),
+        }
+    }
+
+    /// The same in lock-step.
+    fn record_group(&mut self, messages: &[Message], room: &Room) -> Result<Vec<Recording>, Unusual> {
+        let Some(Lockstep { plan, group, features, rounds }) = &mut self.lockstep else { return Err(Unusual) };
+        group.begin(plan, &self.initial, Mask::MAX >> (LANES - messages.len()));
+        let strands = messages.iter().map(|&message| Strand { message: Some(message), ..Strand::default() }).collect();
+        let mut kinds = self.kinds.clone();
+        kinds.clear();
+        let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
+        let mut strands = Strands { memory, main, room, kinds, strands, keeping };
+        let ended = match self.keeping {
+            Keeping::Nothing => fast::run::<_, Uncounted>(*features, plan, group, &mut strands),
+            Keeping::Passes | Keeping::Segments => fast::run::<_, Counted>(*features, plan, group, &mut strands),
+        };
+        let all = &strands.strands;
+        let is_unfit =
+            |(lane, strand): (usize, &Strand)| strand.message.is_some() || group.origins.lane(lane).depends_on_core;
+        if ended.is_err() || all.iter().enumerate().any(is_unfit) {
+            let portions: usize = all.iter().map(|strand| strand.segments.len() / Room::PORTION).sum();
+            room.give_back(portions * Room::PORTION);
+            return Err(Unusual);
+        }
+        group.meter.keep();
+        *rounds += group.steps;
+        self.kinds.merge(strands.kinds.totals());
+        let recording = |(lane, (strand, &message)): (usize, (Strand, &Message))| {
+            room.take(strand.segments.len() % Room::PORTION);
+            let total = group.total(lane);
+            Recording {
+                message,
+                segments: strand.segments,
+                octets: strand.octets,
+                sent: strand.sent,
+                last_clocks: total.clocks - strand.before,
+                last_pc: group.halted_at[lane],
+                end: Pause::Halt,
+                steps: total.steps,
+                elementary: total.elementary,
+                depends_on_cores: group.origins.lane(lane).depends_on_cores,
+            }
+        };
+        Ok(strands.strands.into_iter().zip(messages).enumerate().map(recording).collect())
+    }
+
+    /// Words that groups executed, each for as many lanes as there were.
+    pub fn rounds(&self) -> u64 {
+        self.lockstep.as_ref().map_or(0, |lockstep| lockstep.rounds)
+    }
+
+    /// The passes of all items.
+    pub fn take_tally(&mut self) -> Tally {
+        if let Some(Lockstep { plan, group, .. }) = &mut self.lockstep {
+            group.meter.fold(plan, &mut self.tally);
+        }
+        std::mem::replace(&mut self.tally, Tally::new(self.code))
+    }
+
     /// Runs a work item from reset to its end.
     ///
     /// # Errors
     /// Why it cannot be replayed.
-    pub fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
+    fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
         let mut wire = self.wire(message);
@@ -246,7 +469,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         }
         self.observer.end();
         room.take(segments.len() % Room::PORTION);
-        if self.observer.depends_on_core {
+        if self.observer.origin.depends_on_core {
             return Err("a work item asks which core it runs on");
         }
         Ok(Recording {
@@ -259,7 +482,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
             end,
             steps: self.state.steps,
             elementary: self.state.elementary,
-            depends_on_cores: self.observer.depends_on_cores,
+            depends_on_cores: self.observer.origin.depends_on_cores,
         })
     }
 }

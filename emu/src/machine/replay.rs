@@ -9,7 +9,7 @@ use isa::Class;
 use super::ending::Ending;
 use super::frame::Method;
 use super::library::{Batch, Library};
-use super::recorder::{Prefix, Recorder};
+use super::recorder::{Keeping, Prefix, Recorder};
 use super::recording::Reason;
 use super::schedule;
 use super::scout::{self, Survey};
@@ -57,7 +57,7 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
 /// What every work item does before its message comes.
 pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) -> Result<Prefix, Reason> {
     let code = Code::new(setup.core, setup.isa, setup.config.timing());
-    Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone()).prefix()
+    Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), Keeping::Segments).prefix()
 }
 
 /// The scout on a thread of its own, the first machine on this one, each other one on another.
@@ -77,7 +77,7 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     std::thread::scope(|scope| {
         let own = arithmetic.clone();
         let scout = scope.spawn(move || {
-            scout::run::<T, O>(&setups[0], memory, own, &mut |batch| {
+            scout::run::<T, O>(&setups[0], memory, own, Keeping::Segments, &mut |batch| {
                 senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
             })
         });

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::Setup;
 use super::kinds::Kinds;
 use super::library::Batch;
-use super::recorder::{Recorder, Room};
+use super::recorder::{Keeping, Recorder, Room};
 use super::recording::{Reason, Recording};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
@@ -88,17 +88,25 @@ fn record<T: Watch + Send, O: Observer + Send>(
     let (next, room) = (AtomicUsize::new(0), Room::new(MOST_SEGMENTS));
     let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
-    rayon::scope(|scope| {
-        for (recorder, found) in recorders.iter_mut().zip(&mut found) {
-            let (next, room) = (&next, &room);
-            scope.spawn(move |_| {
-                while !room.is_full()
-                    && let at = next.fetch_add(1, Ordering::Relaxed)
-                    && let Some((_, message)) = work.get(at)
-                {
-                    found.push((at, recorder.record(*message, room)));
-                }
-            });
+    let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Recording, Reason>)>| {
+        let most = Recorder::<T, O>::AT_ONCE;
+        while !room.is_full()
+            && let at = next.fetch_add(most, Ordering::Relaxed)
+            && let Some(group) = work.get(at..).filter(|group| !group.is_empty())
+        {
+            let messages: Vec<Message> = group.iter().take(most).map(|(_, message)| *message).collect();
+            found.extend((at..).zip(recorder.record_all(&messages, &room)));
+        }
+    };
+    // Threads of their own: this may itself be a thread of a pool in which all others wait.
+    std::thread::scope(|scope| {
+        let mut pairs = recorders.iter_mut().zip(&mut found);
+        let own = pairs.next();
+        for (recorder, found) in pairs {
+            scope.spawn(|| work_off(recorder, found));
+        }
+        if let Some((recorder, found)) = own {
+            work_off(recorder, found);
         }
     });
     // Whether they are too many does not depend on who recorded what first; so this reason comes before others.
@@ -118,6 +126,12 @@ pub struct Survey {
     pub kinds: Kinds,
     /// Their functions and regions.
     pub profile: Option<Profile>,
+    /// Global memory, with all answers in it where all of them came.
+    pub memory: Memory,
+    /// Words that groups of items executed in lock-step; 0 where they were not.
+    pub rounds: u64,
+    /// How the main processor's program ended.
+    pub end: Pause,
 }
 
 /// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
@@ -125,24 +139,25 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     setup: &Setup,
     memory: &Memory,
     arithmetic: T,
+    keeping: Keeping,
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
 ) -> Survey {
     let config = setup.config;
     let core_code = Code::new(setup.core, setup.isa, config.timing());
     let main_code = Code::new(setup.main, setup.isa, config.timing());
-    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone());
+    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), keeping);
     let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
     let mut memory = memory.clone();
     let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
     let mut tally = Tally::new(&main_code);
-    loop {
+    let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
         let seat = Seat { core: LANES, cores: LANES, step_limit };
         let nobody = &mut Unobserved;
         let pause = checked::run(&main_code, seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
         if desk.work.is_empty() {
-            break;
+            break pause;
         }
         let batch = record(&mut recorders, &desk.work);
         if let Ok(batch) = &batch {
@@ -153,14 +168,23 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
         desk.work.clear();
         let is_over = batch.is_err() || pause != Pause::Wait;
         if !hand_over(Arc::new(batch)) || is_over {
-            break;
+            break pause;
         }
-    }
-    let mut survey = Survey { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None };
-    for recorder in recorders {
-        survey.tally.merge(&recorder.tally);
+    };
+    let mut survey = Survey {
+        tally: Tally::new(&core_code),
+        kinds: Kinds::new(&setup.kinds),
+        profile: None,
+        memory,
+        rounds: 0,
+        end,
+    };
+    for mut recorder in recorders {
+        let tally = recorder.take_tally();
+        survey.rounds += recorder.rounds();
+        survey.tally.merge(&tally);
         survey.kinds.merge(recorder.kinds.totals());
-        match (&mut survey.profile, recorder.observer.into_profile(&core_code, &recorder.tally)) {
+        match (&mut survey.profile, recorder.observer.into_profile(&core_code, &tally)) {
             (Some(profile), Some(more)) => profile.merge(&more),
             (profile, more) => *profile = more,
         }

@@ -52,7 +52,7 @@ pub fn worker(segments: i32, spin: i32, octets: i32) -> Program {
 
 pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> Frame {
     let isa = Isa::base();
-    let options = Options { has_profile: true, has_items: true, window: None };
+    let options = Options { has_profile: true, has_items: true, ..Options::default() };
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![(0..400, "answer".to_owned())], options };
     match machine::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
         Ok(frame) => frame,

@@ -3,6 +3,7 @@
 mod builder;
 mod bus;
 mod engine;
+mod fast;
 mod machine;
 mod meanings;
 mod messages;

@@ -23,7 +23,14 @@ fn memory() -> Memory {
 fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Program) -> Setup<'a> {
     let kind = |from: i64, to: i64, name: &str| (from as u32..to as u32, name.to_owned());
     let kinds = vec![kind(NODES, TRIANGLES, "nodes"), kind(TRIANGLES, 2000, "triangles")];
-    Setup { config, isa, core, main, kinds, options: Options { has_profile: true, has_items: true, window: None } }
+    Setup {
+        config,
+        isa,
+        core,
+        main,
+        kinds,
+        options: Options { has_profile: true, has_items: true, ..Options::default() },
+    }
 }
 
 /// A work item that wanders: what it reads decides where it goes on, how long it computes and how much it loads.

@@ -27,7 +27,7 @@ pub trait Arithmetic {
         self.quantize(value, shift, self.word()) as i32
     }
 
-    /// `value / 2^shift` as a word, for values of 64 bits.
+    /// `value / 2^shift` as a word, for values of 64 bits; `shift` at most 63.
     fn narrow64(&self, value: i64, shift: u32) -> i32 {
         self.narrow(value.into(), shift)
     }
@@ -35,6 +35,31 @@ pub trait Arithmetic {
     /// `value / 2^shift` as a wide number of twice the word.
     fn widen(&self, value: i128, shift: u32) -> i64 {
         self.quantize(value, shift, 2 * self.word())
+    }
+
+    /// A number of 64 bits as a wide number of twice the word.
+    fn widen64(&self, value: i64) -> i64 {
+        self.widen(value.into(), 0)
+    }
+
+    /// The exact sum `a + b` as a wide number of twice the word.
+    fn widen_sum(&self, a: i64, b: i64) -> i64 {
+        self.widen(i128::from(a) + i128::from(b), 0)
+    }
+
+    /// The exact difference `a - b` as a wide number of twice the word.
+    fn widen_difference(&self, a: i64, b: i64) -> i64 {
+        self.widen(i128::from(a) - i128::from(b), 0)
+    }
+
+    /// The exact sum of three products of words as a wide number of twice the word.
+    fn widen_products(&self, products: [i64; 3]) -> i64 {
+        self.widen(products.into_iter().map(i128::from).sum(), 0)
+    }
+
+    /// The exact sum of three products of words, over `2^shift`, as a word; `shift` at most 63.
+    fn narrow_products(&self, products: [i64; 3], shift: u32) -> i32 {
+        self.narrow(products.into_iter().map(i128::from).sum(), shift)
     }
 
     /// The exact quotient, quantized once to a word; x / 0 overflows with the sign of x, 0 / 0 = 0.

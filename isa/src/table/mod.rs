@@ -43,6 +43,8 @@ pub struct Each(pub u32);
 
 /// What an engine reads off the exit that a meaning returns.
 pub trait Ending: Copy {
+    /// Exits of the row.
+    const EXITS: usize;
     /// Number of the exit within its row.
     fn index(self) -> usize;
     /// Units of the per-unit cost; 0 where the row has none.
@@ -50,18 +52,24 @@ pub trait Ending: Copy {
 }
 
 impl Ending for Done {
+    const EXITS: usize = 1;
+    #[inline]
     fn index(self) -> usize {
         0
     }
+    #[inline]
     fn units(self) -> u32 {
         0
     }
 }
 
 impl Ending for Each {
+    const EXITS: usize = 1;
+    #[inline]
     fn index(self) -> usize {
         0
     }
+    #[inline]
     fn units(self) -> u32 {
         self.0
     }
@@ -89,7 +97,10 @@ macro_rules! exit_type {
                 $(#[doc = concat!("Exit `", stringify!($exit), "`.")] $exit,)+
             }
             impl crate::table::Ending for Exit {
+                const EXITS: usize = [$(stringify!($exit)),+].len();
+                #[inline]
                 fn index(self) -> usize { self as usize }
+                #[inline]
                 fn units(self) -> u32 { 0 }
             }
         }
@@ -111,7 +122,10 @@ macro_rules! exit_type {
                 pub units: u32,
             }
             impl crate::table::Ending for Exit {
+                const EXITS: usize = [$(stringify!($exit)),+].len();
+                #[inline]
                 fn index(self) -> usize { self.way as usize }
+                #[inline]
                 fn units(self) -> u32 { self.units }
             }
         }

@@ -1,0 +1,117 @@
+//! Watches whether a work item does anything that depends on how many cores there are, or on which one it runs: where
+//! the numbers of cores go, register by register.
+
+use isa::{Kind, Op};
+
+use crate::code::Code;
+use crate::exec::Motion;
+use crate::profile::{Observer, Profile};
+use crate::tally::Tally;
+
+/// What an instruction does with scalar registers, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mark {
+    reads: u64,
+    writes: u64,
+    /// Written with the number of the main processor, which is the number of cores.
+    counts: u64,
+    /// Where a message goes to.
+    target: u64,
+    is_send: bool,
+    /// It tells which core this is.
+    tells_core: bool,
+}
+
+impl Mark {
+    /// The mark of a word.
+    pub fn new(code: &Code, pc: u32) -> Mark {
+        let mut mark = Mark::default();
+        let (Some(slot), Some(row)) = (code.slots().get(pc as usize), code.slot_row(pc)) else { return mark };
+        mark.is_send = matches!(slot.op, Some(Op::send2 | Op::send5));
+        mark.tells_core = slot.op == Some(Op::core);
+        for operand in row.operands.iter().filter(|operand| matches!(operand.kind, Kind::S | Kind::A)) {
+            let bit = 1 << (slot.fields.get(operand.letter) & 63);
+            match operand.is_read() {
+                true if mark.is_send => mark.target |= bit,
+                true => mark.reads |= bit,
+                false => {}
+            }
+            if operand.is_written() {
+                mark.writes |= bit;
+                if matches!(slot.op, Some(Op::cores | Op::recv2 | Op::recv5)) {
+                    // s0 stays zero.
+                    mark.counts |= bit & !1;
+                }
+            }
+        }
+        mark
+    }
+
+    /// Whether the instruction matters even when no register holds the number of cores.
+    pub fn asks(&self) -> bool {
+        self.counts != 0 || self.is_send || self.tells_core
+    }
+}
+
+/// What a work item has learned of the cores on its way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Origin {
+    /// Registers that hold the number of cores, as far as the item's path tells.
+    pub tainted: u64,
+    /// Whether the item may depend on the number of cores.
+    pub depends_on_cores: bool,
+    /// Whether the item has asked for its core's number.
+    pub depends_on_core: bool,
+}
+
+impl Origin {
+    /// The item executes an instruction.
+    #[inline]
+    pub fn step(&mut self, mark: Mark) {
+        // A message to a fixed number would go to another processor where there are more cores.
+        let is_fixed = mark.is_send && self.tainted & mark.target == 0;
+        self.depends_on_cores |= self.tainted & mark.reads != 0 || is_fixed;
+        self.depends_on_core |= mark.tells_core;
+        self.tainted = self.tainted & !mark.writes | mark.counts;
+    }
+}
+
+/// An observer that watches for that, beside another one.
+#[derive(Clone, Debug)]
+pub struct Independence<O> {
+    /// The other one.
+    pub inner: O,
+    marks: Vec<Mark>,
+    /// What the item has learned.
+    pub origin: Origin,
+}
+
+impl<O: Observer> Observer for Independence<O> {
+    const IS_ACTIVE: bool = true;
+
+    fn new(code: &Code) -> Independence<O> {
+        let marks = (0..code.slots().len() as u32).map(|pc| Mark::new(code, pc)).collect();
+        Independence { inner: O::new(code), marks, origin: Origin::default() }
+    }
+
+    fn begin(&mut self, pc: u32) {
+        self.origin = Origin::default();
+        self.inner.begin(pc);
+    }
+
+    #[inline]
+    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
+        self.origin.step(self.marks[pc as usize]);
+        if O::IS_ACTIVE {
+            self.inner.step(pc, exit, units, next, motion);
+        }
+    }
+
+    fn end(&mut self) {
+        self.inner.end();
+    }
+
+    fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile> {
+        self.inner.into_profile(code, tally)
+    }
+}

@@ -1,0 +1,89 @@
+//! A frame without clocks: what the work items answer and count, for those who ask nothing of time.
+
+use super::kinds::Kinds;
+use super::recorder::Keeping;
+use super::recording::Reason;
+use super::{Failure, Setup, Work, check, choose, replay, scout};
+use crate::checked::Pause;
+use crate::exec::Watch;
+use crate::octets::Memory;
+use crate::profile::{Observer, Profile};
+use crate::tally::Tally;
+
+/// What a frame computes and counts, whatever the time it takes.
+#[derive(Clone, Debug)]
+pub struct Count {
+    /// Global memory at the end.
+    pub memory: Memory,
+    /// Passes of all cores.
+    pub tally: Tally,
+    /// Functions and regions of the cores' program, where a profile was asked for.
+    pub profile: Option<Profile>,
+    /// Octets that the cores moved, by kind.
+    pub kinds: Kinds,
+    /// Number of work items.
+    pub item_count: u64,
+    /// Words that groups of work items executed in lock-step, each once for all of its lanes; 0 where the interpreter ran.
+    pub rounds: u64,
+}
+
+/// Runs the work items of a frame on all host threads and puts nothing on a clock.
+///
+/// # Errors
+/// A machine out of its ranges, or a program whose initial buffer does not fit. The inner error says why there is no such
+/// result: the frame traps, or what its work items do depends on time, which [`super::run`] finds out about.
+pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
+    check(setup)?;
+    Ok(choose(setup, Counting { setup, memory, keeping: Keeping::Passes }))
+}
+
+/// As [`count`], but the fast engine counts nothing: for measuring what counting costs.
+///
+/// # Errors
+/// As [`count`].
+pub fn compute(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
+    check(setup)?;
+    Ok(choose(setup, Counting { setup, memory, keeping: Keeping::Nothing }))
+}
+
+struct Counting<'a> {
+    setup: &'a Setup<'a>,
+    memory: &'a Memory,
+    keeping: Keeping,
+}
+
+impl Work for Counting<'_> {
+    type Result = Result<Count, Reason>;
+
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+        let Counting { setup, memory, keeping } = self;
+        replay::prefix(setup, memory, arithmetic)?;
+        let (mut item_count, mut unfit) = (0, None);
+        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), keeping, &mut |batch| {
+            match batch.as_ref() {
+                Err(reason) => unfit = Some(*reason),
+                Ok(batch) => {
+                    item_count += batch.len() as u64;
+                    if batch.iter().any(|recording| recording.end != Pause::Halt) {
+                        unfit = Some("a work item traps");
+                    }
+                }
+            }
+            unfit.is_none()
+        });
+        if survey.end != Pause::Halt {
+            unfit.get_or_insert("the main processor does not come to its end");
+        }
+        match unfit {
+            Some(reason) => Err(reason),
+            None => Ok(Count {
+                memory: survey.memory,
+                tally: survey.tally,
+                profile: survey.profile,
+                kinds: survey.kinds,
+                item_count,
+                rounds: survey.rounds,
+            }),
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! The fast engine against the interpreter: whole frames of generated programs, from words at random to loops, calls and transfers. Frames
+//! hold memory, passes, clocks, octets and each work item; the answers are made of all registers and of the buffer.
+
+use emu::fast::Features;
+use emu::machine::{self, Config, Engine, Failure, Frame, Options, Setup};
+use emu::octets::Memory;
+use isa::{Isa, Kind, Op, Program, Row};
+
+use super::builder::{Builder, program};
+use super::machine::dispatch;
+
+/// Octets of global memory; answers lie in front.
+const MEMORY: i64 = 2000;
+
+/// Where work items read.
+const DATA: i64 = 400;
+
+/// Items of a frame: a whole group and one that is not full.
+const ITEMS: i32 = 45;
+
+/// Scalars that generated instructions may use; the rest are counters, links and the item's number.
+const FREE: i64 = 19;
+const NUMBER: i64 = 22;
+
+fn frame(engine: Engine, features: Option<Features>, core: &Program, step_limit: u64) -> Result<Frame, Failure> {
+    let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
+    let options = Options { has_items: true, engine, features, ..Options::default() };
+    let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
+    let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
+    let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    machine::run(&setup, Memory::new(image), &mut |_| {})
+}
+
+/// Runs a program on both engines, the fast one with each of the host's features, and yields what all said.
+fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
+    let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
+    let checked = run(Engine::Checked, None);
+    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
+        let fast = run(Engine::Fast, Some(features));
+        if fast != checked {
+            let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
+            panic!("{name} with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
+        }
+    }
+    checked
+}
+
+/// Numbers that look random and are the same on every run: the generator of Steele, Lea and Flood.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: i64) -> i64 {
+        (self.next() % end as u64) as i64
+    }
+}
+
+/// The item's number goes everywhere, changed a little each time, so that lanes differ.
+fn scatter(p: &mut Builder, random: &mut Random) {
+    p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::mov, &[1, NUMBER]);
+    for register in 2..=FREE {
+        let factor = random.next() as i32 | 1;
+        p.constant(register, factor >> random.below(31)).emit(Op::iadd, &[1, 1, register]);
+        p.emit(Op::imul, &[register, register, 1]);
+    }
+    for register in 0..32 {
+        for lane in 0..3 {
+            p.emit(Op::vput, &[register, 1 + random.below(FREE), lane]);
+        }
+    }
+    for register in 0..8 {
+        p.emit(Op::wjoin, &[register, 1 + random.below(FREE), 1 + random.below(FREE)]);
+    }
+}
+
+/// Everything goes into one word, the answer.
+fn gather(p: &mut Builder) {
+    let add = |p: &mut Builder, from: i64| {
+        p.emit(Op::slli, &[23, 24, 5]).emit(Op::srli, &[24, 24, 27]).emit(Op::or, &[24, 24, 23]);
+        p.emit(Op::iadd, &[24, 24, from]);
+    };
+    p.emit(Op::movi, &[24, 0]);
+    for register in 0..=FREE {
+        add(p, register);
+    }
+    for register in 0..8 {
+        p.emit(Op::wlow, &[1, register]).emit(Op::whigh, &[2, register]);
+        add(p, 1);
+        add(p, 2);
+    }
+    for (register, lane) in (0..32).flat_map(|register| (0..3).map(move |lane| (register, lane))) {
+        p.emit(Op::vget, &[1, register, lane]);
+        add(p, 1);
+    }
+    for at in 0..24 {
+        p.emit(Op::lw, &[1, 0, 16 * at]);
+        add(p, 1);
+    }
+    p.emit(Op::vsplat, &[6, NUMBER]).emit(Op::vsplat, &[7, 24]).emit(Op::cores, &[20]);
+    p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+}
+
+/// An instruction of a row with operands at random; addresses stay in reach.
+fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &Row) {
+    if op == Op::load {
+        p.emit(Op::movi, &[1, random.below(200)]).emit(Op::andi, &[2, 2, 0xff]).emit(Op::iaddi, &[2, 2, DATA]);
+        p.emit(Op::andi, &[3, 3, 0x7f]).emit(Op::load, &[1, 2, 3]);
+        return;
+    }
+    let has_address = row.room == "local" || row.room == "bus";
+    if has_address {
+        let base = if row.room == "bus" { DATA } else { 0 };
+        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::iaddi, &[4, 4, base]);
+    }
+    let operand = |random: &mut Random, letter: u8, kind: Kind| {
+        let width = row.picture.fields().iter().find(|field| field.letter == letter).map_or(5, |field| field.width);
+        let (least, most) = kind.range(width);
+        match kind {
+            Kind::A | Kind::S if has_address && (kind == Kind::A || letter == b'x') => 4,
+            Kind::S | Kind::A => random.below(FREE + 1),
+            Kind::Off if has_address => random.below(100),
+            _ => least + random.below(most - least + 1),
+        }
+    };
+    let operands: Vec<i64> = row.operands.iter().map(|o| operand(random, o.letter, o.kind)).collect();
+    p.emit(op, &operands);
+}
+
+/// Rows that a work item may execute anywhere.
+fn anywhere(op: &Op, isa: &Isa) -> bool {
+    let row = isa.row(*op);
+    let is_write = matches!(op, Op::store | Op::stw | Op::stv | Op::fetchadd);
+    let is_meeting = matches!(op, Op::send2 | Op::send5 | Op::recv2 | Op::recv5 | Op::barrier);
+    row.room != "control" && !is_write && !is_meeting
+}
+
+/// A few instructions of any kind.
+fn straight(p: &mut Builder, random: &mut Random, isa: &Isa, count: i64) {
+    let ops: Vec<Op> = Op::BUILT_IN.iter().copied().filter(|op| anywhere(op, isa)).collect();
+    for _ in 0..count {
+        let op = ops[random.below(ops.len() as i64) as usize];
+        instruction(p, random, op, isa.row(op));
+    }
+}
+
+/// Instructions with branches on what the lanes hold, loops whose length they choose, and calls.
+fn structured(p: &mut Builder, random: &mut Random, isa: &Isa, depth: i64) {
+    for _ in 0..3 {
+        straight(p, random, isa, 4);
+        let scalars = [random.below(FREE + 1), random.below(FREE + 1)];
+        match random.below(if depth == 0 { 1 } else { 4 }) {
+            0 => {
+                let (other, end) = (p.label(), p.label());
+                let rows = [Op::beq, Op::bne, Op::blt, Op::bge, Op::bltu, Op::bgeu];
+                match random.below(2) {
+                    0 => p.branch(rows[random.below(6) as usize], &scalars, other),
+                    _ => p.branch([Op::bwltz, Op::bwgez][random.below(2) as usize], &[random.below(8)], other),
+                };
+                straight(p, random, isa, 2);
+                p.branch(Op::jump, &[], end);
+                p.place(other);
+                straight(p, random, isa, 3);
+                p.place(end);
+            }
+            1 => {
+                // A loop of one to four rounds.
+                let counter = 24 + depth;
+                p.emit(Op::andi, &[counter, scalars[0], 3]);
+                let again = p.here();
+                structured(p, random, isa, depth - 1);
+                p.emit(Op::isubi, &[counter, counter, 1]);
+                p.branch(Op::bge, &[counter, 0], again);
+            }
+            2 => {
+                // A function, called from two places, by its address the second time.
+                let (over, function, link) = (p.label(), p.label(), 28 + depth);
+                p.branch(Op::call, &[link], function);
+                straight(p, random, isa, 1);
+                p.branch(Op::call, &[23], over);
+                p.place(function);
+                structured(p, random, isa, depth - 1);
+                p.emit(Op::ret, &[link]);
+                p.place(over);
+            }
+            _ => {
+                let early = p.label();
+                p.branch(Op::blt, &scalars, early);
+                structured(p, random, isa, depth - 1);
+                p.place(early);
+            }
+        }
+    }
+}
+
+/// Whether the items of a program really ran in lock-step, each instruction for several.
+#[test]
+fn groups_run_together() {
+    let isa = Isa::base();
+    let core = program(|p| {
+        scatter(p, &mut Random(7));
+        straight(p, &mut Random(8), &isa, 30);
+        gather(p);
+    });
+    let (config, main) = (Config::default(), dispatch(ITEMS));
+    let setup = |engine| {
+        let options = Options { engine, ..Options::default() };
+        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
+    };
+    let memory = Memory::new(vec![3; MEMORY as usize]);
+    let count = |engine| machine::count(&setup(engine), &memory).expect("it runs").expect("it is counted");
+    let (fast, checked) = (count(Engine::Fast), count(Engine::Checked));
+    assert_eq!((&fast.memory, &fast.tally, checked.rounds), (&checked.memory, &checked.tally, 0));
+    // Without a branch all of a group are always together: 45 items are two groups.
+    assert_eq!(fast.rounds * ITEMS as u64, 2 * fast.tally.instructions());
+    let plain = machine::compute(&setup(Engine::Fast), &memory).expect("it runs").expect("it is computed");
+    assert_eq!((&plain.memory, plain.tally.instructions()), (&fast.memory, 0));
+}
+
+#[test]
+fn any_row_on_any_operands() {
+    let isa = Isa::base();
+    for (seed, &op) in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)).enumerate() {
+        let mut random = Random(seed as u64);
+        let core = program(|p| {
+            scatter(p, &mut random);
+            for _ in 0..12 {
+                instruction(p, &mut random, op, isa.row(op));
+            }
+            gather(p);
+        });
+        same(&isa.row(op).name, &core, 1 << 20).unwrap_or_else(|error| panic!("{op:?}: {error}"));
+    }
+}
+
+#[test]
+fn loops_calls_and_branches() {
+    let isa = Isa::base();
+    let mut ends = 0;
+    for seed in 0..60 {
+        let mut random = Random(1000 + seed);
+        let core = program(|p| {
+            scatter(p, &mut random);
+            structured(p, &mut random, &isa, 2);
+            gather(p);
+        });
+        ends += u64::from(same(&format!("program {seed}"), &core, 1 << 20).is_ok());
+    }
+    assert!(ends > 50, "most programs come to their end, not only {ends}");
+}
+
+#[test]
+fn words_at_random() {
+    for seed in 0..60 {
+        let mut random = Random(2000 + seed);
+        let core = program(|p| {
+            scatter(p, &mut random);
+            for _ in 0..random.below(30) {
+                p.word(random.next() as u32);
+            }
+            gather(p);
+        });
+        // Most trap; both engines at the same place.
+        let _ = same(&format!("words {seed}"), &core, 100_000);
+    }
+}
+
+#[test]
+fn what_is_unusual_is_the_interpreters() {
+    let few = |body: fn(&mut Builder)| {
+        program(|p| {
+            p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::movi, &[1, 40]);
+            body(p);
+            gather(p);
+        })
+    };
+    let end = |name: &str, body: fn(&mut Builder)| same(name, &few(body), 5000).map(|_| ()).unwrap_err();
+    let trap = end("a trap", |p| {
+        let past = p.label();
+        p.branch(Op::bne, &[NUMBER, 1], past).emit(Op::trap, &[9]);
+        p.place(past);
+    });
+    assert!(trap.contains("trap 9") && trap.contains("40, 40, 40"), "{trap}");
+    let outside = end("an access", |p| {
+        p.emit(Op::slli, &[2, NUMBER, 9]).emit(Op::lw, &[3, 2, 0]);
+    });
+    assert!(outside.contains("37, 37, 37"), "{outside}");
+    let endless = end("no end", |p| {
+        let here = p.here();
+        p.branch(Op::jump, &[], here);
+    });
+    assert!(endless.contains("5000 instructions"), "{endless}");
+    let core = few(|p| {
+        p.emit(Op::core, &[3]);
+    });
+    let step = same("a core's number", &core, 5000).expect("it is stepped");
+    assert_eq!(step.method.reason(), Some("a work item asks which core it runs on"));
+}

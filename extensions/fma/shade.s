@@ -21,12 +21,23 @@ shade_light:
     vsub  v26, v26, point                   ; to the light
     wdot  w0, facing, v26
     wextend w1, s0, 0
+  .if SKIP_UNLIT
     bwlt  w1, w0, shade_facing
     jump  shade_next
 shade_facing:
+  .else
+    bweq  w0, w1, shade_next                ; in the surface, or the light itself: there is no ray
+    swide w0, SHADE_FACING(s0)
+  .endif
     vnorm v6, s13, v26
     call  link_step, unit
     vdot  s13, facing, v6, dir
+  .if !SKIP_UNLIT
+    lwide w0, SHADE_FACING(s0)
+    bwgez w0, 1f
+    mov   s13, s0
+1:
+  .endif
     sw    s13, SHADE_COSINE(s0)
     vmov  origin, point
     vmov  direction, v6

@@ -9,7 +9,8 @@ use isa::{Class, Counts, Isa};
 
 /// What is likely a mistake in an instruction that was loaded, or should be known before one is built.
 pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
-    let (Some(summary), Some(body)) = (&loaded.summary, isa.body(loaded.op)) else { return Vec::new() };
+    let Some(body) = isa.body(loaded.op) else { return Vec::new() };
+    let summary = &loaded.summary;
     let row = isa.row(loaded.op);
     let warning = |message: String, label: &str| Diagnostic::warning(message).at(loaded.row.clone(), label);
     let at = |step: usize, message: String, label: &str| match body.place(step) {

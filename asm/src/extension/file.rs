@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use isa::Isa;
 use isa::diagnostic::{Diagnostic, Place, Report, Source};
+use isa::extension::Summary;
 use isa::row::Row;
 use isa::table::Op;
 
@@ -32,12 +33,8 @@ struct Parts {
     blocks: Vec<Block>,
 }
 
-pub(super) fn load(
-    isa: &mut Isa,
-    source: &Arc<Source>,
-    include: crate::Loader,
-    elsewhere: &[&str],
-) -> Result<Vec<Loaded>, Report> {
+/// Adds the instructions of a file one after the other.
+pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<Loaded>, Report> {
     let mut report = Report::default();
     let parts = parts(source, &mut report);
     let shared: Rc<[Line]> = parts.shared.into();
@@ -61,13 +58,9 @@ pub(super) fn load(
             ));
             continue;
         };
-        let is_elsewhere = elsewhere.contains(&&*drawn.row.name);
         let found =
             add(isa, source, drawn, block.doc, parts.name.as_deref().unwrap_or_default()).and_then(|mut found| {
                 if lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty()) {
-                    if is_elsewhere {
-                        return Ok(found);
-                    }
                     let message = format!("the body of `{}` is empty", isa.row(found.op).name);
                     let hint = "write what it does as instructions between the row and `.end`";
                     return Err(Report::from(
@@ -81,7 +74,7 @@ pub(super) fn load(
                     body::assemble(isa, found.op, &found.row, shared.clone(), lines.into(), source, include)?;
                 report.0.extend(warnings.0);
                 isa.set_body(found.op, Arc::new(body));
-                found.summary = Some(summary);
+                found.summary = summary;
                 Ok(found)
             });
         match found {
@@ -233,14 +226,12 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
         let message = format!("there are more than {MOST_INSTRUCTIONS} extension instructions");
         return Err(error(explain::SIZE, message, source, name_at, "one too many").into());
     }
-    let name = row.name.to_string();
     let op = match isa.extend(row.clone()) {
         Ok(op) => op,
         Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, picture_at).into()),
     };
-    debug_assert_eq!(isa.row(op).name, name);
     let exits = exits_at.into_iter().map(|span| Place::new(source, span)).collect();
-    Ok(Loaded { op, extension: extension.to_owned(), summary: None, row: place, exits })
+    Ok(Loaded { op, extension: extension.to_owned(), summary: Summary::default(), row: place, exits })
 }
 
 /// The message when another instruction has the name or a word of a row.

@@ -26,8 +26,8 @@ pub struct Loaded {
     pub op: Op,
     /// Name of the extension.
     pub extension: String,
-    /// What its body may do; `None` for a row without a body.
-    pub summary: Option<Summary>,
+    /// What its body may do.
+    pub summary: Summary,
     /// Its row in the file.
     pub row: Place,
     /// Where its exits stand in the file.
@@ -63,21 +63,8 @@ pub fn source(name: &str, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
 /// # Errors
 /// All errors of the file, each with its place; then nothing is added.
 pub fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<Loaded>, Report> {
-    load_with(isa, source, include, &[])
-}
-
-/// As [`load`]; the instructions that are named in `elsewhere` may have an empty body, since something else says what they do.
-///
-/// # Errors
-/// See [`load`].
-pub fn load_with(
-    isa: &mut Isa,
-    source: &Arc<Source>,
-    include: crate::Loader,
-    elsewhere: &[&str],
-) -> Result<Vec<Loaded>, Report> {
     let mut extended = isa.clone();
-    let loaded = file::load(&mut extended, source, include, elsewhere)?;
+    let loaded = file::load(&mut extended, source, include)?;
     *isa = extended;
     Ok(loaded)
 }

@@ -4,6 +4,7 @@
 pub mod accuracy;
 pub mod annex;
 pub mod arguments;
+pub mod benchmark;
 pub mod command;
 pub mod drawing;
 pub mod extension;

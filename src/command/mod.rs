@@ -4,6 +4,7 @@ mod accuracy;
 mod annex;
 mod arithmetic;
 mod assemble;
+mod bench;
 mod completions;
 mod cores;
 mod demo;
@@ -64,6 +65,7 @@ enum Command {
     Trace(Box<trace::TraceArguments>),
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
+    Bench(bench::BenchArguments),
     Arithmetic(arithmetic::ArithmeticArguments),
     Manual(manual::ManualArguments),
     Extension(extension::ExtensionsArguments),
@@ -90,6 +92,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, terminal),
+        Some(Command::Bench(arguments)) => bench::execute(arguments, terminal),
         Some(Command::Stress(arguments)) => stress::execute(arguments, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::accuracy::{self, Results};
 use super::arithmetic::{self, Checked};
+use super::bench::{self, Benches};
 use super::run_result::{self, RunResult};
 use super::stress::{self, Catalogue};
 use crate::annex;
@@ -53,6 +54,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
     Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<Comparison> },
+    Known { name: bench::SCHEMA, command: "lancer bench --json", make: schema_of::<Benches> },
     Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
 ];
 

@@ -1,0 +1,191 @@
+//! How fast pictures are computed on this host: the engines, and native code beside them. What is measured is not said to anyone here.
+
+mod chart;
+
+use std::time::{Duration, Instant};
+
+use emu::code::Code;
+use emu::machine::{self, Engine, Options, Setup};
+use isa::diagnostic::Diagnostic;
+use isa::number::Modes;
+use kernels::Function;
+use kernels::build::Features;
+use kernels::twin::Twin;
+use rayon::prelude::*;
+use scenes::reference::{Method, Reference};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+pub use chart::svg;
+
+use crate::failure::Failure;
+use crate::job::Job;
+use crate::load::Load;
+
+/// Who computes a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Runner {
+    /// Work items in lock-step, counted.
+    Fast,
+    /// The same, with the clocks of the machine.
+    FastClocks,
+    /// The interpreter, counted.
+    Checked,
+    /// The profile's functions in Rust, on the same tree and the same rays.
+    Twin,
+    /// Double precision on the same scene.
+    Reference,
+}
+
+impl Runner {
+    /// All, in the order of results.
+    pub const ALL: [Runner; 5] = [Runner::Fast, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
+
+    /// Name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Runner::Fast => "fast",
+            Runner::FastClocks => "fast, clocks",
+            Runner::Checked => "checked",
+            Runner::Twin => "native twin",
+            Runner::Reference => "native f64",
+        }
+    }
+}
+
+/// A picture by one of them.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Measured {
+    /// Name of the scene.
+    pub scene: String,
+    /// Profile of the kernels.
+    pub profile: &'static str,
+    /// Who computed it.
+    pub runner: Runner,
+    /// Host's nanoseconds a pixel, the median of the runs.
+    pub nanoseconds: f64,
+    /// Least of the runs.
+    pub least: f64,
+    /// Time as a multiple of that of the native twin, of medians.
+    pub of_twin: f64,
+    /// Millions of simulated instructions a second, those of the cores; null for native code.
+    pub instructions: Option<f64>,
+    /// Millions of rays a second: camera, secondary and shadow rays.
+    pub rays: f64,
+    /// Share of the lanes that had work while groups ran, in [0, 1]; null for others than the fast engine.
+    pub lanes: Option<f64>,
+}
+
+/// Measures a picture, each runner in turn, so that whatever else the host does disturbs all alike.
+///
+/// # Errors
+/// A scene that does not fit its formats, errors in the user's kernels, a machine that cannot be used, a frame without counts.
+pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<Measured>, Failure> {
+    let (load, mut image) = Load::picture(job)?;
+    image.bytes = load.memory.octets().to_vec();
+    let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
+    let features = Features::new(&job.scene, &job.view, &image.formats, &job.kernels);
+    let modes = job.machine.arithmetic.modes();
+    let reference = Reference::new(&job.scene, &job.view, Method::Hierarchy)?;
+    let crop = load.build.crop;
+    let count = |setup: &Setup| -> Result<machine::Count, Failure> {
+        machine::count(setup, &load.memory)?
+            .map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
+    };
+    let counted = count(&setup(Engine::Fast))?;
+    let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
+    let instructions = counted.tally.instructions();
+    let pixels = u64::from(crop.width) * u64::from(crop.height);
+    let own_packet = load.build.cores.symbols.get(Function::OwnPacket.name());
+    let other_rays = own_packet.map_or(0, |&pc| counted.tally.word(&code, pc as u32).instructions);
+    let lanes = (counted.rounds != 0).then(|| instructions as f64 / (counted.rounds * emu::fast::LANES as u64) as f64);
+
+    let mut times: [Vec<f64>; Runner::ALL.len()] = Default::default();
+    for _ in 0..runs {
+        for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
+            let time = match runner {
+                Runner::Fast => timed(|| count(&setup(Engine::Fast)).map(drop))?,
+                Runner::Checked => timed(|| count(&setup(Engine::Checked)).map(drop))?,
+                Runner::FastClocks => {
+                    let run = || machine::run(&setup(Engine::Fast), load.memory.clone(), &mut |_| {});
+                    timed(|| run().map(drop).map_err(Failure::from))?
+                }
+                Runner::Twin => timed(|| twin(&image, &features, &crop, job, modes))?,
+                Runner::Reference => timed(|| {
+                    (0..crop.height).into_par_iter().for_each(|row| {
+                        for column in 0..crop.width {
+                            std::hint::black_box(reference.pixel(crop.column + column, crop.row + row));
+                        }
+                    });
+                    Ok(())
+                })?,
+            };
+            times.push(time.as_secs_f64());
+            after_run();
+        }
+    }
+    let seconds: Vec<(f64, f64)> = times.iter_mut().map(|times| median(times)).collect();
+    let of = |runner: Runner| seconds[Runner::ALL.iter().position(|other| *other == runner).unwrap_or(0)];
+    let (twin, _) = of(Runner::Twin);
+    Ok(Runner::ALL
+        .into_iter()
+        .map(|runner| {
+            let (median, least) = of(runner);
+            let is_native = matches!(runner, Runner::Twin | Runner::Reference);
+            Measured {
+                scene: job.scene.name.clone(),
+                profile: job.kernels.profile.name(),
+                runner,
+                nanoseconds: median * 1e9 / pixels as f64,
+                least: least * 1e9 / pixels as f64,
+                of_twin: median / twin,
+                instructions: (!is_native).then(|| instructions as f64 / median / 1e6),
+                rays: (pixels + other_rays) as f64 / median / 1e6,
+                lanes: lanes.filter(|_| matches!(runner, Runner::Fast | Runner::FastClocks)),
+            }
+        })
+        .collect())
+}
+
+fn twin(
+    image: &scenes::image::Image,
+    features: &Features,
+    crop: &kernels::build::Crop,
+    job: &Job,
+    modes: Modes,
+) -> Result<(), Failure> {
+    let failed = |failure: kernels::twin::Failure| Failure::from(Diagnostic::error(failure.to_string()));
+    let profile = job.kernels.profile;
+    if modes == Modes::default() {
+        let twin = Twin::new(image, features, profile, isa::number::Nearest32);
+        twin.ok_or(kernels::twin::Failure::NoScene).and_then(|twin| twin.render(crop)).map(drop).map_err(failed)
+    } else {
+        kernels::twin::render(image, features, crop, profile, modes).map(drop).map_err(failed)
+    }
+}
+
+fn timed(work: impl FnOnce() -> Result<(), Failure>) -> Result<Duration, Failure> {
+    let start = Instant::now();
+    work()?;
+    Ok(start.elapsed())
+}
+
+/// Median and least of some times; 0 of none.
+fn median(times: &mut [f64]) -> (f64, f64) {
+    times.sort_by(f64::total_cmp);
+    let at = |place: usize| times.get(place).copied().unwrap_or(0.0);
+    ((at(times.len() / 2) + at(times.len().saturating_sub(1) / 2)) / 2.0, at(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_lies_in_the_middle() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), (2.0, 1.0));
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), (2.5, 1.0));
+        assert_eq!(median(&mut []), (0.0, 0.0));
+    }
+}

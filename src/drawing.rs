@@ -18,6 +18,7 @@ use scenes::reference::{Method, Reference};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
 use crate::load::Load;
+use crate::result::{self, Loss};
 
 /// Whether a picture is measured against double precision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +59,8 @@ pub struct Drawing {
     pub reference: Option<Picture>,
     /// How far they are apart.
     pub error: Option<PictureError>,
+    /// What results lost, where that was counted.
+    pub flags: Option<Vec<Loss>>,
     /// What is likely a mistake in the user's kernels.
     pub warnings: Report,
     /// Host times.
@@ -78,7 +81,8 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let crop = load.build.crop;
     let built = Instant::now();
     let has_profile = job.detail == Detail::Functions;
-    let options = machine::Options { has_profile, has_items: true, ..machine::Options::default() };
+    let options =
+        machine::Options { has_profile, has_items: true, has_losses: job.flags, ..machine::Options::default() };
     let setup = load.setup(&job.machine, options);
     let (frame, reference) = std::thread::scope(|scope| {
         let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
@@ -96,10 +100,14 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let words = colour_words(&image, &frame, &crop);
     let picture = picture(&image, &words, (crop.width, crop.height));
     let error = reference.as_ref().and_then(|reference| metrics::compare(&picture, reference));
+    let flags = job.flags.then(|| {
+        let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
+        result::losses(&code, &frame.tally)
+    });
     let build = load.build;
     let warnings = build.warnings.clone();
     let times = Times { build: built - start, run, reference: reference_time };
-    Ok(Drawing { image, build, frame, crop, words, picture, reference, error, warnings, times })
+    Ok(Drawing { image, build, frame, crop, words, picture, reference, error, flags, warnings, times })
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

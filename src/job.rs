@@ -48,6 +48,8 @@ pub struct Job {
     pub machine: Config,
     /// What is recorded.
     pub detail: Detail,
+    /// Whether it is counted what results lose.
+    pub flags: bool,
     /// What is likely a mistake in the scene's files.
     pub warnings: Report,
     /// All files that were read for it.
@@ -92,6 +94,7 @@ impl Job {
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
             detail: Detail::Functions,
+            flags: false,
             warnings: Report::default(),
             files: Vec::new(),
         }

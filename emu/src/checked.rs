@@ -155,7 +155,7 @@ pub fn run<T: Watch, O: Observer>(
     tally: &mut Tally,
     observer: &mut O,
 ) -> Pause {
-    let (slots, passes) = (code.slots(), tally.passes_mut());
+    let (slots, (passes, losses)) = (code.slots(), tally.parts_mut());
     let State { registers, buffer, .. } = state;
     let mut next = state.pc;
     let mut pc;
@@ -193,8 +193,13 @@ pub fn run<T: Watch, O: Observer>(
         macro_rules! execute {
             ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
                 let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
-                if T::IS_WATCHING && arithmetic.take_division_by_zero() {
-                    break Pause::Fault(Fault::DivisionByZero);
+                if T::IS_WATCHING {
+                    if arithmetic.take_division_by_zero() {
+                        break Pause::Fault(Fault::DivisionByZero);
+                    }
+                    if let Some(losses) = losses.get_mut(pc as usize) {
+                        losses.add(arithmetic.take_losses());
+                    }
                 }
                 finish!(result, $written)
             }};

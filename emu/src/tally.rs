@@ -18,10 +18,30 @@ pub struct Passes {
     pub cost: ExitCost,
 }
 
-/// Passes by exit, in the order of the program's exits.
+/// What numeric results lost on their way into words: the flags of IEEE 1666, counted. A vector has three results.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Losses {
+    /// Results that lost bits below the last place.
+    pub quantized: u64,
+    /// Results that did not fit.
+    pub overflowed: u64,
+}
+
+impl Losses {
+    /// Adds others.
+    #[inline]
+    pub fn add(&mut self, more: Losses) {
+        self.quantized += more.quantized;
+        self.overflowed += more.overflowed;
+    }
+}
+
+/// Passes by exit, in the order of the program's exits, and what results lost.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     passes: Vec<Passes>,
+    /// By slot.
+    losses: Vec<Losses>,
 }
 
 /// What one source line took.
@@ -37,13 +57,33 @@ impl Tally {
     /// Nothing yet, for a program.
     pub fn new(code: &Code) -> Tally {
         let none_yet = |&cost: &ExitCost| Passes { count: 0, units: 0, cost };
-        Tally { passes: code.costs().iter().map(none_yet).collect() }
+        Tally {
+            passes: code.costs().iter().map(none_yet).collect(),
+            losses: vec![Losses::default(); code.slots().len()],
+        }
     }
 
     /// All passes, by number: see [`crate::code::Slot::first_exit`].
     #[inline]
     pub fn passes_mut(&mut self) -> &mut [Passes] {
         &mut self.passes
+    }
+
+    /// All passes, and what the results of each slot lost, where the arithmetic counts that.
+    #[inline]
+    pub fn parts_mut(&mut self) -> (&mut [Passes], &mut [Losses]) {
+        (&mut self.passes, &mut self.losses)
+    }
+
+    /// What the results of each word lost, those of its body included.
+    pub fn losses(&self, code: &Code) -> Vec<Losses> {
+        let mut words = vec![Losses::default(); code.words() as usize];
+        for (slot, &losses) in (0..).zip(&self.losses) {
+            if let Some(word) = words.get_mut(code.word(slot) as usize) {
+                word.add(losses);
+            }
+        }
+        words
     }
 
     /// The passes through exit number `exit` of a word. Those of an extension instruction that costs what its body does have the cost of
@@ -64,6 +104,9 @@ impl Tally {
         for (passes, more) in self.passes.iter_mut().zip(&other.passes) {
             passes.count += more.count;
             passes.units += more.units;
+        }
+        for (losses, &more) in self.losses.iter_mut().zip(&other.losses) {
+            losses.add(more);
         }
     }
 

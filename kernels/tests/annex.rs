@@ -27,7 +27,15 @@ struct Calls {
 fn profiled(row: &Row, program: &Program, memory: &[u8], isa: &Isa) -> Calls {
     let config = Config::default();
     let registers = Registers::default();
-    let single = Single { config: &config, isa, program, registers, step_limit: 10_000_000, has_profile: true };
+    let single = Single {
+        config: &config,
+        isa,
+        program,
+        registers,
+        step_limit: 10_000_000,
+        has_profile: true,
+        has_losses: false,
+    };
     let run =
         single::run(&single, Memory::new(memory.to_vec())).unwrap_or_else(|report| panic!("{}", report.render(false)));
     assert!(run.trap.is_none(), "{}: {:?}", row.id, run.trap);

@@ -65,8 +65,15 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
     let config = Config::default();
     let (program, memory) = row.program(isa)?;
     let registers = Registers::default();
-    let single =
-        Single { config: &config, isa, program: &program, registers, step_limit: config.step_limit, has_profile: true };
+    let single = Single {
+        config: &config,
+        isa,
+        program: &program,
+        registers,
+        step_limit: config.step_limit,
+        has_profile: true,
+        has_losses: false,
+    };
     let run = single::run(&single, Memory::new(memory))?;
     if let Some(trap) = run.trap {
         return Err(emu::machine::Failure::from(trap).into());

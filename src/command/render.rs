@@ -10,7 +10,7 @@ use crate::failure::{Exit, Failure};
 use crate::files::picture::Format;
 use crate::files::{self, map};
 use crate::job::{Job, JobArguments, result_name};
-use crate::result::{Host, Render};
+use crate::result::{Host, Render, loss_table};
 use crate::summary;
 use crate::terminal::Terminal;
 
@@ -39,6 +39,9 @@ pub struct RenderArguments {
     /// Prints the results as JSON instead of tables.
     #[arg(long, help_heading = "Results")]
     json: bool,
+    /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
+    #[arg(long, help_heading = "Results")]
+    flags: bool,
     /// Adds the host's times, in seconds.
     #[arg(long, help_heading = "Results")]
     timing: bool,
@@ -61,7 +64,8 @@ fn picture(text: &str) -> Result<PathBuf, String> {
 /// Draws, writes and prints.
 pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let start = Instant::now();
-    let job = Job::from_arguments(&arguments.job)?;
+    let mut job = Job::from_arguments(&arguments.job)?;
+    job.flags = arguments.flags;
     let load = start.elapsed();
     terminal.show(&job.warnings);
     // One pixel is looked at in the tables; it must not replace the picture.
@@ -132,6 +136,7 @@ fn text(result: &Render, drawing: &Drawing) -> String {
     if drawing.words.len() == 1 {
         parts.push(summary::pixel(drawing));
     }
+    parts.extend(result.flags.as_deref().map(loss_table));
     parts.push(
         format!("elementary operations a pixel: {}\n", summary::spread(&drawing.operations()))
             + &summary::hashes(result),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use emu::code::Code;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use isa::diagnostic::{Diagnostic, Report};
@@ -23,6 +24,7 @@ Examples:
   lancer run first.s --ext slab.isa                 # with instructions of your own
   lancer run copy.s --mem 0x100=data.bin --dump 0x100:64 --dump regs
   lancer run sqrt.s --reg s3=0x10000 --json
+  lancer run first.s --flags                    # what lost bits or did not fit, line by line
   lancer run first.o                            # as lancer assemble -o first.o has written it
 
 Registers hold raw integers: s0 to s31 one word, v0 to v31 three lanes, w0 to w7 64 bits.
@@ -54,6 +56,9 @@ pub struct RunArguments {
     /// (buffer:ADDRESS:OCTETS) at the end; may be repeated.
     #[arg(long = "dump", value_name = "regs|ADDRESS:OCTETS")]
     dumps: Vec<Dump>,
+    /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
+    #[arg(long)]
+    flags: bool,
     /// Instructions that the program may take [default: the machine's, 100,000,000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     max_steps: Option<u64>,
@@ -82,10 +87,13 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
         has_profile: true,
+        has_losses: arguments.flags,
     };
     let run = single::run(&single, Memory::new(memory))?;
     let file = arguments.file.display().to_string();
-    let shown = RunResult::new(file, machine_name, &run, &arguments.dumps)?;
+    let code = Code::new(&program, &isa, config.timing());
+    let flags = arguments.flags.then(|| result::losses(&code, &run.tally));
+    let shown = RunResult::new(file, machine_name, &run, flags, &arguments.dumps)?;
     match arguments.json {
         true => terminal.print(&result::json(&shown))?,
         false => terminal.print(&shown.text())?,

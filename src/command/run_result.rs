@@ -13,7 +13,7 @@ use serde::{Serialize, Serializer};
 
 use super::run_arguments::Dump;
 use crate::failure::Failure;
-use crate::result::{ByClass, Region, hexadecimal, regions};
+use crate::result::{ByClass, Loss, Region, hexadecimal, loss_table, regions};
 use crate::summary;
 use crate::table::{count, grouped, row, table};
 
@@ -44,6 +44,9 @@ pub struct RunResult {
     pub functions: Vec<Region>,
     /// Regions inside functions.
     pub regions: Vec<Region>,
+    /// Instructions of whose results some lost bits or did not fit; left out unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flags: Option<Vec<Loss>>,
     /// Octets that were asked for.
     pub dumps: Vec<DumpedOctets>,
     /// Why it stopped before its `halt`.
@@ -101,7 +104,13 @@ impl RunResult {
     ///
     /// # Errors
     /// A dump beyond the end of a memory.
-    pub fn new(program: String, machine: String, run: &SingleRun, dumps: &[Dump]) -> Result<RunResult, Failure> {
+    pub fn new(
+        program: String,
+        machine: String,
+        run: &SingleRun,
+        flags: Option<Vec<Loss>>,
+        dumps: &[Dump],
+    ) -> Result<RunResult, Failure> {
         let has_all = dumps.contains(&Dump::Registers);
         let registers =
             registers(&run.state.registers).into_iter().filter(|(_, contents)| has_all || !is_zero(contents));
@@ -122,6 +131,7 @@ impl RunResult {
             registers: RegisterValues(registers.collect()),
             functions: regions(run.profile.as_ref(), true),
             regions: regions(run.profile.as_ref(), false),
+            flags,
             dumps: dumps.iter().filter_map(|&dump| dumped(run, dump)).collect::<Result<_, _>>()?,
             trap,
         })
@@ -144,6 +154,7 @@ impl RunResult {
         if self.functions.iter().chain(&self.regions).any(|region| region.calls != 0) {
             parts.push(summary::function_table(&[(&self.functions, ""), (&self.regions, "  ")]));
         }
+        parts.extend(self.flags.as_deref().map(loss_table));
         for dump in &self.dumps {
             parts.push(format!("{}\n{}", dump.space, octet_rows(&dump.raw, dump.address)));
         }

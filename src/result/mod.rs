@@ -3,6 +3,7 @@
 
 mod hash;
 mod hexadecimal;
+mod losses;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -22,6 +23,7 @@ use crate::drawing::Drawing;
 use crate::job::{Job, result_name};
 pub use hash::{image_hash, run_hash};
 pub use hexadecimal::hexadecimal;
+pub use losses::{Loss, loss_table, losses};
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-render-1";
@@ -116,6 +118,9 @@ pub struct Render {
     pub bus: Bus,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: Formats,
+    /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flags: Option<Vec<Loss>>,
     /// Difference from double precision; null when it was not measured.
     pub error: Option<PictureError>,
     /// SHA-256 of the picture; see [`image_hash`].
@@ -330,6 +335,7 @@ impl Render {
                 },
             },
             formats: Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect()),
+            flags: drawing.flags.clone(),
             error: drawing.error,
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),
             run_hash: String::new(),

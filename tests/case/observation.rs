@@ -222,7 +222,10 @@ fn run(
     step_limit: u64,
 ) -> Result<SingleRun, Report> {
     let registers = Registers::default();
-    engine(&Single { config, isa, program, registers, step_limit, has_profile: false }, Memory::new(vec![0; memory]))
+    engine(
+        &Single { config, isa, program, registers, step_limit, has_profile: false, has_losses: false },
+        Memory::new(vec![0; memory]),
+    )
 }
 
 /// The formats that a source defines.

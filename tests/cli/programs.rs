@@ -90,6 +90,22 @@ fn an_object_file_is_the_whole_program() {
 }
 
 #[test]
+fn flags_name_the_lines_whose_results_lose_something() {
+    let session = Session::new();
+    session
+        .write("lossy.s", "    movi s1, 3\n    movi s2, 2\n    div s3, s1, s2, 0\n    mul s4, s1, s2, 0\n    halt\n");
+    let run = session.run("run lossy.s --flags");
+    let row = " lossy.s:3 |         div |        1 |         1 |          0\n";
+    assert!(run.code == 0 && run.out.contains(row), "{}", run.out);
+    let flags = &session.json("run lossy.s --flags --json")["flags"];
+    let expected = serde_json::json!([
+        {"pc": 2, "place": "lossy.s:3", "instruction": "div", "executed": 1, "quantized": 1, "overflowed": 0}
+    ]);
+    assert_eq!(*flags, expected);
+    assert!(session.json("run lossy.s --json").get("flags").is_none());
+}
+
+#[test]
 fn words_alone_run_from_their_first() {
     let session = Session::new();
     session.write("sum.s", SUM);

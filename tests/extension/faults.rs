@@ -110,6 +110,7 @@ fn more_bodies_than_fit_are_refused() {
         registers,
         step_limit: 1,
         has_profile: false,
+        has_losses: false,
     };
     let report = emu::machine::single::run(&single, emu::octets::Memory::new(vec![0; 16])).expect_err("too many");
     assert!(report.to_string().contains("more than 262144 instructions"), "{report}");

@@ -115,6 +115,7 @@ impl<'a> Bench<'a> {
             registers: emu::registers::Registers::default(),
             step_limit: 1_000_000_000,
             has_profile: false,
+            has_losses: false,
         };
         let run = run(&single, Memory::new(memory)).unwrap_or_else(|report| panic!("{}", report.render(false)));
         if let Some(trap) = run.trap {

@@ -1,8 +1,11 @@
-//! Arithmetic as engines run on it: the machine's default, or modes chosen at run time with an eye on divisions by zero.
+//! Arithmetic as engines run on it: the machine's default, or modes chosen at run time with an eye on divisions by zero and
+//! on what results lose.
 
 use std::cell::Cell;
 
-use isa::number::{Arithmetic, Modes, Nearest32};
+use isa::number::{Arithmetic, Flags, Modes, Nearest32, square_root};
+
+use crate::tally::Losses;
 
 /// Arithmetic that an engine can run on: it says whether the last instruction is to trap for a division by zero.
 pub trait Watch: Arithmetic {
@@ -12,6 +15,11 @@ pub trait Watch: Arithmetic {
     /// Whether something was divided by zero since the last call, where that is to trap.
     fn take_division_by_zero(&self) -> bool {
         false
+    }
+
+    /// What results have lost since the last call, where that is counted.
+    fn take_losses(&self) -> Losses {
+        Losses::default()
     }
 }
 
@@ -23,12 +31,33 @@ pub struct Watching {
     modes: Modes,
     traps_division_by_zero: bool,
     has_divided_by_zero: Cell<bool>,
+    counts_losses: bool,
+    losses: Cell<Losses>,
 }
 
 impl Watching {
     /// The modes, and whether a division by zero is to trap.
     pub fn new(modes: Modes, traps_division_by_zero: bool) -> Watching {
-        Watching { modes, traps_division_by_zero, has_divided_by_zero: Cell::new(false) }
+        Watching {
+            modes,
+            traps_division_by_zero,
+            has_divided_by_zero: Cell::new(false),
+            counts_losses: false,
+            losses: Cell::default(),
+        }
+    }
+
+    /// The same, counting what results lose.
+    pub fn with_losses(self) -> Watching {
+        Watching { counts_losses: true, ..self }
+    }
+
+    fn note(&self, flags: Flags) {
+        let Losses { quantized, overflowed } = self.losses.get();
+        self.losses.set(Losses {
+            quantized: quantized + u64::from(flags.is_quantized),
+            overflowed: overflowed + u64::from(flags.has_overflowed),
+        });
     }
 }
 
@@ -38,6 +67,9 @@ impl Arithmetic for Watching {
     }
 
     fn quantize(&self, value: i128, shift: u32, bits: u32) -> i64 {
+        if self.counts_losses {
+            self.note(self.modes.flags_of(value, shift, bits));
+        }
         self.modes.quantize(value, shift, bits)
     }
 
@@ -45,7 +77,20 @@ impl Arithmetic for Watching {
         if divisor == 0 && self.traps_division_by_zero {
             self.has_divided_by_zero.set(true);
         }
+        if self.counts_losses {
+            self.note(self.modes.flags_of_quotient(dividend, divisor));
+        }
         self.modes.quotient(dividend, divisor)
+    }
+
+    fn root(&self, value: u128) -> i32 {
+        let root = square_root(value);
+        if self.counts_losses {
+            let flags = self.modes.flags_of(root.into(), 0, self.modes.word);
+            let is_quantized = u128::from(root) * u128::from(root) != value;
+            self.note(Flags { is_quantized, ..flags });
+        }
+        self.modes.quantize(root.into(), 0, self.modes.word) as i32
     }
 }
 
@@ -54,5 +99,9 @@ impl Watch for Watching {
 
     fn take_division_by_zero(&self) -> bool {
         self.has_divided_by_zero.take()
+    }
+
+    fn take_losses(&self) -> Losses {
+        self.losses.take()
     }
 }

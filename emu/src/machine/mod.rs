@@ -83,6 +83,8 @@ pub struct Options {
     pub has_profile: bool,
     /// Each work item.
     pub has_items: bool,
+    /// What the results of each instruction lose: [`crate::tally::Losses`]. Costs time.
+    pub has_losses: bool,
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,
     /// What runs the work items. Runs with a profile, and on other arithmetic than the default one, always take the interpreter.
@@ -224,9 +226,13 @@ fn check(setup: &Setup) -> Result<(), Failure> {
 }
 
 /// The arithmetic of a machine that does not compute with [`Nearest32`].
-fn watching(config: &Config) -> Option<Watching> {
+fn watching(config: &Config, has_losses: bool) -> Option<Watching> {
     let (modes, traps) = (config.arithmetic.modes(), config.arithmetic.trap_division_by_zero);
-    (modes != Modes::default() || traps).then(|| Watching::new(modes, traps))
+    let watching = Watching::new(modes, traps);
+    match has_losses {
+        true => Some(watching.with_losses()),
+        false => (modes != Modes::default() || traps).then_some(watching),
+    }
 }
 
 /// Runs machines that compute alike.
@@ -246,7 +252,7 @@ trait Work {
 
 /// Does work on the arithmetic and for the observer that a machine needs.
 fn choose<W: Work>(setup: &Setup, work: W) -> W::Result {
-    match (watching(setup.config), setup.options.has_profile) {
+    match (watching(setup.config, setup.options.has_losses), setup.options.has_profile) {
         (None, true) => work.run::<_, Profiler>(&Nearest32),
         (None, false) => work.run::<_, Unobserved>(&Nearest32),
         (Some(modes), true) => work.run::<_, Profiler>(&modes),

@@ -32,6 +32,8 @@ pub struct Single<'a> {
     pub step_limit: u64,
     /// Whether calls are measured.
     pub has_profile: bool,
+    /// Whether it is counted what results lose: [`crate::tally::Losses`].
+    pub has_losses: bool,
 }
 
 /// How a program left the core, whether it halted or trapped.
@@ -64,10 +66,13 @@ pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
     check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
     let arithmetic = &single.config.arithmetic;
     let traps = arithmetic.trap_division_by_zero;
-    Ok(if arithmetic.modes() == Modes::default() && !traps {
+    let watching = Watching::new(arithmetic.modes(), traps);
+    Ok(if single.has_losses {
+        run_on(single, memory, &watching.with_losses())
+    } else if arithmetic.modes() == Modes::default() && !traps {
         run_on(single, memory, &Nearest32)
     } else {
-        run_on(single, memory, &Watching::new(arithmetic.modes(), traps))
+        run_on(single, memory, &watching)
     })
 }
 

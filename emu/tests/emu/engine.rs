@@ -5,6 +5,7 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
+use emu::tally::Losses;
 use emu::trap::Fault;
 use isa::{Isa, Op, Program, Row};
 use proptest::prelude::*;
@@ -14,7 +15,8 @@ use super::builder::{Builder, program};
 
 fn run_with(config: &Config, program: &Program, registers: Registers) -> SingleRun {
     let isa = Isa::base();
-    let single = Single { config, isa: &isa, program, registers, step_limit: 500, has_profile: true };
+    let single =
+        Single { config, isa: &isa, program, registers, step_limit: 500, has_profile: true, has_losses: false };
     single::run(&single, Memory::new((0..=255).collect())).expect("the setup is right")
 }
 
@@ -26,6 +28,40 @@ fn run(body: impl FnOnce(&mut Builder)) -> SingleRun {
     let run = run_with(&Config::default(), &program, Registers::default());
     assert_eq!(run.trap, None);
     run
+}
+
+#[test]
+fn what_results_lose_is_counted_word_by_word() {
+    let program = program(|p| {
+        p.emit(Op::movi, &[1, 3]).emit(Op::movi, &[2, 1 << 14]).emit(Op::lshift, &[3, 2, 16]);
+        p.repeat(9, 5, |p| {
+            // 3 2^14 / 2^15 = 1.5, 2^14 / 2^14 = 1 and 2^14 / 3.
+            p.emit(Op::mul, &[4, 1, 2, 15]).emit(Op::mul, &[4, 2, 1, 14]).emit(Op::div, &[4, 2, 1, 0]);
+            // 2^30 + 2^30 does not fit; of three lanes one does not either.
+            p.emit(Op::add, &[5, 3, 3]).emit(Op::vput, &[1, 3, 1]).emit(Op::vadd, &[2, 1, 1]);
+            p.emit(Op::div, &[6, 2, 0, 0]);
+        });
+        p.emit(Op::halt, &[]);
+    });
+    let (isa, config) = (Isa::base(), Config::default());
+    let losses = |config: &Config, has_losses| {
+        let registers = Registers::default();
+        let single =
+            Single { config, isa: &isa, program: &program, registers, step_limit: 500, has_profile: false, has_losses };
+        let run = single::run(&single, Memory::default()).expect("the setup is right");
+        let code = Code::new(&program, &isa, config.timing());
+        let losses = (0..).zip(run.tally.losses(&code)).filter(|(_, losses)| *losses != Losses::default());
+        let named = losses
+            .map(|(pc, losses)| (code.row(pc).expect("it ran").name.as_ref(), losses.quantized, losses.overflowed));
+        (
+            named.map(|(name, quantized, overflowed)| (name.to_owned(), quantized, overflowed)).collect::<Vec<_>>(),
+            run.state,
+        )
+    };
+    let (found, state) = losses(&config, true);
+    let expected = [("mul", 5, 0), ("div", 5, 0), ("add", 0, 5), ("vadd", 0, 5), ("div", 0, 5)];
+    assert_eq!(found, expected.map(|(name, quantized, overflowed)| (name.to_owned(), quantized, overflowed)));
+    assert_eq!(losses(&config, false), (Vec::new(), state), "nobody asked, and the results are the same");
 }
 
 #[test]

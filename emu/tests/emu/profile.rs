@@ -13,7 +13,15 @@ use super::builder::program;
 fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
     let registers = Registers::default();
-    let single = Single { config: &config, isa: &isa, program, registers, step_limit: 10_000_000, has_profile: true };
+    let single = Single {
+        config: &config,
+        isa: &isa,
+        program,
+        registers,
+        step_limit: 10_000_000,
+        has_profile: true,
+        has_losses: false,
+    };
     let run = single::run(&single, Memory::default()).expect("the setup is right");
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());

@@ -103,7 +103,15 @@ fn adds_of(functions: &[Vec<Piece>], function: usize, piece: &Piece) -> u64 {
 fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
     let registers = Registers::default();
-    let single = Single { config: &config, isa: &isa, program, registers, step_limit: 1_000_000, has_profile: true };
+    let single = Single {
+        config: &config,
+        isa: &isa,
+        program,
+        registers,
+        step_limit: 1_000_000,
+        has_profile: true,
+        has_losses: false,
+    };
     let run = single::run(&single, Memory::default()).expect("the setup is right");
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());

@@ -13,7 +13,8 @@ use super::builder::{Builder, program};
 fn run_with(config: &Config, program: &Program) -> SingleRun {
     let isa = Isa::base();
     let registers = Registers::default();
-    let single = Single { config, isa: &isa, program, registers, step_limit: 1000, has_profile: false };
+    let single =
+        Single { config, isa: &isa, program, registers, step_limit: 1000, has_profile: false, has_losses: false };
     single::run(&single, Memory::new(vec![0; 100])).expect("the setup is right")
 }
 
@@ -214,7 +215,15 @@ fn data_that_do_not_fit_the_buffer_are_refused() {
     let config = Config { buffer_octets: 3, ..Config::default() };
     let program = Program { words: vec![0], buffer: vec![1; 4], ..Program::default() };
     let registers = Registers::default();
-    let single = Single { config: &config, isa: &isa, program: &program, registers, step_limit: 1, has_profile: false };
+    let single = Single {
+        config: &config,
+        isa: &isa,
+        program: &program,
+        registers,
+        step_limit: 1,
+        has_profile: false,
+        has_losses: false,
+    };
     let report = single::run(&single, Memory::default()).expect_err("it does not fit").render(false);
     assert!(report.contains("the program's data take 4 octets, but the buffer of a core has 3"), "{report}");
 }

@@ -7,7 +7,7 @@ mod nearest;
 pub mod ray;
 mod root;
 
-pub use modes::{Modes, Overflow, Quantization};
+pub use modes::{Flags, Modes, Overflow, Quantization};
 pub use nearest::Nearest32;
 pub use root::square_root;
 

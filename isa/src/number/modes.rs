@@ -205,6 +205,37 @@ impl Overflow {
     }
 }
 
+/// What became of an exact number on its way into a word: the flags of IEEE 1666.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flags {
+    /// Bits were lost below the last place.
+    pub is_quantized: bool,
+    /// The quantized number did not fit.
+    pub has_overflowed: bool,
+}
+
+impl Modes {
+    fn flags(&self, is_quantized: bool, quantized: i128, bits: u32) -> Flags {
+        let largest = (1i128 << (bits - 1)) - 1;
+        let least = if self.overflow == Overflow::SatSym { -largest } else { -largest - 1 };
+        Flags { is_quantized, has_overflowed: !(least..=largest).contains(&quantized) }
+    }
+
+    /// What [`Arithmetic::quantize`] does to a number.
+    pub fn flags_of(&self, value: i128, shift: u32, bits: u32) -> Flags {
+        let is_quantized = value & ((1 << shift) - 1) != 0;
+        self.flags(is_quantized, self.quantization.shift(value, shift), bits)
+    }
+
+    /// What [`Arithmetic::quotient`] does; dividing by zero overflows.
+    pub fn flags_of_quotient(&self, dividend: i128, divisor: i128) -> Flags {
+        match divisor {
+            0 => Flags { is_quantized: false, has_overflowed: true },
+            _ => self.flags(dividend % divisor != 0, self.quantization.divide(dividend, divisor), self.word),
+        }
+    }
+}
+
 impl Arithmetic for Modes {
     fn word(&self) -> u32 {
         self.word

@@ -4,7 +4,7 @@ use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::diagnostic::Source;
-use crate::number::{Arithmetic, Modes, Overflow, Quantization};
+use crate::number::{Arithmetic, Flags, Modes, Overflow, Quantization};
 
 fn signed(word: u32, integer: i32) -> Format {
     Format { is_signed: true, word, integer }
@@ -52,6 +52,27 @@ fn the_machine_rounds_as_the_model_says() {
                 let quotient = modes.quotient(value, 1 << shift);
                 assert_eq!(i128::from(quotient), expected.raw, "{value} / 2^{shift}, {quantization}");
             }
+        }
+    }
+}
+
+#[test]
+fn the_machines_flags_are_the_models() {
+    let flags =
+        |outcome: &Outcome| Flags { is_quantized: outcome.is_quantized, has_overflowed: outcome.has_overflowed };
+    for (&quantization, overflow) in
+        Quantization::ALL.iter().flat_map(|mode| overflows(0).map(move |over| (mode, over)))
+    {
+        let modes = Modes { word: 4, quantization, overflow };
+        for (value, shift) in (-40..40).flat_map(|value| (0..4).map(move |shift| (value, shift))) {
+            let expected = flags(&converted(value, shift, 4, quantization, overflow));
+            assert_eq!(modes.flags_of(value, shift, 4), expected, "{value} >> {shift}, {quantization}, {overflow}");
+        }
+        let format = signed(8, 8);
+        for (a, b) in (-24..24).flat_map(|a| (-5..5).map(move |b| (a, b))) {
+            let operands = [Number { format, raw: a }, Number { format, raw: b }];
+            let expected = flags(&operate(Operation::Div, &operands, signed(4, 4), quantization, overflow));
+            assert_eq!(modes.flags_of_quotient(a, b), expected, "{a} / {b}, {quantization}, {overflow}");
         }
     }
 }

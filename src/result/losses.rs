@@ -1,0 +1,62 @@
+//! What numeric results lost, instruction by instruction: the flags of IEEE 1666, counted.
+
+use emu::code::Code;
+use emu::tally::{Losses, Tally};
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::table::{grouped, row, table};
+
+/// An instruction of whose results some lost something.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Loss {
+    /// Its word.
+    pub pc: u32,
+    /// `file:line`.
+    pub place: Option<String>,
+    /// Its mnemonic.
+    pub instruction: String,
+    /// How often it was executed.
+    pub executed: u64,
+    /// Results that lost bits below the last place; a vector has three results.
+    pub quantized: u64,
+    /// Results that did not fit the word, or were quotients of a division by zero.
+    pub overflowed: u64,
+}
+
+/// The instructions of whose results some lost something, in the order of the program.
+pub fn losses(code: &Code, tally: &Tally) -> Vec<Loss> {
+    let words = (0..).zip(tally.losses(code)).filter(|(_, losses)| *losses != Losses::default());
+    let loss = |(pc, Losses { quantized, overflowed }): (u32, Losses)| Loss {
+        pc,
+        place: code.program.place(pc),
+        instruction: code.row(pc).map_or(String::new(), |row| row.name.to_string()),
+        executed: tally.word(code, pc).instructions,
+        quantized,
+        overflowed,
+    };
+    words.map(loss).collect()
+}
+
+/// Rows of the table for people.
+const SHOWN: usize = 20;
+
+/// The table for people: what overflowed most first, then what was quantized most.
+pub fn loss_table(losses: &[Loss]) -> String {
+    if losses.is_empty() {
+        return "no result lost anything\n".into();
+    }
+    let mut sorted: Vec<&Loss> = losses.iter().collect();
+    sorted.sort_by_key(|loss| std::cmp::Reverse((loss.overflowed, loss.quantized)));
+    let mut rows = vec![row(["place", "instruction", "executed", "quantized", "overflowed"])];
+    rows.extend(sorted.iter().take(SHOWN).map(|loss| {
+        let place = loss.place.clone().unwrap_or_else(|| format!("word {}", loss.pc));
+        let numbers = [loss.executed, loss.quantized, loss.overflowed].map(grouped);
+        [vec![place, loss.instruction.clone()], numbers.to_vec()].concat()
+    }));
+    let more = match losses.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        more => format!("and {} more: see --json\n", grouped(more as u64)),
+    };
+    format!("Results that lost bits or did not fit\n{}{more}", table(rows))
+}

@@ -1,8 +1,8 @@
 //! A frame without clocks: what the work items answer and count, for those who ask nothing of time.
 
 use super::kinds::Kinds;
-use super::recorder::Keeping;
 use super::recording::Reason;
+use super::strands::Keeping;
 use super::{Failure, Setup, Work, check, choose, replay, scout};
 use crate::checked::Pause;
 use crate::exec::Watch;

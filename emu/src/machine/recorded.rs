@@ -6,9 +6,10 @@ use std::sync::mpsc::channel;
 
 use super::ending::Ending;
 use super::library::{Batch, Library};
-use super::recorder::{Keeping, Prefix};
+use super::recorder::Prefix;
 use super::recording::Reason;
 use super::scout::{self, Survey};
+use super::strands::Keeping;
 use super::{Failure, Frame, Setup, Work, check, choose, replay, schedule};
 use crate::exec::Watch;
 use crate::octets::Memory;

@@ -1,15 +1,15 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use super::kinds::Kinds;
 use super::recording::{Reason, Recording, Segment};
+use super::room::Room;
 use super::station::{Access, Request};
+use super::strands::{Keeping, Strand, Strands};
 use super::{Engine, Setup};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
-use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Uncounted, Unusual, Wires};
+use crate::fast::{self, Counted, Features, Group, LANES, Mask, Plan, Uncounted, Unusual};
 use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
 use crate::profile::Observer;
@@ -112,164 +112,6 @@ pub struct Prefix {
     pub clocks: u64,
     /// Word of the receive.
     pub pc: u32,
-}
-
-/// Room for the segments of work items that are recorded at the same time.
-pub struct Room {
-    taken: AtomicUsize,
-    most: usize,
-}
-
-impl Room {
-    /// Segments that a long work item takes room for at once.
-    const PORTION: usize = 4096;
-
-    /// For that many segments.
-    pub fn new(most: usize) -> Room {
-        Room { taken: AtomicUsize::new(0), most }
-    }
-
-    /// Whether more was wanted than there is.
-    pub fn is_full(&self) -> bool {
-        self.taken.load(Ordering::Relaxed) > self.most
-    }
-
-    /// Gives back what a group had taken.
-    fn give_back(&self, segments: usize) {
-        self.taken.fetch_sub(segments, Ordering::Relaxed);
-    }
-
-    /// Takes room for segments; false when there is none.
-    fn take(&self, segments: usize) -> bool {
-        self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most
-    }
-}
-
-/// The work items of a group that is recorded in lock-step.
-struct Strands<'a> {
-    memory: &'a Memory,
-    main: u32,
-    room: &'a Room,
-    kinds: Kinds,
-    strands: Vec<Strand>,
-    keeping: Keeping,
-}
-
-/// What is kept of work items beside their answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Keeping {
-    /// Passes, and the segments that replaying them takes.
-    Segments,
-    /// Passes; segments not, as far as that saves time.
-    Passes,
-    /// Nothing, as far as that saves time.
-    Nothing,
-}
-
-/// One of them.
-#[derive(Debug, Default)]
-struct Strand {
-    message: Option<Message>,
-    sent: Vec<Message>,
-    segments: Vec<Segment>,
-    octets: Octets,
-    before: u64,
-}
-
-/// The link of one of them: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
-struct StrandLink<'s, 'a> {
-    all: &'s mut Strands<'a>,
-    lane: usize,
-    moment: Moment,
-}
-
-impl<'a> Wires for Strands<'a> {
-    #[inline(always)]
-    fn link(&mut self, lane: usize, moment: Moment) -> impl Link {
-        StrandLink { all: self, lane, moment }
-    }
-}
-
-impl StrandLink<'_, '_> {
-    fn enter(&mut self, request: Request) -> Result<(), Stop> {
-        let strand = &mut self.all.strands[self.lane];
-        if strand.message.is_some() {
-            return Err(Stop::Wait);
-        }
-        match self.all.keeping {
-            Keeping::Nothing => return Ok(()),
-            Keeping::Passes | Keeping::Segments => self.all.kinds.add(Some(request)),
-        }
-        if self.all.keeping == Keeping::Passes {
-            return Ok(());
-        }
-        let clocks = self.moment.clocks - strand.before;
-        let segment = Segment::new(clocks, self.moment.pc, request, strand.sent.len()).ok_or(Stop::Wait)?;
-        strand.octets += segment.octets();
-        strand.before = self.moment.clocks;
-        strand.segments.push(segment);
-        if strand.segments.len().is_multiple_of(Room::PORTION) && !self.all.room.take(Room::PORTION) {
-            return Err(Stop::Wait);
-        }
-        Ok(())
-    }
-
-    fn read_octets(&mut self, access: Access, from: u32, octets: u32) -> Result<&[u8], Stop> {
-        let memory = self.all.memory;
-        let found = memory.slice(from, octets)?;
-        self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })?;
-        Ok(found)
-    }
-}
-
-impl Link for StrandLink<'_, '_> {
-    #[inline]
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        let place = buffer.slice_mut(to, octets)?;
-        place.copy_from_slice(self.read_octets(Access::Load, from, octets)?);
-        Ok(())
-    }
-
-    fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
-
-    #[inline]
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        let octets = self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
-        for (word, octets) in words.iter_mut().zip(octets.chunks_exact(4)) {
-            *word = i32::from_le_bytes(std::array::from_fn(|at| octets[at]));
-        }
-        Ok(())
-    }
-
-    fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
-
-    fn fetch_add(&mut self, _: u32, _: i32) -> Result<i32, Stop> {
-        Err(Stop::Wait)
-    }
-
-    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
-        if u32::try_from(to).ok() != Some(self.all.main) {
-            return Err(Stop::Wait);
-        }
-        self.enter(Request::Send { to: self.all.main, octets: Octets(message.octets().into()) })?;
-        self.all.strands[self.lane].sent.push(message);
-        Ok(())
-    }
-
-    fn receive(&mut self) -> Result<(Message, u32), Stop> {
-        let strand = &mut self.all.strands[self.lane];
-        let message = strand.message.take().ok_or(Stop::Wait)?;
-        strand.before = self.moment.clocks;
-        Ok((message, self.all.main))
-    }
-
-    fn barrier(&mut self) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
 }
 
 /// A core that records, with the counts of all that it recorded.

@@ -1,0 +1,34 @@
+//! Memory for the segments of work items that are recorded at the same time; what does not fit is stepped.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Room for the segments of work items that are recorded at the same time.
+pub struct Room {
+    taken: AtomicUsize,
+    most: usize,
+}
+
+impl Room {
+    /// Segments that a long work item takes room for at once.
+    pub(super) const PORTION: usize = 4096;
+
+    /// For that many segments.
+    pub fn new(most: usize) -> Room {
+        Room { taken: AtomicUsize::new(0), most }
+    }
+
+    /// Whether more was wanted than there is.
+    pub fn is_full(&self) -> bool {
+        self.taken.load(Ordering::Relaxed) > self.most
+    }
+
+    /// Gives back what a group had taken.
+    pub(super) fn give_back(&self, segments: usize) {
+        self.taken.fetch_sub(segments, Ordering::Relaxed);
+    }
+
+    /// Takes room for segments; false when there is none.
+    pub(super) fn take(&self, segments: usize) -> bool {
+        self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most
+    }
+}

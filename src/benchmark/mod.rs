@@ -23,12 +23,14 @@ use crate::job::Job;
 use crate::load::Load;
 
 /// Who computes a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Runner {
     /// Work items in lock-step, counted.
     Fast,
-    /// The same, with the clocks of the machine.
+    /// The same without counting.
+    FastUncounted,
+    /// Counted, with the clocks of the machine.
     FastClocks,
     /// The interpreter, counted.
     Checked,
@@ -40,12 +42,14 @@ pub enum Runner {
 
 impl Runner {
     /// All, in the order of results.
-    pub const ALL: [Runner; 5] = [Runner::Fast, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
+    pub const ALL: [Runner; 6] =
+        [Runner::Fast, Runner::FastUncounted, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
 
     /// Name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Runner::Fast => "fast",
+            Runner::FastUncounted => "fast, uncounted",
             Runner::FastClocks => "fast, clocks",
             Runner::Checked => "checked",
             Runner::Twin => "native twin",
@@ -61,7 +65,8 @@ pub struct Measured {
     pub scene: String,
     /// Profile of the kernels.
     pub profile: &'static str,
-    /// Who computed it.
+    /// Who computed it: `fast`, `fast-uncounted`, `fast-clocks`, `checked`, `twin` or `reference`.
+    #[schemars(with = "String")]
     pub runner: Runner,
     /// Host's nanoseconds a pixel, the median of the runs.
     pub nanoseconds: f64,
@@ -89,10 +94,10 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let modes = job.machine.arithmetic.modes();
     let reference = Reference::new(&job.scene, &job.view, Method::Hierarchy)?;
     let crop = load.build.crop;
-    let count = |setup: &Setup| -> Result<machine::Count, Failure> {
-        machine::count(setup, &load.memory)?
-            .map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
+    let known = |count: Result<Result<machine::Count, &str>, machine::Failure>| -> Result<machine::Count, Failure> {
+        count?.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };
+    let count = |setup: &Setup| known(machine::count(setup, &load.memory));
     let counted = count(&setup(Engine::Fast))?;
     let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
     let instructions = counted.tally.instructions();
@@ -106,6 +111,9 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
         for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
             let time = match runner {
                 Runner::Fast => timed(|| count(&setup(Engine::Fast)).map(drop))?,
+                Runner::FastUncounted => {
+                    timed(|| known(machine::compute(&setup(Engine::Fast), &load.memory)).map(drop))?
+                }
                 Runner::Checked => timed(|| count(&setup(Engine::Checked)).map(drop))?,
                 Runner::FastClocks => {
                     let run = || machine::run(&setup(Engine::Fast), load.memory.clone(), &mut |_| {});
@@ -142,7 +150,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 of_twin: median / twin,
                 instructions: (!is_native).then(|| instructions as f64 / median / 1e6),
                 rays: (pixels + other_rays) as f64 / median / 1e6,
-                lanes: lanes.filter(|_| matches!(runner, Runner::Fast | Runner::FastClocks)),
+                lanes: lanes.filter(|_| matches!(runner, Runner::Fast | Runner::FastUncounted | Runner::FastClocks)),
             }
         })
         .collect())

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program, its streams, its exit codes and the files that it leaves.
 
 mod annex;
+mod bench;
 mod convert;
 mod cores;
 mod demo;

@@ -97,12 +97,12 @@ fn flags_name_the_lines_whose_results_lose_something() {
     let run = session.run("run lossy.s --flags");
     let row = " lossy.s:3 |         div |        1 |         1 |          0\n";
     assert!(run.code == 0 && run.out.contains(row), "{}", run.out);
-    let flags = &session.json("run lossy.s --flags --json")["flags"];
+    let flags = &session.json("run lossy.s --flags")["flags"];
     let expected = serde_json::json!([
         {"pc": 2, "place": "lossy.s:3", "instruction": "div", "executed": 1, "quantized": 1, "overflowed": 0}
     ]);
     assert_eq!(*flags, expected);
-    assert!(session.json("run lossy.s --json").get("flags").is_none());
+    assert!(session.json("run lossy.s").get("flags").is_none());
 }
 
 #[test]

@@ -101,11 +101,8 @@ impl Link for StrandLink<'_, '_> {
 
     #[inline]
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        let octets = self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
-        for (word, octets) in words.iter_mut().zip(octets.chunks_exact(4)) {
-            *word = i32::from_le_bytes(std::array::from_fn(|at| octets[at]));
-        }
-        Ok(())
+        self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
+        Ok(self.all.memory.read_words(address, words)?)
     }
 
     fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {

@@ -61,6 +61,21 @@ pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> Fr
 }
 
 #[test]
+fn machines_run_inside_tasks_of_the_hosts_only_thread() {
+    let (core, main) = (worker(3, 10, 100), dispatch(50));
+    let frame = || run(&Config::default(), &core, &main, 1000);
+    let alone = frame();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be had");
+    let (one, other) = pool.install(|| rayon::join(frame, frame));
+    for inside in [one, other] {
+        assert_eq!(
+            (inside.clocks, inside.tally, inside.memory),
+            (alone.clocks, alone.tally.clone(), alone.memory.clone())
+        );
+    }
+}
+
+#[test]
 fn work_goes_out_and_answers_come_back_on_any_number_of_cores() {
     let (core, main) = (worker(3, 10, 100), dispatch(50));
     for cores in [1, 2, 3, 4, 8] {

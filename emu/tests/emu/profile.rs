@@ -10,7 +10,8 @@ use isa::{Class, Counts, Isa, Op, Program};
 
 use super::builder::program;
 
-fn run(program: &Program) -> (Profile, Counts) {
+/// Runs a program to its end, and gives what its regions and the whole of it cost.
+pub fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
     let registers = Registers::default();
     let single = Single {

@@ -1,15 +1,11 @@
 //! Generated programs with calls, loops and nested regions: what regions are said to cost adds up, and is what a model says.
 
-use emu::machine::Config;
-use emu::machine::single::{self, Single};
-use emu::octets::Memory;
-use emu::profile::Profile;
-use emu::registers::Registers;
-use isa::{Class, Counts, Isa, Op, Program};
+use isa::{Class, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::builder::{Builder, Label, program};
+use super::profile::run;
 
 /// A piece of a function's body.
 #[derive(Clone, Debug)]
@@ -98,24 +94,6 @@ fn adds_of(functions: &[Vec<Piece>], function: usize, piece: &Piece) -> u64 {
         Piece::Region(inner) => all(inner),
         Piece::Loop(turns, inner) => *turns as u64 * all(inner),
     }
-}
-
-fn run(program: &Program) -> (Profile, Counts) {
-    let (isa, config) = (Isa::base(), Config::default());
-    let registers = Registers::default();
-    let single = Single {
-        config: &config,
-        isa: &isa,
-        program,
-        registers,
-        step_limit: 1_000_000,
-        has_profile: true,
-        has_losses: false,
-    };
-    let run = single::run(&single, Memory::default()).expect("the setup is right");
-    assert_eq!(run.trap, None);
-    let code = emu::code::Code::new(program, &isa, config.timing());
-    (run.profile.expect("a profile was asked for"), run.tally.counts(&code))
 }
 
 proptest! {

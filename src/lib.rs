@@ -15,6 +15,7 @@ pub mod job;
 pub mod load;
 pub mod machine;
 pub mod manual;
+pub mod profiles;
 pub mod result;
 pub mod savings;
 pub mod scaling;

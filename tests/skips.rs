@@ -100,14 +100,16 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
 
 #[test]
 fn a_diffuse_scene_has_no_word_of_secondary_rays() {
-    let job = job("terrain", Profile::Vector, Layout::Wide, (8, 6));
-    let image = scenes::image::build(&job.scene, &job.view, &job.memory).unwrap();
-    let build = kernels::build(&job.scene, &job.view, &image, &isa::Isa::base(), &job.kernels).unwrap();
-    let functions: BTreeSet<&str> = build.cores.regions.iter().map(|region| region.name.as_str()).collect();
-    let absent = ["ray_tree", "reflects", "reflect", "refracts", "refract"];
-    assert_eq!(absent.iter().filter(|name| functions.contains(*name)).count(), 0, "{functions:?}");
-    assert!(functions.contains("shade"));
-    assert!(!build.cores.symbols.contains_key("NODES"), "the ray tree has no place in the buffer");
+    for profile in Profile::ALL {
+        let job = job("terrain", profile, profile.layout(), (8, 6));
+        let image = scenes::image::build(&job.scene, &job.view, &job.memory).unwrap();
+        let build = kernels::build(&job.scene, &job.view, &image, &isa::Isa::base(), &job.kernels).unwrap();
+        let functions: BTreeSet<&str> = build.cores.regions.iter().map(|region| region.name.as_str()).collect();
+        let absent = ["ray_tree", "reflects", "reflect", "refracts", "refract"];
+        assert_eq!(absent.iter().filter(|name| functions.contains(*name)).count(), 0, "{profile}: {functions:?}");
+        assert!(functions.contains("shade"));
+        assert!(!build.cores.symbols.contains_key("NODES"), "{profile}: the ray tree has a place in the buffer");
+    }
 }
 
 /// The colour of a pixel between corners that agree, from the picture that has all rays: report 6.4 without a kernel.

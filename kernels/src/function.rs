@@ -243,6 +243,12 @@ impl Function {
         }
     }
 
+    /// Whether the function belongs to the search: it walks the tree, or it intersects.
+    pub const fn is_search(self) -> bool {
+        use Function::{Descend, ExitFace, FirstPacket, NextPacket, OwnPacket, Packet, Trace, Triangle};
+        matches!(self, FirstPacket | OwnPacket | NextPacket | Descend | ExitFace | Trace | Packet | Triangle)
+    }
+
     /// The functions of the program of a core, or of the main processor, for what a scene needs.
     pub fn of_program(is_main: bool, features: &Features) -> impl Iterator<Item = Function> {
         let (has_tree, has_glass) = (features.has_tree(), features.has_glass());

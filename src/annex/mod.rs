@@ -9,12 +9,14 @@ pub mod text;
 use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
+use emu::profile::{Profile, RegionProfile};
 use emu::registers::Registers;
-use isa::diagnostic::Diagnostic;
+use isa::diagnostic::{Diagnostic, Report};
 use isa::{Class, Counts, Isa, Program};
 use kernels::annex::{Row, rows};
 
 use crate::failure::Failure;
+use result::Try;
 
 /// A row with what its region's calls took under its assumptions.
 #[derive(Clone, Debug)]
@@ -29,6 +31,8 @@ pub struct Measurement {
     pub least: Counts,
     /// Most of each class in a call.
     pub most: Counts,
+    /// What the row's search tried; the last one met the row's assumption.
+    pub tried: Vec<Try>,
 }
 
 impl Measurement {
@@ -62,27 +66,45 @@ pub fn measure() -> Result<Vec<Measurement>, Failure> {
 }
 
 fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
+    let mut tried = Vec::new();
+    for number in row.tries() {
+        let (program, memory) = row.program(number, isa)?;
+        let regions = run(&program, memory, isa)?.regions;
+        let find = |name: &str| {
+            let missing = || Report::from(Diagnostic::error(format!("the row `{}` has no region `{name}`", row.id)));
+            regions.iter().find(|region| region.name == name).ok_or_else(missing)
+        };
+        let calls = match &row.search {
+            Some(search) => find(&search.region)?.calls,
+            None => 0,
+        };
+        tried.push(Try { number, calls });
+        if row.search.as_ref().is_none_or(|search| search.calls == calls) {
+            let RegionProfile { calls, least, most, .. } = *find(&row.region)?;
+            return Ok(Measurement { row, calls, least, most, program, tried });
+        }
+    }
+    let message = format!("the driver of the row `{}` does not meet its assumption with any number: {tried:?}", row.id);
+    Err(Diagnostic::error(message).into())
+}
+
+/// Runs a driver.
+fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure> {
     let config = Config::default();
-    let (program, memory) = row.program(isa)?;
-    let registers = Registers::default();
     let single = Single {
         config: &config,
         isa,
-        program: &program,
-        registers,
+        program,
+        registers: Registers::default(),
         step_limit: config.step_limit,
         has_profile: true,
         has_losses: false,
     };
     let run = single::run(&single, Memory::new(memory))?;
-    if let Some(trap) = run.trap {
-        return Err(emu::machine::Failure::from(trap).into());
+    match run.trap {
+        Some(trap) => Err(emu::machine::Failure::from(trap).into()),
+        None => Ok(run.profile.unwrap_or_default()),
     }
-    let regions = run.profile.into_iter().flat_map(|profile| profile.regions);
-    let found = regions.into_iter().find(|region| region.name == row.region);
-    let missing = || Diagnostic::error(format!("the row `{}` has no region `{}`", row.id, row.region));
-    let region = found.ok_or_else(missing)?;
-    Ok(Measurement { row, calls: region.calls, least: region.least, most: region.most, program })
 }
 
 #[cfg(test)]

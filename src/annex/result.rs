@@ -60,6 +60,8 @@ pub struct RowResult {
     pub region: &'static str,
     /// The driver that sets the assumptions.
     pub driver: String,
+    /// The constant of the driver that was searched for what the row assumes; null where nothing was.
+    pub search: Option<SearchResult>,
     /// As printed, by class.
     pub printed: ByName<u64>,
     /// Sum of the elementary operations printed.
@@ -74,6 +76,26 @@ pub struct RowResult {
     pub difference: ByName<i64>,
     /// What it comes from.
     pub terms: Vec<TermResult>,
+}
+
+/// A constant that was searched.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SearchResult {
+    /// Its name.
+    pub constant: &'static str,
+    /// The function whose calls were counted.
+    pub region: &'static str,
+    /// What was tried, in order; the last one is what the row assumes.
+    pub tried: Vec<Try>,
+}
+
+/// A number that a constant was tried with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Try {
+    /// The number.
+    pub number: u32,
+    /// Calls of the region.
+    pub calls: u64,
 }
 
 /// A row on a scene.
@@ -195,7 +217,13 @@ impl RowResult {
                 most: region.most_elementary,
             })
         };
+        let search = row.search.as_ref().map(|search| SearchResult {
+            constant: &search.constant,
+            region: &search.region,
+            tried: measurement.tried.clone(),
+        });
         RowResult {
+            search,
             id: &row.id,
             label: &row.label,
             source: &row.source,

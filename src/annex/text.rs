@@ -4,7 +4,7 @@ use isa::{Class, Counts};
 use kernels::annex as printed;
 
 use super::Measurement;
-use super::result::{Annexes, RowResult};
+use super::result::{Annexes, RowResult, SearchResult, Try};
 use crate::table::{grouped, row, table};
 
 /// The classes that the annexes print, in the order of Annex II and then Annex I.
@@ -117,8 +117,19 @@ fn rows(annexes: &Annexes, style: Style) -> String {
             add("", &scene.scene, grouped(scene.calls), mean, rest);
         }
     }
+    let searches: String = annexes.rows.iter().filter_map(search).collect();
     style.heading("Operations of a call: printed, counted under the same assumptions, and the mean on scenes")
         + &style.table(cells)
+        + &searches
+}
+
+/// How what a row assumes was found, in a line.
+fn search(result: &RowResult) -> Option<String> {
+    let search = result.search.as_ref()?;
+    let tried: Vec<String> =
+        search.tried.iter().map(|Try { number, calls }| format!("{calls} with {number}")).collect();
+    let SearchResult { constant, region, .. } = search;
+    Some(format!("\n{}: {constant} was searched; calls of {region}: {}\n", result.id, tried.join(", ")))
 }
 
 fn terms(annexes: &Annexes, style: Style) -> String {

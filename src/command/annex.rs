@@ -24,7 +24,7 @@ Exit codes: 0 done, 1 errors in the input, 2 usage, 4 a difference that its term
 /// Counts the operations of the report's annexes again.
 ///
 /// Each row has a driver, a program that sets the report's assumptions (a packet of 40 triangles, a tree of 16 levels,
-/// a pixel of 22 nodes), and a region of the kernels of the profile `report`. The difference from what is printed is
+/// a pixel of 22 nodes, which is searched), and a region of the kernels of the profile `report`. The difference from what is printed is
 /// a sum of terms, each with its source line and a reason.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]

@@ -13,6 +13,7 @@ mod explain;
 mod extension;
 mod machine;
 mod manual;
+mod profiles;
 mod render;
 mod run;
 mod run_arguments;
@@ -59,6 +60,7 @@ enum Command {
     Disassemble(disassemble::DisassembleArguments),
     Annex(annex::AnnexArguments),
     Scene(scene::SceneArguments),
+    Profiles(profiles::ProfilesArguments),
     Skips(Box<skips::SkipsArguments>),
     Machine(machine::MachineArguments),
     Cores(Box<cores::CoresArguments>),
@@ -87,6 +89,7 @@ pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Fail
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
         Some(Command::Annex(arguments)) => annex::execute(arguments, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
+        Some(Command::Profiles(arguments)) => profiles::execute(arguments, terminal),
         Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),

@@ -16,6 +16,7 @@ use crate::annex;
 use crate::annex::result::Annexes;
 use crate::extension::{self, Comparison};
 use crate::failure::{Exit, Failure};
+use crate::profiles::{self, Profiles};
 use crate::result::{self, Render};
 use crate::savings::{self, Savings};
 use crate::scaling::{self, Scaling};
@@ -49,6 +50,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
     Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },
+    Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: schema_of::<Profiles> },
     Known { name: savings::SCHEMA, command: "lancer skips --json", make: schema_of::<Savings> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
     Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },

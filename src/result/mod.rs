@@ -171,6 +171,8 @@ pub struct Region {
     pub name: String,
     /// How often it was entered.
     pub calls: u64,
+    /// Instructions of its own.
+    pub instructions: u64,
     /// Operations from entering to leaving it, with all that it calls.
     pub inclusive: ByClass,
     /// Operations of its own instructions.
@@ -397,6 +399,7 @@ pub fn regions(profile: Option<&Profile>, is_function: bool) -> Vec<Region> {
         .map(|region| Region {
             name: region.name.clone(),
             calls: region.calls,
+            instructions: region.instructions,
             inclusive: ByClass(region.inclusive),
             exclusive: ByClass(region.exclusive),
         })

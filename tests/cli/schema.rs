@@ -19,6 +19,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("run sum.s --dump 0:4 --dump regs --reg v2=1:2:3", "lancer-run-1"),
     ("cores annex --cores 4", "lancer-cores-1"),
     ("cores triangle --size 4x4 --cores 1,2 --machine node_cache", "lancer-cores-1"),
+    ("profiles triangle --size 4x4", "lancer-profiles-1"),
     ("skips triangle --size 4x4", "lancer-skips-1"),
     ("scene info cornell", "lancer-scene-1"),
     ("scene info empty", "lancer-scene-1"),

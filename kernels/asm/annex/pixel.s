@@ -1,13 +1,13 @@
-; Driver for a pixel: five surfaces, one behind the other, that reflect and let light through. Up to 5 reflections below the camera ray there
-; are 1 + 1 + 2 + 3 + 6 + 10 ways back and forth between surfaces without end; the last of them goes straight on and would meet a sixth:
-; with five there are 22 nodes. All 40 triangles are in one packet and are tested by each ray.
+; Driver for a pixel: SURFACES of them, one behind the other, that reflect and let light through. Up to 5 reflections below the camera ray
+; there are 1 + 1 + 2 + 3 + 6 + 10 ways back and forth between surfaces without end; the number that gives 22 nodes is searched. All 40
+; triangles are in one packet and are tested by each ray.
 .entry driver
 .func driver
     begin_triangles
     movi  s23, -2 * ONE / 5
-    store_triangles 5, SURFACE, "step_z SURFACE"
+    store_triangles SURFACES, SURFACE, "step_z SURFACE"
     movi  s23, ONE / 64
-    store_triangles PACKET - 5, ASIDE, "step_z ASIDE"
+    store_triangles PACKET - SURFACES, ASIDE, "step_z ASIDE"
     root_packet
     trace_pixel
 .endfunc

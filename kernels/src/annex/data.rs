@@ -25,6 +25,20 @@ pub struct Figure {
     pub unit: String,
 }
 
+/// An assumption that is looked for: a driver is tried with 1, 2, ... for a constant.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Search {
+    /// The constant.
+    pub constant: String,
+    /// The largest number that is tried.
+    pub most: u32,
+    /// The function whose calls tell whether the number is found.
+    pub region: String,
+    /// How many calls the row assumes.
+    pub calls: u64,
+}
+
 /// Something odd in the printed figures.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -74,6 +88,7 @@ struct RawRow {
     printed: BTreeMap<String, u64>,
     driver: String,
     region: String,
+    search: Option<Search>,
     #[serde(default)]
     term: Vec<RawTerm>,
 }
@@ -114,13 +129,14 @@ fn class(name: &str) -> Class {
     Class::from_name(name).unwrap_or_else(|| panic!("annex.toml: `{name}` is no class"))
 }
 
-fn row(raw: RawRow) -> Row {
+fn row(mut raw: RawRow) -> Row {
     let mut printed = Counts::ZERO;
     for (name, count) in &raw.printed {
         printed[class(name)] = *count;
     }
-    let terms = raw.term.into_iter().map(|term| self::term(&raw.id, term)).collect();
-    Row { id: raw.id, label: raw.label, source: raw.source, printed, driver: raw.driver, region: raw.region, terms }
+    let terms = std::mem::take(&mut raw.term).into_iter().map(|term| self::term(&raw.id, term)).collect();
+    let RawRow { id, label, source, driver, region, search, .. } = raw;
+    Row { id, label, source, printed, driver, region, search, terms }
 }
 
 fn term(row: &str, raw: RawTerm) -> Term {

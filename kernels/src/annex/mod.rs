@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use isa::{Class, Counts};
 
-pub use data::{Erratum, Figure, Peer};
+pub use data::{Erratum, Figure, Peer, Search};
 pub use world::MEMORY;
 
 use data::Data;
@@ -29,6 +29,8 @@ pub struct Row {
     pub driver: String,
     /// The function or region of the kernels that is measured: its calls' inclusive counts.
     pub region: String,
+    /// What the driver's assumptions are looked for with.
+    pub search: Option<Search>,
     /// What the kernels do more or less than is printed; by class the terms sum to the difference.
     pub terms: Vec<Term>,
 }

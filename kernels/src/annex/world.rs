@@ -1,6 +1,7 @@
 //! The programs that measure the rows: the kernels of the profile `report` as a small scene in the report's layout asks for them, and a
 //! driver instead of the main program.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use isa::diagnostic::{Report, Source};
@@ -64,18 +65,26 @@ fn image(scene: &Scene, view: &View) -> Result<Image, Report> {
 }
 
 impl Row {
-    /// The program that measures the row, and the global memory that it starts with. It needs no other core.
+    /// The numbers that the driver is tried with, in order: one for rows without a search, which know no number.
+    pub fn tries(&self) -> RangeInclusive<u32> {
+        1..=self.search.as_ref().map_or(1, |search| search.most)
+    }
+
+    /// The program that measures the row, tried with a number, and the global memory that it starts with. It needs no other core.
     ///
     /// # Errors
     /// What the assembler finds; our own kernels have no errors.
-    pub fn program(&self, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
+    pub fn program(&self, number: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
         let options = Options { profile: Profile::Report, ..Options::default() };
         let features = Features::new(&scene, &view, &image.formats, &options);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
-        let text = prelude::text(&image, &features, &crop, Profile::Report.walk(&[]), false);
+        let mut text = prelude::text(&image, &features, &crop, Profile::Report.walk(&[]), false);
+        if let Some(search) = &self.search {
+            text += &format!(".equ {}, {number}\n", search.constant);
+        }
         let mut files: Vec<Arc<Source>> = vec![Source::new("<assumptions>", text)];
         files.extend(prelude::included(Layout::Report));
         let driver = format!("annex/{}.s", self.driver);

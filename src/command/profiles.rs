@@ -1,0 +1,94 @@
+//! `lancer profiles`: what the sets of kernels take for the same pictures.
+
+use clap::Args;
+
+use crate::arguments::{self, Size};
+use crate::failure::{Exit, Failure};
+use crate::profiles::{self, Profiles, Ratio};
+use crate::table::{row, short, table};
+use crate::terminal::Terminal;
+use crate::{input, machine, result};
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer profiles
+  lancer profiles cornell --machine wide32
+  lancer profiles cornell slabs --size 320x240 --json > profiles.json
+
+Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped.";
+
+/// Sets the profiles of the kernels side by side: operations, octets, instructions, clocks, error.
+///
+/// Draws each scene with the report's scalar kernels, with vector rows and with the ray unit, each profile in its own layout, and divides
+/// the figures of each profile by those of the one before. Counts are those of the cores; operations are of all classes but moves; the
+/// search is what walks the kd tree and intersects.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct ProfilesArguments {
+    /// Scenes: .dsc or mesh files, or names of generated ones.
+    #[arg(value_name = "SCENE", default_values = ["cornell", "sphereflake", "slabs", "mirrors", "terrain"])]
+    scenes: Vec<String>,
+    /// Size of the pictures in pixels.
+    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
+    size: Size,
+    /// Machine: a preset or a TOML file, see `lancer machine`.
+    #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
+    machine: String,
+    /// Prints the results as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Draws and prints.
+pub(super) fn execute(arguments: &ProfilesArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let machine = machine::find(&arguments.machine)?;
+    let mut scenes = Vec::new();
+    for name in &arguments.scenes {
+        let loaded = input::scene(name, None, Some(arguments.size))?;
+        terminal.show(&loaded.warnings);
+        scenes.push(loaded.scene);
+    }
+    let bar = terminal.progress("pictures", (scenes.len() * kernels::Profile::ALL.len()) as u64);
+    let profiles = profiles::measure(&scenes, arguments.size, &machine, &|| bar.inc(1));
+    bar.finish_and_clear();
+    let profiles = profiles?;
+    terminal.print(&if arguments.json { result::json(&profiles) } else { text(&profiles) })?;
+    Ok(Exit::Done)
+}
+
+fn text(profiles: &Profiles) -> String {
+    let mut pictures = vec![row([
+        "scene",
+        "profile",
+        "instructions",
+        "search",
+        "operations",
+        "octets",
+        "clocks",
+        "words",
+        "pixels off",
+    ])];
+    pictures.extend(profiles.pictures.iter().map(|picture| {
+        vec![
+            picture.scene.clone(),
+            picture.profile.to_owned(),
+            short(picture.instructions),
+            short(picture.search_instructions),
+            short(picture.operations),
+            short(picture.octets),
+            short(picture.clocks),
+            picture.program_words.to_string(),
+            picture.off_pixels.to_string(),
+        ]
+    }));
+    let mut ratios = vec![row(["scene", "profile", "instructions", "search", "operations", "octets", "clocks"])];
+    ratios.extend(profiles.ratios.iter().map(|ratio| {
+        let Ratio { instructions, search_instructions, operations, octets, clocks, .. } = *ratio;
+        let name =
+            [ratio.scene.clone().unwrap_or_else(|| "mean".to_owned()), format!("{}/{}", ratio.profile, ratio.of)];
+        let figures = [instructions, search_instructions, operations, octets, clocks];
+        name.into_iter().chain(figures.map(|figure| format!("{figure:.2}"))).collect()
+    }));
+    let (width, height, machine) = (profiles.width, profiles.height, &profiles.machine);
+    format!("{width} x {height} pixels on the machine {machine}\n\n{}\n{}", table(pictures), table(ratios))
+}

@@ -1,0 +1,53 @@
+//! What vector rows save on the report's kernels, and the ray unit on those: docs/profiles.md says it, and it is measured again.
+
+use std::process::Command;
+
+use serde_json::Value;
+
+fn lancer(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_lancer")).args(arguments).output().expect("lancer starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("results are text")
+}
+
+/// The largest of a ratio over the scenes, and its mean.
+fn most_and_mean(ratios: &[Value], profile: &str, key: &str) -> (f64, f64) {
+    let own: Vec<&Value> = ratios.iter().filter(|ratio| ratio["profile"] == profile).collect();
+    let (mean, scenes): (Vec<&Value>, Vec<&Value>) = own.iter().partition(|ratio| ratio["scene"].is_null());
+    assert_eq!((mean.len(), scenes.len()), (1, 5));
+    let figure = |ratio: &Value| ratio[key].as_f64().unwrap();
+    (scenes.iter().map(|ratio| figure(ratio)).fold(0.0, f64::max), figure(mean[0]))
+}
+
+#[test]
+fn profiles_save_what_their_document_says() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/profiles.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let (before, after) = document.split_once("```text\n").unwrap();
+    let (shown, after) = after.split_once("```\n").unwrap();
+    let text = lancer(&["profiles", "--size", "32x24"]);
+    if std::env::var_os("LANCER_BLESS").is_some() {
+        std::fs::write(path, format!("{before}```text\n{text}```\n{after}")).unwrap();
+    } else {
+        assert_eq!(shown, text, "LANCER_BLESS=1 writes it as it is now");
+    }
+    let json: Value = serde_json::from_str(&lancer(&["profiles", "--size", "16x12", "--json"])).unwrap();
+    let ratios = json["ratios"].as_array().unwrap();
+    // Limits for one scene and for the mean of the five.
+    let limits = [
+        ("vector", "operations", 0.85, 0.75),
+        ("vector", "octets", 0.75, 0.5),
+        ("ray", "instructions", 0.5, 0.5),
+        ("ray", "search_instructions", 0.3, 0.3),
+    ];
+    for (profile, key, each, together) in limits {
+        let (most, mean) = most_and_mean(ratios, profile, key);
+        assert!(most <= each && mean <= together, "{key} of {profile}: {most} at most, {mean} in the mean");
+    }
+    let pictures = json["pictures"].as_array().unwrap();
+    let hash = |scene: &str, profile: &str| {
+        let is_it = |picture: &&Value| picture["scene"] == scene && picture["profile"] == profile;
+        pictures.iter().find(is_it).unwrap()["image_hash"].clone()
+    };
+    assert_eq!(hash("slabs", "vector"), hash("slabs", "ray"), "both decide exactly");
+}

@@ -4,20 +4,9 @@
 .func shade
     vmov  v25, zero_vector                  ; sum over the lights
 .if LIGHTS > 0
-    movi  s12, LIGHTS_AT
-    sw    s12, SHADE_LIGHT(s0)
+    first_light
 shade_light:
-  .if !LIGHTS_LOCAL
-    lw    s13, SHADE_LIGHT(s0)
-    li    s12, LIGHTS_BUS - LIGHTS_AT
-    addr  s13, s13, s12
-    movi  s12, LIGHT_SLOT
-    movi  s14, sizeof(light)
-    load  s12, s13, s14
-  .else
-    lw    s12, SHADE_LIGHT(s0)
-  .endif
-    lv    v26, light.position(s12)
+    load_light
     vsub  v26, v26, point                   ; to the light
     wdot  w0, facing, v26
     wextend w1, s0, 0
@@ -39,28 +28,13 @@ shade_facing:
 1:
   .endif
     sw    s13, SHADE_COSINE(s0)
-    vmov  origin, point
-    vmov  direction, v6
     vdot  near_t, v6, v26, dir + pos - t
-    mov   near, s0
-    movi  any_hit, 1
-    call  link_packet, own_packet
-    call  link_trace, trace
-    bnez  near, shade_next
-    lw    s13, SHADE_COSINE(s0)
-  .if !LIGHTS_LOCAL
-    movi  s12, LIGHT_SLOT
-  .else
-    lw    s12, SHADE_LIGHT(s0)
-  .endif
-    lv    v6, light.colour(s12)
-    vfma  v25, v6, s13, v25, dir
+    shadow_ray shade_next
+;-    vscale v6, v6, s13, dir
+;-    vadd  v25, v25, v6
+    vfma  v25, v6, s13, v25, dir ;+
 shade_next:
-    lw    s12, SHADE_LIGHT(s0)
-    lea   s12, sizeof(light)(s12)
-    sw    s12, SHADE_LIGHT(s0)
-    li    s13, LIGHTS_AT + LIGHTS * sizeof(light)
-    bltu  s12, s13, shade_light
+    next_light shade_light
 .endif
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.intensity(s12)

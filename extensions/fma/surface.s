@@ -3,22 +3,10 @@
 .func surface
     call  link_packet, normal
     vmov  incident, direction
-    vfma  v6, direction, near_t, origin, t + dir - pos
-    ; The point is rounded, so it may lie on the wrong side: it moves along the normal's major axis by more than that error.
-    vmajor s12, facing
-    vgetr s13, facing, s12
-    vgetr s14, v6, s12
-    movi  s15, OFFSET
-    bgez  s13, 1f
-    movi  s15, -OFFSET
-1:  add   s13, s14, s15
-    vmov  point, v6
-    vputr point, s13, s12
-.if HAS_GLASS
-    sub   s13, s14, s15
-    vmov  behind, v6
-    vputr behind, s13, s12
-.endif
+;-    vscale v6, direction, near_t, t + dir - pos
+;-    vadd  v6, origin, v6
+    vfma  v6, direction, near_t, origin, t + dir - pos ;+
+    move_off OFFSET
     load_material
     ret   link_shade
 .endfunc

@@ -6,7 +6,8 @@
 ; side: the next packet behind that plane lies there, and the walk goes on from the last note on the exit axis instead of the root.
 ;
 ; In: origin, direction, backwards, exit_*, fars (the last note on each axis, 0 for none). Out: packet_count, packet_refs, box_low,
-; box_high, fars. Returns by link_step. Scratch: s12 to s15, far_top, w2 to w4.
+;-; box_high, fars. Returns by link_step. Scratch: s12 to s15, far_top, w0, w1.
+; box_high, fars. Returns by link_step. Scratch: s12 to s15, far_top, w2 to w4. ;+
 
 ; Notes the far side of the node: s14 = its address, s12 = the axis.
 .macro note_far
@@ -18,12 +19,21 @@
 .endm
 
 .func descend
-    vget  s12, direction, x
-    wmul  w2, exit_run, s12
-    vget  s12, direction, y
-    wmul  w3, exit_run, s12
-    vget  s12, direction, z
-    wmul  w4, exit_run, s12
+;-    vget  s12, direction, x
+;-    wmul  w0, exit_run, s12
+;-    swide w0, RUNS(s0)
+;-    vget  s12, direction, y
+;-    wmul  w0, exit_run, s12
+;-    swide w0, RUNS + 8(s0)
+;-    vget  s12, direction, z
+;-    wmul  w0, exit_run, s12
+;-    swide w0, RUNS + 16(s0)
+    vget  s12, direction, x ;+
+    wmul  w2, exit_run, s12 ;+
+    vget  s12, direction, y ;+
+    wmul  w3, exit_run, s12 ;+
+    vget  s12, direction, z ;+
+    wmul  w4, exit_run, s12 ;+
     vgetr far_top, fars, exit_axis
     bnez  far_top, descend_far
     vmov  fars, zero_vector
@@ -31,10 +41,17 @@
     first_node
 descend_node:
     next_node descend_leaf
-    mov   s14, s15
-    kdside s14, s12, origin, w2, exit_slope
-    bgtz  s14, descend_right
-    bltz  s14, descend_tie
+;-    vgetr s14, origin, s12
+;-    sub   s14, s15, s14
+;-    wmul  w0, s14, exit_slope
+;-    slli  s14, s12, 3
+;-    lwide w1, RUNS(s14)
+;-    bwlt  w0, w1, descend_right
+;-    bweq  w0, w1, descend_tie
+    mov   s14, s15 ;+
+    kdside s14, s12, origin, w2, exit_slope ;+
+    bgtz  s14, descend_right ;+
+    bltz  s14, descend_tie ;+
 descend_left:
     srl   s14, backwards, s12
     andi  s14, s14, 1

@@ -2,6 +2,9 @@
 ; length a word. In: v6. Out: v6 in the direction format, within 1.5 ulp a lane: half for the quotient, up to one for the length, which is
 ; as short as 2^(word-3). Returns by link_step. Scratch: s12, w0.
 .func unit
-    vunit v6, v6, dir
+;-    wdot  w0, v6, v6
+;-    call  link_leaf, sqrt
+;-    vdiv  v6, v6, s12, dir
+    vunit v6, v6, dir ;+
     ret   link_step
 .endfunc

@@ -1,9 +1,37 @@
-; Tests every triangle of the packet, a block of references with one instruction. The nearest hit has the smallest t, then the lowest
-; index. In: packet_count, packet_refs, near, near_t, any_hit. Out: near, near_t, near_slot. Returns by link_packet. Layout: wide.
-; Scratch: s12 to s15, v6; packet_count and packet_refs are used up.
+; Tests every triangle of the packet. The nearest hit has the smallest t, then the lowest index.
+; In: packet_count, packet_refs, near, near_t, any_hit. Out: near, near_t, near_slot. Returns by link_packet.
+;
+; The test is part of the loop: a triangle's vertices go from global memory to registers, its other octets are read with a hit that is
+; the nearest so far (of the report's layout it goes to the buffer whole, beside the nearest one).
+; Scratch: s12 to s15, tested, v6 to v9; packet_count and packet_refs are used up.
+
+; On to the next triangle when the ray has met this one, s15.
+.macro pass_tested
+  .if SKIP_TESTED
+    tested_place s12, s15
+    lw    tested, TESTED(s12)
+    beq   tested, s15, packet_rest
+    sw    s15, TESTED(s12)
+  .endif
+.endm
+
 .func packet
+.if SKIP_EMPTY
     blez  packet_count, packet_end
-    mov   s15, near
+.endif
+.if LAYOUT_REPORT
+    mov   s14, packet_count
+  .if !SKIP_EMPTY
+    beqz  s14, packet_end
+  .endif
+packet_next:
+    next_reference
+    pass_tested
+    triangle_octets s12
+    load  slot, s15, s12
+    load_triangle slot
+.else
+  .if LARGEST_PACKET > REFERENCES_AT_ONCE
 packet_block:
     movi  s12, REFERENCES_AT_ONCE
     blt   s12, packet_count, 1f
@@ -13,15 +41,77 @@ packet_block:
     movi  s13, REFERENCES
     load  s13, packet_refs, s14
     addr  packet_refs, packet_refs, s14
+  .else
+    slli  s14, packet_count, 2
+    movi  s13, REFERENCES
+    load  s13, packet_refs, s14
+  .endif
     addr  s14, s13, s14
-    vput  v6, s13, 0
-    vput  v6, s14, 1
-    rpacket near_t, near, origin, v6, dir + t - pos
+  .if !SKIP_EMPTY
+    beq   s13, s14, packet_end
+  .endif
+;-packet_next:
+;-    lwp   s15, 4(s13)
+;-    pass_tested
+;-    ldv3  v6, triangle.v0(s15)
+;-.endif
+    vput  v6, s13, 0 ;+
+    vput  v6, s14, 1 ;+
+  .if SKIP_TESTED ;+
+    li    s12, 2 * TESTED ;+
+    or    s12, s12, any_hit ;+
+    vput  v6, s12, 2 ;+
+  .else ;+
+    vput  v6, any_hit, 2 ;+
+  .endif ;+
+    mov   s15, near ;+
+    rpacket near_t, near, origin, v6, dir + t - pos ;+
+    beq   near, s15, packet_rest ;+
+    triangle_octets s12 ;+
+    load  near_slot, near, s12 ;+
+  .if SKIP_ANY_HIT ;+
+    bnez  any_hit, packet_end ;+
+  .endif ;+
+.endif ;+
+.if LAYOUT_REPORT ;+
+.region triangle
+    rtri  s12, v9, origin, v6, dir + t - pos
+.endregion
+    bge   near_t, s12, packet_nearer
+.endif ;+
+packet_rest:
+.if LAYOUT_REPORT
+    isubi s14, s14, 1
+    bnez  s14, packet_next
+.else
+;-    bltu  s13, s14, packet_next
+  .if LARGEST_PACKET > REFERENCES_AT_ONCE
     bgtz  packet_count, packet_block
-    beq   near, s15, packet_end
-    bnez  any_hit, packet_end
-    movi  s12, sizeof(triangle)
-    load  near_slot, near, s12
+  .endif
+.endif
 packet_end:
     ret   link_packet
+.if LAYOUT_REPORT ;+
+packet_nearer:
+    bne   near_t, s12, 1f
+    bgeu  s15, near, packet_rest
+1:  mov   near_t, s12
+    mov   near, s15
+.if SKIP_ANY_HIT
+    bnez  any_hit, packet_end
+.endif
+.if LAYOUT_REPORT
+    mov   s12, slot
+    mov   slot, near_slot
+    mov   near_slot, s12
+;-.elseif SKIP_OCTETS
+;-    sv    v6, triangle.v0(near_slot)
+;-    sv    v7, triangle.v1(near_slot)
+;-    sv    v8, triangle.v2(near_slot)
+;-.else
+;-    movi  s12, sizeof(triangle)
+;-    load  near_slot, s15, s12
+.endif
+    jump  packet_rest
+.endif ;+
 .endfunc

@@ -9,22 +9,28 @@ use isa::{Class, Counts, Isa};
 
 /// What is likely a mistake in an instruction that was loaded, or should be known before one is built.
 pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
-    let Some(body) = isa.body(loaded.op) else { return Vec::new() };
-    let summary = &loaded.summary;
     let row = isa.row(loaded.op);
     let warning = |message: String, label: &str| Diagnostic::warning(message).at(loaded.row.clone(), label);
+    let mut found = Vec::new();
+    if row.doc.trim().is_empty() {
+        let message = format!("`{}` has no description", row.name);
+        found.push(warning(message, "its row").hint("lines that begin with `;;` before it are what the manual shows"));
+    }
+    let Some(body) = isa.body(loaded.op) else { return found };
+    let summary = &loaded.summary;
     let at = |step: usize, message: String, label: &str| match body.place(step) {
         Some(place) => Diagnostic::warning(message).at(place, label),
         None => Diagnostic::warning(message),
     };
-    let mut found = Vec::new();
     for letter in &summary.unused {
         let message = format!("operand `{}` of `{}` is not used", *letter as char, row.name);
         found.push(warning(message, "an operand of it").hint("leave it out: its bits are free for more"));
     }
-    if row.doc.trim().is_empty() {
-        let message = format!("`{}` has no description", row.name);
-        found.push(warning(message, "its row").hint("lines that begin with `;;` before it are what the manual shows"));
+    for (written, read) in body.overwritten(row, isa) {
+        let (written, read) = (written as char, read as char);
+        let message = format!("`{}` writes `{written}` before it has read `{read}` for the last time", row.name);
+        let hint = format!("where both are one register, it still reads what `{read}` was: a unit has to keep that");
+        found.push(warning(message, "they may be one register").hint(hint));
     }
     for (exit, is_reached) in summary.exits.iter().enumerate() {
         if !is_reached {

@@ -4,7 +4,7 @@
 use super::body::{Act, Body};
 use super::registers;
 use crate::isa::Isa;
-use crate::row::{Kind, Row};
+use crate::row::{Kind, Operand, Row};
 use crate::table::Op;
 
 /// What makes a body unusable.
@@ -209,6 +209,23 @@ impl Body {
             }
         }
         (0..self.steps.len()).filter(|&at| is_reached[at]).collect()
+    }
+
+    /// Letters of a destination and a source of a row that may be one register, where the body reads the source after writing the
+    /// destination.
+    pub fn overwritten(&self, row: &Row, isa: &Isa) -> Vec<(u8, u8)> {
+        let of_operand = |operand: &Operand| bits(operand.kind, registers::operand(operand.letter, 0));
+        let written = row.operands.iter().filter(|operand| operand.is_written());
+        let pairs = written.flat_map(|written| row.operands.iter().map(move |read| (written, read)));
+        let alike = pairs.filter(|(written, read)| {
+            let file = written.kind.register_file();
+            written.letter != read.letter && read.is_read() && file.is_some() && file == read.kind.register_file()
+        });
+        let late = alike.filter(|(written, read)| {
+            let file = written.kind.register_file().unwrap_or('s');
+            self.reads_after_writing(isa, file, of_operand(written), of_operand(read))
+        });
+        late.map(|(written, read)| (written.letter, read.letter)).collect()
     }
 
     /// Whether a step after one that writes some of these registers may read some of those; numbers are those of the body, a bit each.

@@ -10,6 +10,7 @@ use crate::exec::{
     BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom,
     Watch, WideRoom, split_operands,
 };
+use crate::meaning::Units;
 use crate::octets::Buffer;
 use crate::profile::Observer;
 use crate::registers::Registers;
@@ -33,6 +34,8 @@ pub struct State {
     pub clocks: u64,
     /// Elementary operations of those instructions.
     pub elementary: u64,
+    /// What executes instructions with a meaning in Rust.
+    pub(crate) units: Units,
 }
 
 impl State {
@@ -40,13 +43,15 @@ impl State {
     pub fn new(code: &Code, buffer: Buffer) -> State {
         let pc = code.program.entry;
         let registers = Registers::default();
-        State { registers, buffer, pc, steps: 0, inner_steps: 0, clocks: 0, elementary: 0 }
+        let units = Units::new(code.isa);
+        State { registers, buffer, pc, steps: 0, inner_steps: 0, clocks: 0, elementary: 0, units }
     }
 
     /// The same core after another reset.
     pub fn begin(&mut self, code: &Code, initial: &Buffer) {
         self.registers = Registers::default();
         self.buffer.reset_to(initial);
+        self.units.begin(code.isa);
         self.pc = code.program.entry;
         (self.steps, self.inner_steps, self.clocks, self.elementary) = (0, 0, 0, 0);
     }
@@ -156,7 +161,8 @@ pub fn run<T: Watch, O: Observer>(
     observer: &mut O,
 ) -> Pause {
     let (slots, (passes, losses)) = (code.slots(), tally.parts_mut());
-    let State { registers, buffer, .. } = state;
+    let State { registers, buffer, units, .. } = state;
+    let numbers = arithmetic.numbers();
     let mut next = state.pc;
     let mut pc;
     let mut steps = state.steps + state.inner_steps;
@@ -189,10 +195,9 @@ pub fn run<T: Watch, O: Observer>(
                 (exit.index(), exit.units())
             }};
         }
-        /// Executes one row: its operands are read, its meaning is asked, its results are written.
-        macro_rules! execute {
-            ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
-                let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
+        /// Takes note of what arithmetic that watches has seen.
+        macro_rules! watch {
+            () => {
                 if T::IS_WATCHING {
                     if arithmetic.take_division_by_zero() {
                         break Pause::Fault(Fault::DivisionByZero);
@@ -201,6 +206,13 @@ pub fn run<T: Watch, O: Observer>(
                         losses.add(arithmetic.take_losses());
                     }
                 }
+            };
+        }
+        /// Executes one row: its operands are read, its meaning is asked, its results are written.
+        macro_rules! execute {
+            ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
+                let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
+                watch!();
                 finish!(result, $written)
             }};
             ({ local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
@@ -236,8 +248,32 @@ pub fn run<T: Watch, O: Observer>(
                     $($(Some(Op::$name) => {
                         split_operands! { execute { $style $trait $name } [] [] ($($operands)*) }
                     })*)*
-                    // A body would stand here instead; without one the word cannot be executed.
-                    Some(Op::Ext(_)) => break Pause::Fault(Fault::NoMeaning(code.program.words[pc as usize])),
+                    // What has a body stands here as the steps of that.
+                    Some(Op::Ext(number)) => {
+                        let Some(unit) = units.get_mut(number) else {
+                            break Pause::Fault(Fault::NoMeaning(code.program.words[pc as usize]));
+                        };
+                        // A division by zero is known only when the registers are written.
+                        let before = T::IS_WATCHING.then(|| registers.clone());
+                        match unit.execute(fields, registers, buffer, link, &numbers) {
+                            Ok(ending) => {
+                                if let Some(before) = before
+                                    && arithmetic.take_division_by_zero()
+                                {
+                                    *registers = before;
+                                    break Pause::Fault(Fault::DivisionByZero);
+                                }
+                                watch!();
+                                if ending.is_taken {
+                                    next = code.distant(pc);
+                                    after = if next >= code.words() { After::Strays } else { After::Goes };
+                                }
+                                (ending.exit.into(), ending.units)
+                            }
+                            Err(Stop::Wait) => break Pause::Wait,
+                            Err(Stop::Fault(fault)) => break Pause::Fault(fault),
+                        }
+                    }
                     None => break Pause::Fault(match code.program.words.get(pc as usize) {
                         Some(&word) => Fault::IllegalWord(word),
                         None => Fault::OutsideProgram { words: code.words() },

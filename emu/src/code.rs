@@ -9,8 +9,9 @@ use std::fmt;
 use std::ops::Range;
 
 use isa::diagnostic::{Diagnostic, Place};
-use isa::{Counts, Fields, Isa, Op, Program, Row};
+use isa::{Counts, Fields, Isa, Kind, Op, Program, Row};
 
+use crate::meaning::{self, Meaning};
 use crate::quantity::Clocks;
 use crate::splice::{Passing, Way, splice};
 use crate::timing::Timing;
@@ -107,7 +108,7 @@ pub fn check_bodies(program: &Program, isa: &Isa) -> Result<(), TooLarge> {
         return Ok(());
     }
     let code = Code::new(program, isa, Timing::default());
-    let is_left_out = |slot: &Slot| slot.op.is_some_and(|op| isa.body(op).is_some());
+    let is_left_out = |slot: &Slot| slot.op.is_some_and(|op| isa.runs_body(op));
     if code.slots.iter().any(is_left_out) { Err(TooLarge) } else { Ok(()) }
 }
 
@@ -135,11 +136,13 @@ impl<'a> Code<'a> {
             let mut slot = Slot { op: None, fields: Fields::default(), first_exit, next: word + 1 };
             if let Some(instruction) = instruction {
                 (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
+                let runs_body = isa.runs_body(instruction.op);
+                let is_expanded = runs_body && isa.is_expanded(instruction.op);
                 for exit in 0..isa.row(instruction.op).exits.len() as u8 {
-                    let cost = (!isa.is_expanded(instruction.op)).then_some((instruction.op, exit));
-                    code.add(Pass { word, exit: Some(exit), cost }, isa.is_expanded(instruction.op));
+                    let cost = (!is_expanded).then_some((instruction.op, exit));
+                    code.add(Pass { word, exit: Some(exit), cost }, is_expanded);
                 }
-                if isa.body(instruction.op).is_some() {
+                if runs_body {
                     slot = code.splice(slot, word, &mut behind);
                 }
             }
@@ -254,7 +257,27 @@ impl<'a> Code<'a> {
     }
 
     fn is_in_body(&self, slot: u32) -> bool {
-        slot > self.words() || self.op(slot).is_some_and(|op| self.isa.body(op).is_some())
+        slot > self.words() || self.has_body(slot)
+    }
+
+    /// Whether a body stands in the place of a word.
+    fn has_body(&self, word: u32) -> bool {
+        self.extended.binary_search_by_key(&word, |&(word, _)| word).is_ok()
+    }
+
+    /// Whether some instruction of the program has a meaning that keeps its state from one work item to the next.
+    pub fn keeps_state(&self) -> bool {
+        let kept = |op| meaning::of(self.isa, op).is_some_and(Meaning::keeps_state);
+        self.slots.iter().any(|slot| matches!(slot.op, Some(op @ Op::Ext(_)) if kept(op)))
+    }
+
+    /// Where the distance of a word's row leads: the word behind it where it has none, the program's end where it leads out.
+    pub fn distant(&self, word: u32) -> u32 {
+        let slot = &self.slots[word as usize];
+        let operands = slot.op.map_or(&[][..], |op| &self.isa.row(op).operands);
+        let distance = operands.iter().find(|operand| operand.kind == Kind::Rel);
+        let distance = distance.map_or(1, |operand| slot.fields.get(operand.letter) as i32);
+        word.wrapping_add_signed(distance).min(self.words())
     }
 
     /// The row of a word; `None` for a word that is no instruction.
@@ -277,7 +300,8 @@ impl<'a> Code<'a> {
 
     /// Where the body stands that a slot is a step of.
     pub fn body_place(&self, slot: u32) -> Option<Place> {
-        let body = self.isa.body(self.op(self.word(slot))?)?;
+        let word = self.word(slot);
+        let body = self.isa.body(self.op(word)?).filter(|_| self.has_body(word))?;
         body.place(self.inner(slot).map_or(0, |inner| inner.step as usize))
     }
 

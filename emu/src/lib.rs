@@ -6,6 +6,7 @@ pub mod exec;
 pub mod fast;
 mod independence;
 pub mod machine;
+pub mod meaning;
 pub mod octets;
 pub mod profile;
 pub mod quantity;

@@ -12,7 +12,7 @@ use crate::code::Code;
 pub enum Fault {
     /// The word is no instruction.
     IllegalWord(u32),
-    /// The row of an extension for which no meaning was loaded.
+    /// The row of an extension that has no body, and no meaning in Rust attached.
     NoMeaning(u32),
     /// The program counter left the program, which has this many words.
     OutsideProgram {
@@ -57,6 +57,8 @@ pub enum Fault {
     Deadlock,
     /// More instructions than a work item may take.
     StepLimit(u64),
+    /// What the meaning in Rust of an extension instruction refuses, with its reason.
+    Refused(&'static str),
     /// A division by zero, where the machine traps on it.
     DivisionByZero,
 }
@@ -65,7 +67,9 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Fault::IllegalWord(word) => write!(f, "the word {word:#010x} is no instruction"),
-            Fault::NoMeaning(word) => write!(f, "the extension instruction {word:#010x} has no meaning"),
+            Fault::NoMeaning(word) => {
+                write!(f, "the extension instruction {word:#010x} has no body, and no meaning in Rust is attached")
+            }
             Fault::OutsideProgram { words } => write!(f, "the program counter left the program of {words} words"),
             Fault::Buffer { address, octets, size } => {
                 write!(f, "octets {} of the buffer, which has {size}", span(address, octets))
@@ -82,6 +86,7 @@ impl fmt::Display for Fault {
             }
             Fault::Deadlock => write!(f, "every core waits for another one"),
             Fault::StepLimit(limit) => write!(f, "more than {limit} instructions in a work item"),
+            Fault::Refused(why) => write!(f, "the instruction refused: {why}"),
             Fault::DivisionByZero => write!(f, "division by zero"),
         }
     }
@@ -160,7 +165,10 @@ impl Trap {
 
     /// The message with the source line.
     pub fn diagnostic(&self) -> Diagnostic {
-        let message = Diagnostic::error(self.to_string());
+        let mut message = Diagnostic::error(self.to_string());
+        if matches!(self.kind, Fault::NoMeaning(_)) {
+            message = message.hint("a program in Rust attaches one and runs it: docs/extensions.md");
+        }
         match (&self.line, &self.body) {
             (Some(line), None) => message.at(line.clone(), "stopped here"),
             (Some(line), Some(body)) => message.at(line.clone(), "stopped here").also(body.clone(), "in its body"),

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::extension::{Body, Extension};
+use crate::extension::{Body, Extension, Meaning};
 use crate::row::{Kind, Row};
 use crate::table::{Op, ROWS};
 
@@ -130,7 +130,7 @@ impl Isa {
             return Err(other);
         }
         let op = Op::Ext(self.extensions.len() as u16);
-        self.extensions.push(Extension { row, body: None, is_expanded: false });
+        self.extensions.push(Extension { row, body: None, meaning: None, is_expanded: false });
         self.enter(op);
         Ok(op)
     }
@@ -142,7 +142,27 @@ impl Isa {
         }
     }
 
-    /// What an extension row does; `None` for the rows of the table.
+    /// Gives an extension row a meaning that an engine knows how to execute, or takes it away.
+    pub fn set_meaning(&mut self, op: Op, meaning: Option<Meaning>) {
+        if let Op::Ext(n) = op {
+            self.extensions[n as usize].meaning = meaning;
+        }
+    }
+
+    /// The meaning that an engine has for an extension row.
+    pub fn meaning(&self, op: Op) -> Option<&Meaning> {
+        match op {
+            Op::Ext(n) => self.extensions[n as usize].meaning.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Whether an instruction is executed by the steps of its body: where it has no other meaning, or where its steps are counted.
+    pub fn runs_body(&self, op: Op) -> bool {
+        self.body(op).is_some() && (self.meaning(op).is_none() || self.is_expanded(op))
+    }
+
+    /// The body of an extension row; `None` for the rows of the table.
     pub fn body(&self, op: Op) -> Option<&Arc<Body>> {
         match op {
             Op::Ext(n) => self.extensions[n as usize].body.as_ref(),

@@ -1,8 +1,13 @@
 //! Runs programs with extension instructions.
 
 mod bodies;
+mod examples;
 mod faults;
+mod findings;
+mod meanings;
 mod refusals;
+#[path = "../../examples/reciprocal/study.rs"]
+mod study;
 
 use asm::extension::{Loaded, load};
 use emu::machine::Config;

@@ -122,6 +122,36 @@ fn bodies_that_cannot_be_executed() {
 }
 
 #[test]
+fn what_a_meaning_in_rust_does_not_go_with() {
+    let declared = "(d: S, a: S)  \"custom0 ddddd aaaaa ----------------\"  [Done(mem 1; each octet 1)]";
+    let load = |text: &str| load(&mut Isa::base(), &Source::new("t", text), &|_, _| Err(String::new()));
+    assert!(load(&file(declared, "    .meaning rust")).is_ok_and(|loaded| loaded[0].is_rust));
+    for (row, body, message, place, hint) in [
+        (ROW, "    .meaning c\n    mov d, a", "`.meaning` names where the meaning is", "4:5", "`.meaning rust`"),
+        (declared, "    .meaning rust\n    mov d, a", "have no cost for each unit", "3:77", "without a body beside it"),
+        (declared, "    mov d, a", "have no cost for each unit", "3:77", "without a body beside it"),
+        (
+            "(d: S, a: S)  \"custom0 ddddd aaaaa ----------------\"  [Done(body)]",
+            "    .meaning rust\n    mov d, a",
+            "its exits say what they cost",
+            "3:67",
+            "such as `add 3`",
+        ),
+    ] {
+        refuses(&file(row, body), message, place, hint);
+    }
+}
+
+/// Bodies share lines by macros: an instruction of an extension would have two prices.
+#[test]
+fn bodies_that_use_instructions_of_extensions() {
+    let second =
+        ".instr other (d: S, a: S) \"custom1 ddddd aaaaa ----------------\" [Done(add 1)]\n    bad d, a\n.end\n";
+    let text = file(ROW, "    mov d, a") + second;
+    refuses(&text, "`bad` is an instruction of an extension", "7:5", "with a macro");
+}
+
+#[test]
 fn files_that_are_none() {
     for (text, message, place, hint) in [
         (

@@ -23,6 +23,8 @@ struct Block {
     start: usize,
     doc: String,
     lines: Vec<Line>,
+    /// Whether its meaning is in Rust; the lines may be a body beside it.
+    is_rust: bool,
 }
 
 /// The parts of a file.
@@ -58,11 +60,18 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
             ));
             continue;
         };
+        let each_at = drawn.each_at.clone().map(|span| Place::new(source, span));
         let found =
             add(isa, source, drawn, block.doc, parts.name.as_deref().unwrap_or_default()).and_then(|mut found| {
-                if lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty()) {
+                let is_empty = lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty());
+                check_costs(isa.row(found.op), block.is_rust, is_empty, &found.exits, each_at)?;
+                found.is_rust = block.is_rust;
+                if is_empty && block.is_rust {
+                    return Ok(found);
+                }
+                if is_empty {
                     let message = format!("the body of `{}` is empty", isa.row(found.op).name);
-                    let hint = "write what it does as instructions between the row and `.end`";
+                    let hint = "write what it does as instructions between the row and `.end`, or `.meaning rust` if a program of yours does it";
                     return Err(Report::from(
                         Diagnostic::error(message)
                             .code(explain::BODY)
@@ -129,6 +138,10 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
         if let Some((block, _)) = &mut open {
             match word {
                 Some(".end") => parts.blocks.extend(open.take().map(|(block, _)| block)),
+                Some(".meaning") => match is_rust(source, &place) {
+                    Ok(()) => block.is_rust = true,
+                    Err(message) => report.0.push(*message),
+                },
                 Some(".instr" | ".extension") => {
                     let (_, opened) = open.take().expect("a block is open");
                     let message = Diagnostic::error("`.end` is missing").code(explain::UNCLOSED);
@@ -152,7 +165,7 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
                 }
                 let start =
                     place.span.start + source.text[place.span.clone()].find(".instr").unwrap_or(0) + ".instr".len();
-                open = Some((Block { start, doc: std::mem::take(&mut doc), lines: Vec::new() }, place));
+                open = Some((Block { start, doc: std::mem::take(&mut doc), lines: Vec::new(), is_rust: false }, place));
             }
             Some(".end") => {
                 let message = Diagnostic::error("`.end` without `.instr`").code(explain::UNOPENED);
@@ -186,6 +199,46 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
     parts
 }
 
+/// `.meaning rust`
+fn is_rust(source: &Arc<Source>, place: &Place) -> Result<(), Box<Diagnostic>> {
+    let text = source.text[place.span.clone()].trim_start().trim_start_matches(".meaning");
+    match text.split([';', '#']).next().unwrap_or(text).trim() {
+        "rust" => Ok(()),
+        _ => {
+            let message = Diagnostic::error("`.meaning` names where the meaning is").code(explain::ROW);
+            let hint = "write `.meaning rust`; without the line the meaning is the body";
+            Err(message.at(place.clone(), "`rust` is expected").hint(hint).into())
+        }
+    }
+}
+
+/// What exits may cost depends on who executes the instruction.
+fn check_costs(
+    row: &Row,
+    is_rust: bool,
+    is_bodiless: bool,
+    exits: &[Place],
+    each_at: Option<Place>,
+) -> Result<(), Report> {
+    let wrong = |message: String, place: Place, label: &str, hint: &str| -> Result<(), Report> {
+        Err(Diagnostic::error(message).code(explain::ROW).at(place, label).hint(hint).into())
+    };
+    if let Some(place) = each_at.filter(|_| !is_bodiless) {
+        let message = format!("the exits of `{}` have no cost for each unit, because it has a body", row.name);
+        let hint =
+            "only a meaning in Rust without a body beside it reports units; a body costs `body` or fixed numbers";
+        return wrong(message, place, "here", hint);
+    }
+    match row.exits.iter().position(|exit| exit.is_body) {
+        Some(exit) if is_rust => {
+            let message = format!("`{}` has its meaning in Rust, so its exits say what they cost", row.name);
+            let hint = "nobody counts what a meaning in Rust spends: write numbers, such as `add 3`";
+            wrong(message, exits[exit].clone(), "`body` is the sum of steps that are not executed", hint)
+        }
+        _ => Ok(()),
+    }
+}
+
 /// `.extension NAME`
 fn name(source: &Arc<Source>, place: &Place, is_late: bool) -> Result<String, Box<Diagnostic>> {
     let text = &source.text[place.span.clone()];
@@ -205,7 +258,7 @@ fn name(source: &Arc<Source>, place: &Place, is_late: bool) -> Result<String, Bo
 
 /// Adds a row without its body.
 fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension: &str) -> Result<Loaded, Report> {
-    let Drawn { mut row, name_at, picture_at, exits_at, start, end } = drawn;
+    let Drawn { mut row, name_at, picture_at, exits_at, start, end, .. } = drawn;
     row.room = extension.to_owned().into();
     row.doc = doc.into();
     let place = Place::new(source, start..end);
@@ -231,7 +284,8 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
         Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, picture_at).into()),
     };
     let exits = exits_at.into_iter().map(|span| Place::new(source, span)).collect();
-    Ok(Loaded { op, extension: extension.to_owned(), summary: Summary::default(), row: place, exits })
+    let (summary, is_rust) = (Summary::default(), false);
+    Ok(Loaded { op, extension: extension.to_owned(), summary, row: place, exits, is_rust })
 }
 
 /// The message when another instruction has the name or a word of a row.

@@ -32,6 +32,8 @@ pub struct Loaded {
     pub row: Place,
     /// Where its exits stand in the file.
     pub exits: Vec<Place>,
+    /// Whether the file says that its meaning is in Rust; it may have a body beside that.
+    pub is_rust: bool,
 }
 
 /// Most instructions of all extensions of a run.

@@ -18,6 +18,8 @@ pub(super) struct Drawn {
     pub name_at: Range<usize>,
     pub picture_at: Range<usize>,
     pub exits_at: Vec<Range<usize>>,
+    /// Where a cost for each unit stands, if one does.
+    pub each_at: Option<Range<usize>>,
     pub start: usize,
     pub end: usize,
 }
@@ -112,7 +114,8 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
     }
     let operands = operands(&mut scanner)?;
     let (picture, drawn, picture_at) = picture(&mut scanner, &operands)?;
-    let (exits, exits_at) = exits(&mut scanner)?;
+    let mut each_at = None;
+    let (exits, exits_at) = exits(&mut scanner, &mut each_at)?;
     let only: Vec<Operand> = operands.iter().map(|(operand, _)| *operand).collect();
     if let Err(wrong) = Row::check(&only, &picture, exits.len()) {
         return Err(misfit(&scanner, wrong, &operands, &picture, picture_at));
@@ -126,7 +129,7 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
         drawn: drawn.to_owned().into(),
         exits: exits.into(),
     };
-    Ok(Drawn { row, name_at, picture_at, exits_at, start, end: scanner.at })
+    Ok(Drawn { row, name_at, picture_at, exits_at, each_at, start, end: scanner.at })
 }
 
 fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
@@ -275,7 +278,7 @@ fn misfit(
     }
 }
 
-fn exits(scanner: &mut Scanner) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
+fn exits(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
     scanner.expect("[")?;
     let (mut exits, mut places): (Vec<Exit>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     loop {
@@ -285,7 +288,7 @@ fn exits(scanner: &mut Scanner) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
             return Err(Box::new(scanner.wrong(message, name_at, "second one").hint("the name tells exits apart")));
         }
         scanner.expect("(")?;
-        let exit = cost(scanner, name)?;
+        let exit = cost(scanner, name, each_at)?;
         if let Some(first) = exits.first()
             && first.is_body != exit.is_body
         {
@@ -308,23 +311,23 @@ fn exits(scanner: &mut Scanner) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
     }
 }
 
-/// What stands in the parentheses of an exit, the closing one included.
-fn cost(scanner: &mut Scanner, name: &str) -> Read<Exit> {
+/// What stands in the parentheses of an exit, the closing one included; `each_at` gets the place of a cost for each unit.
+fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> Read<Exit> {
     let mut exit = Exit { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };
     if scanner.accept(")") {
         return Ok(exit);
     }
     let mut named: Vec<Class> = Vec::new();
+    let mut is_each = false;
     loop {
-        if scanner.accept(";") {
+        if !is_each && scanner.accept(";") {
             let at = scanner.at - 1;
-            let hint = "the meaning of a built-in row reports units; a body costs what `body` or fixed numbers say";
-            return Err(Box::new(
-                scanner.wrong("an exit of an extension has no cost for each unit", at..at + 1, "here").hint(hint),
-            ));
+            *each_at = Some(at..at + 1);
+            (is_each, named) = (true, Vec::new());
+            scanner.expect("each")?;
         }
         let (class_text, class_at) = scanner.word("a class of operations")?;
-        if class_text == "body" && named.is_empty() {
+        if class_text == "body" && named.is_empty() && !is_each {
             exit.is_body = true;
             scanner.expect(")")?;
             return Ok(exit);
@@ -345,11 +348,12 @@ fn cost(scanner: &mut Scanner, name: &str) -> Read<Exit> {
             return Err(Box::new(scanner.wrong(message, class_at, "second one")));
         }
         named.push(class);
-        (exit.cost[class], _) = scanner.number()?;
+        let counts = if is_each { &mut exit.each } else { &mut exit.cost };
+        (counts[class], _) = scanner.number()?;
         if scanner.accept(")") {
             return Ok(exit);
         }
-        if !scanner.rest().trim_start().starts_with(';') {
+        if is_each || !scanner.rest().trim_start().starts_with(';') {
             scanner.expect(",")?;
         }
     }

@@ -5,12 +5,16 @@ use std::cell::Cell;
 
 use isa::number::{Arithmetic, Flags, Modes, Nearest32, square_root};
 
+use crate::meaning::Numbers;
 use crate::tally::Losses;
 
 /// Arithmetic that an engine can run on: it says whether the last instruction is to trap for a division by zero.
 pub trait Watch: Arithmetic {
     /// Whether the engine has to ask at all.
     const IS_WATCHING: bool = false;
+
+    /// The same for meanings in Rust, which do not know its type.
+    fn numbers(&self) -> Numbers<'_>;
 
     /// Whether something was divided by zero since the last call, where that is to trap.
     fn take_division_by_zero(&self) -> bool {
@@ -23,7 +27,11 @@ pub trait Watch: Arithmetic {
     }
 }
 
-impl Watch for Nearest32 {}
+impl Watch for Nearest32 {
+    fn numbers(&self) -> Numbers<'_> {
+        Numbers::Nearest32
+    }
+}
 
 /// Modes chosen at run time; the results are those of the modes.
 #[derive(Clone, Debug)]
@@ -96,6 +104,10 @@ impl Arithmetic for Watching {
 
 impl Watch for Watching {
     const IS_WATCHING: bool = true;
+
+    fn numbers(&self) -> Numbers<'_> {
+        Numbers::Other(self)
+    }
 
     fn take_division_by_zero(&self) -> bool {
         self.has_divided_by_zero.take()

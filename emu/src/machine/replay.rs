@@ -58,6 +58,9 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
 /// What every work item does before its message comes.
 pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) -> Result<Prefix, Reason> {
     let code = Code::new(setup.core, setup.isa, setup.config.timing());
+    if code.keeps_state() {
+        return Err("an instruction keeps its state from one work item to the next");
+    }
     Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), Keeping::Segments).prefix()
 }
 

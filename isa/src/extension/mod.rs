@@ -4,6 +4,7 @@
 mod body;
 mod flow;
 
+use std::any::Any;
 use std::sync::Arc;
 
 pub use body::{Act, Body, Immediate, Step};
@@ -11,13 +12,18 @@ pub use flow::{Defect, Summary};
 
 use crate::row::Row;
 
+/// What an engine keeps with an instruction: a meaning in its own terms, of which nothing is known here.
+pub type Meaning = Arc<dyn Any + Send + Sync>;
+
 /// An instruction of an extension.
 #[derive(Clone, Debug)]
 pub struct Extension {
     /// Its row.
     pub row: Row,
-    /// What it does; without one, a word of it can be written and shown but not executed.
+    /// What it does, in assembly. Without that and without a meaning, a word of it can be written and shown but not executed.
     pub body: Option<Arc<Body>>,
+    /// What it does, as an engine has it: executed in the place of the body.
+    pub meaning: Option<Meaning>,
     /// Whether the steps of the body count as instructions, as if they stood in the program.
     pub is_expanded: bool,
 }

@@ -23,7 +23,8 @@ Exit codes: 0 the files can be loaded (there may be warnings), 1 they cannot.";
 ///
 /// Errors: rows that cannot be read, names and words that are taken, bodies that write what they do not own, read what nothing has
 /// written, leave a destination unwritten, never end or contain themselves. Warnings: operands without use, exits and lines that are
-/// never reached, loops, traps, costs below what the body spends.
+/// never reached, loops, traps, destinations that are written before a source that may be the same register is read, costs below what the body
+/// spends.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct CheckArguments {
@@ -47,12 +48,22 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
             count(number, "warning", "warnings")
         );
         for loaded in &loaded {
+            text += &format!("  {}\n", isa.row(loaded.op).line());
+            if loaded.is_rust {
+                text += "    meaning in Rust: a program of yours attaches and runs it\n";
+            }
+            if isa.body(loaded.op).is_none() {
+                continue;
+            }
             let steps = isa.body(loaded.op).map_or(0, |body| {
                 body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Row { .. })).count() as u64
             });
-            text += &format!("  {}\n", isa.row(loaded.op).line());
-            text +=
-                &format!("    {}, together {}\n", count(steps, "instruction", "instructions"), spent(&isa, loaded.op));
+            let beside = if loaded.is_rust { "beside it a body: " } else { "" };
+            text += &format!(
+                "    {beside}{}, together {}\n",
+                count(steps, "instruction", "instructions"),
+                spent(&isa, loaded.op)
+            );
         }
         terminal.print(&text)?;
     }

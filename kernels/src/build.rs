@@ -136,6 +136,11 @@ pub fn build(scene: &Scene, view: &View, image: &Image, isa: &Isa, options: &Opt
     Ok(Build { cores, main, crop, warnings })
 }
 
+/// Whether a file says, in a line `; team: ray`, that it keeps to what the files of that profile agree on between them.
+fn keeps_to_team(source: &Source, profile: Profile) -> bool {
+    source.text.lines().any(|line| line.strip_prefix("; team: ") == Some(profile.name()))
+}
+
 fn assemble(
     image: &Image,
     features: &Features,
@@ -144,7 +149,8 @@ fn assemble(
     options: &Options,
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
-    let replaced: Vec<Function> = options.replaced.iter().map(|&(function, _)| function).collect();
+    let strangers = options.replaced.iter().filter(|(_, source)| !keeps_to_team(source, options.profile));
+    let replaced: Vec<Function> = strangers.map(|&(function, _)| function).collect();
     let walk = options.profile.walk(&replaced);
     let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, walk, is_main))];
     files.extend(prelude::included(image.layout));

@@ -56,6 +56,11 @@ const SCHEMAS: &[Known] = &[
     Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
     Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<Comparison> },
+    Known {
+        name: extension::SUGGESTION_SCHEMA,
+        command: "lancer extension suggest --json",
+        make: schema_of::<extension::SuggestionResult>,
+    },
     Known { name: bench::SCHEMA, command: "lancer bench --json", make: schema_of::<Benches> },
     Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
 ];

@@ -10,7 +10,7 @@ use crate::drawing::{self, Comparison as Measure, Drawing};
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::result::{ByClass, Render};
-use crate::table::{grouped, row, table};
+use crate::table::{count, grouped, row, table};
 
 /// Version of [`Comparison`].
 pub const SCHEMA: &str = "lancer-extension-1";
@@ -170,7 +170,7 @@ impl Comparison {
             add(class.name(), &|variant| variant.counts.0[class]);
         }
         add("octets on the bus", &|variant| variant.octets);
-        add(&format!("clocks on {} cores", self.cores), &|variant| variant.clocks);
+        add(&format!("clocks on {}", count(self.cores.into(), "core", "cores")), &|variant| variant.clocks);
         add("code in words", &|variant| variant.words);
         let psnr = |variant: &Variant| match variant.error.and_then(|error| error.psnr_db) {
             Some(psnr) => format!("{psnr:.2}"),

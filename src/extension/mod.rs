@@ -6,4 +6,4 @@ mod suggestion;
 
 pub use comparison::{Comparison, SCHEMA, Variant, compare};
 pub use findings::findings;
-pub use suggestion::{Suggestion, Suggestions, suggest};
+pub use suggestion::{SUGGESTION_SCHEMA, Suggestion, SuggestionResult, Suggestions, suggest};

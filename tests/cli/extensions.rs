@@ -105,6 +105,30 @@ fn a_bad_file_is_refused_by_every_command_that_takes_one() {
 }
 
 #[test]
+fn an_instruction_with_a_meaning_in_rust_is_checked_but_not_run() {
+    let session = Session::new();
+    let file = ".extension r\n;; Noise.\n.instr noise (d: S) \"custom0 ddddd ---------------------\" [Done(logic 1)]\n    .meaning rust\n.end\n";
+    session.write("r.isa", file);
+    session.write("a.s", "    noise s1\n    halt\n");
+    let checked = session.succeed("extension check r.isa");
+    assert!(checked.contains("meaning in Rust") && checked.contains("0 warnings"), "{checked}");
+    assert!(session.succeed("assemble a.s --ext r.isa --list").contains("noise s1"));
+    let run = session.run("run a.s --ext r.isa");
+    assert_eq!(run.code, 3);
+    assert!(run.messages.contains("no meaning in Rust is attached"), "{}", run.messages);
+    assert!(run.messages.contains("docs/extensions.md"), "{}", run.messages);
+}
+
+/// Draws with the kernels and the instructions that `suggest` wrote with a prefix.
+fn drawn_with(session: &Session, prefix: &str, options: &str) -> serde_json::Value {
+    let names = session.names();
+    let start = format!("{prefix}-");
+    let kernels = names.iter().filter_map(|name| name.strip_prefix(&start)?.strip_suffix(".s"));
+    let kernels: Vec<String> = kernels.map(|name| format!("--kernel {name}={prefix}-{name}.s")).collect();
+    session.json(&format!("render cornell {options} --ext {prefix}.isa {}", kernels.join(" ")))
+}
+
+#[test]
 fn suggestions_save_what_they_say_and_draw_the_same_picture() {
     let session = Session::new();
     let options = "--size 16x12 --shift 0.137,0.071";
@@ -112,11 +136,8 @@ fn suggestions_save_what_they_say_and_draw_the_same_picture() {
     assert!(text.contains("The pictures are identical"), "{text}");
     assert!(text.lines().filter(|line| line.starts_with(" fast")).count() >= 3, "{text}");
     assert_eq!(session.run("extension check fast.isa").code, 0);
-    let names = session.names();
-    let kernels = names.iter().filter_map(|name| name.strip_prefix("fast-")?.strip_suffix(".s"));
-    let kernels: Vec<String> = kernels.map(|name| format!("--kernel {name}=fast-{name}.s")).collect();
     let plain = session.json(&format!("render cornell {options}"));
-    let fused = session.json(&format!("render cornell {options} --ext fast.isa {}", kernels.join(" ")));
+    let fused = drawn_with(&session, "fast", options);
     assert_eq!(fused["image_hash"], plain["image_hash"]);
     assert_eq!((&fused["counts"], &fused["clocks"]), (&plain["counts"], &plain["clocks"]));
     let instructions = |result: &serde_json::Value| result["instructions"].as_u64().unwrap();
@@ -124,8 +145,53 @@ fn suggestions_save_what_they_say_and_draw_the_same_picture() {
     assert!(after * 100 <= before * 85, "{after} of {before}");
     let saved = format!("together {} of", grouped(before - after));
     assert!(text.contains(&saved), "{saved}\n{text}");
-    session.fail("extension suggest cornell --size 4x3 --profile ray", 2, "made for each other");
     session.fail("extension suggest cornell --size 4x3 -o Fast", 2, "small letters");
+}
+
+#[test]
+fn suggestions_for_each_profile_save_what_the_docs_say() {
+    let session = Session::new();
+    let docs = document("docs/extensions.md");
+    let row = |name: &str| -> Vec<String> {
+        let line = docs.lines().find(|line| line.starts_with(name)).expect("the docs have the table");
+        line.trim_matches('|').split('|').skip(1).map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
+    };
+    for (profile, percent) in row("| profile |").iter().zip(row("| saved |")) {
+        let options = format!("--size 16x12 --shift 0.137,0.071 --profile {profile}");
+        let result = session.json(&format!("extension suggest cornell {options} -o {profile}"));
+        let suggestions = result["suggestions"].as_array().unwrap();
+        let sum = |key: &str| suggestions.iter().map(|found| found[key].as_u64().unwrap()).sum::<u64>();
+        let comparison = &result["comparison"];
+        let instructions = |variant: &str| comparison[variant]["instructions"].as_u64().unwrap();
+        assert_eq!(instructions("without"), result["instructions"]);
+        assert_eq!(instructions("without") - instructions("with"), sum("saved"), "{profile}");
+        let share = 100.0 * sum("saved") as f64 / instructions("without") as f64;
+        assert_eq!(format!("{share:.1} %"), percent, "{profile}");
+        assert!(suggestions.len() >= 3, "{profile}");
+        for key in ["image_hash", "counts", "clocks"] {
+            assert_eq!(comparison["with"][key], comparison["without"][key], "{profile} {key}");
+        }
+        assert_eq!(comparison["expanded"]["instructions"], comparison["without"]["instructions"], "{profile}");
+        let drawn = drawn_with(&session, profile, &options);
+        assert_eq!(drawn["run_hash"], comparison["with"]["run_hash"], "{profile}");
+    }
+}
+
+#[test]
+fn sequences_need_not_stand_side_by_side() {
+    let session = Session::new();
+    let result = session.json("extension suggest cornell --size 16x12 --shift 0.137,0.071 --most 24 -o wide");
+    let suggestions = result["suggestions"].as_array().unwrap();
+    assert!(suggestions.iter().any(|found| found["apart"].as_u64().unwrap() != 0), "{suggestions:?}");
+    let comparison = &result["comparison"];
+    for key in ["image_hash", "counts", "clocks"] {
+        assert_eq!(comparison["with"][key], comparison["without"][key], "{key}");
+    }
+    // More instructions save more, and none of them costs a word.
+    let saved: Vec<u64> = suggestions.iter().map(|found| found["saved"].as_u64().unwrap()).collect();
+    assert!(saved.is_sorted_by(|a, b| a >= b), "{saved:?}");
+    let words = |variant: &str| comparison[variant]["words"].as_u64().unwrap();
+    assert!(words("with") < words("without"));
 }
 
 /// 1234567 as 1,234,567.

@@ -26,6 +26,8 @@ const RESULTS: &[(&str, &str)] = &[
     ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
     ("stress --case normalising", "lancer-stress-1"),
     ("extension compare half.isa --scene triangle --size 4x3", "lancer-extension-1"),
+    ("extension suggest cornell --size 4x3", "lancer-suggestion-1"),
+    ("extension suggest empty --size 4x3", "lancer-suggestion-1"),
     ("bench triangle --size 4x3 --runs 1", "lancer-bench-1"),
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];

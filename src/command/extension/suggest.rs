@@ -6,14 +6,14 @@ use asm::extension;
 use clap::Args;
 use isa::diagnostic::{Diagnostic, Source};
 use isa::table::Op;
-use kernels::Profile;
 
 use crate::command::render;
 use crate::drawing::Comparison;
-use crate::extension::{Suggestions, compare, suggest};
+use crate::extension::{SuggestionResult, Suggestions, compare, suggest};
 use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::job::{Job, JobArguments};
+use crate::result;
 use crate::table::{grouped, percent, row, table};
 use crate::terminal::Terminal;
 
@@ -26,7 +26,7 @@ Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 4 a pict
 
 /// Finds the sequences of instructions that would pay most as one instruction, and tries them.
 ///
-/// A sequence stands in one basic block. Its operands are the registers that it reads from before and that are read after it; constants
+/// The instructions of a sequence stand in one basic block and belong together by their results; others may stand between them. Its operands are the registers that it reads from before and that are read after it; constants
 /// become part of it. Written are PREFIX.isa with an instruction for each and PREFIX-FUNCTION.s, the function's code for this scene with
 /// the instructions in their place; then the scene is drawn without and with them.
 #[derive(Args, Clone, Debug)]
@@ -37,6 +37,9 @@ pub struct SuggestArguments {
     /// Most instructions.
     #[arg(long, value_name = "N", default_value = "8", value_parser = clap::value_parser!(u64).range(1..=64), help_heading = "Results")]
     most: u64,
+    /// Prints the result as JSON.
+    #[arg(long, help_heading = "Results")]
+    json: bool,
     /// What the names of the files begin with.
     #[arg(short, long, value_name = "PREFIX", default_value = "fused", help_heading = "Results")]
     output: PathBuf,
@@ -46,10 +49,6 @@ pub struct SuggestArguments {
 pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut plain = Job::from_arguments(&arguments.job)?;
     terminal.show(&plain.warnings);
-    if plain.kernels.profile == Profile::Ray {
-        let message = "the files of the profile `ray` are made for each other and cannot be replaced one by one";
-        return Err(Failure::usage(Diagnostic::error(message).hint("choose `--profile vector` or `--profile report`")));
-    }
     let file = arguments.output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     asm::check_outside_name(&file, &plain.isa).map_err(|why| Failure::usage(Diagnostic::error(why)))?;
     if file.chars().any(|c| c.is_ascii_uppercase()) {
@@ -61,7 +60,10 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     let drawing = render::draw(&plain, Comparison::None, terminal)?;
     let suggestions = suggest(&plain, &drawing, &file, arguments.most as usize);
     if suggestions.found.is_empty() {
-        terminal.print("no sequence of instructions would save anything\n")?;
+        terminal.print(&match arguments.json {
+            true => result::json(&SuggestionResult::new(&plain, &suggestions, Vec::new(), None)),
+            false => "no sequence of instructions would save anything\n".to_owned(),
+        })?;
         return Ok(Exit::Done);
     }
     let mut written: Vec<(PathBuf, &str)> = vec![(path(".isa"), &suggestions.extension)];
@@ -69,7 +71,6 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
         suggestions.kernels.iter().map(|(function, text)| (path(&format!("-{}.s", function.name())), text.as_str())),
     );
     files::write_all(&written)?;
-    terminal.print(&text(&suggestions))?;
     let mut extended = plain.clone();
     let source = Source::new(path(".isa").display().to_string(), suggestions.extension.as_str());
     let loaded = extension::load(&mut extended.isa, &source, &|_, _| Err("nothing is included".into()))?;
@@ -80,36 +81,47 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     }
     plain.warnings.0.clear();
     let comparison = compare(source.name.clone(), &ops, &plain, &extended, &mut || {})?;
-    terminal.print(&format!("\n{}", comparison.text()))?;
+    let exit = if comparison.is_identical { Exit::Done } else { Exit::Tolerance };
     let names: Vec<String> = written.iter().map(|(path, _)| path.display().to_string()).collect();
-    terminal.print(&format!("written: {}\n", names.join(", ")))?;
-    Ok(if comparison.is_identical { Exit::Done } else { Exit::Tolerance })
+    terminal.print(&match arguments.json {
+        true => result::json(&SuggestionResult::new(&plain, &suggestions, names, Some(comparison))),
+        false => format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(), names.join(", ")),
+    })?;
+    Ok(exit)
 }
 
 /// The sequences, the one that saves most first.
 fn text(suggestions: &Suggestions) -> String {
-    let mut rows =
-        vec![row(["instruction", "for", "operands", "places", "executed", "saves", "clocks", "chain", "at most"])];
+    let mut rows = vec![row([
+        "instruction",
+        "for",
+        "operands",
+        "places",
+        "apart",
+        "executed",
+        "saves",
+        "clocks",
+        "chain",
+        "at most",
+    ])];
     for found in &suggestions.found {
-        // What an instruction of its chain's length would leave of the time of all cores.
-        let saved = found.executions * (found.serial - found.critical);
-        let most = suggestions.clocks as f64 / (suggestions.clocks.saturating_sub(saved)).max(1) as f64;
         let operands = found.row.split(['(', ')']).nth(1).unwrap_or_default().split(", ").count();
         rows.push(vec![
             found.name.clone(),
             found.functions.join(" "),
             operands.to_string(),
             found.places.to_string(),
+            found.apart.to_string(),
             grouped(found.executions),
             percent(found.saved(), suggestions.instructions),
             found.serial.to_string(),
             found.critical.to_string(),
-            format!("{most:.3} x"),
+            format!("{:.3} x", suggestions.speedup(found)),
         ]);
     }
     let saved: u64 = suggestions.found.iter().map(|found| found.saved()).sum();
     format!(
-        "{}saves: share of all instructions; clocks: one after the other, and along the longest chain of results;\nat most: how much \
+        "{}apart: places where other instructions stood between those of the sequence; saves: share of all instructions; clocks: one after the other, and along the longest chain of results;\nat most: how much \
          faster the cores compute when the instruction takes as long as its chain (Amdahl)\ntogether {} of {} instructions, {}\n",
         table(rows),
         grouped(saved),

@@ -1,9 +1,10 @@
-//! A stretch of a basic block as one instruction: its operands, its body, and how long it takes at least.
+//! Some instructions of a basic block as one instruction: its operands, its body, and how long it takes at least.
 
 use emu::timing::Timing;
+use isa::row::Operand;
 use isa::{Instruction, Isa, Kind};
 
-use super::flow::{Flow, Registers, bits, registers};
+use super::flow::{Registers, bits, registers};
 
 /// Most bits that the operands of an instruction take.
 pub const MOST_BITS: u32 = 26;
@@ -45,12 +46,15 @@ fn kind_of(file: char, count: u8) -> Option<Kind> {
 }
 
 impl Pattern {
-    /// The instruction for `length` words from `start` on, with the registers that it takes there; `None` where no row can say it.
-    pub fn new(flow: &Flow, isa: &Isa, start: usize, length: usize, timing: &Timing) -> Option<(Pattern, Vec<u8>)> {
-        let instructions: Option<Vec<Instruction>> = flow.instructions[start..start + length].iter().copied().collect();
-        let instructions = instructions?;
-        let units = units(&instructions, isa)?;
-        let live = flow.live[start + length - 1];
+    /// The instruction for some others, and the registers that it takes there; `live` are those that may be read after it. `None` where no row
+    /// can say it.
+    pub fn new(
+        instructions: &[Instruction],
+        live: Registers,
+        isa: &Isa,
+        timing: &Timing,
+    ) -> Option<(Pattern, Vec<u8>)> {
+        let units = units(instructions, isa)?;
         let (mut operands, mut fields, mut names) = (Vec::new(), Vec::new(), Vec::new());
         let mut letters = [vec!['e', 'd'], vec!['y', 'x'], vec!['c', 'b', 'a']];
         let mut temporaries = [0u8; 3];
@@ -88,8 +92,26 @@ impl Pattern {
             unit.map_or_else(|| "s0".to_owned(), |at| names[at].clone())
         };
         let lines = instructions.iter().map(|instruction| line(instruction, isa, &name)).collect();
-        let (serial, critical) = latency(&instructions, isa, timing);
+        let (serial, critical) = latency(instructions, isa, timing);
         Some((Pattern { operands, lines, serial, critical }, fields))
+    }
+
+    /// The line that executes it on these registers.
+    pub fn call(&self, name: &str, fields: &[u8]) -> String {
+        let registers = self.operands.iter().zip(fields);
+        let registers: Vec<String> = registers.map(|((_, kind), number)| isa::register_name(*kind, *number)).collect();
+        format!("{name} {}", registers.join(", "))
+    }
+
+    /// The registers that it reads and those that it writes there.
+    pub fn registers(&self, fields: &[u8]) -> (Registers, Registers) {
+        let (mut reads, mut writes) = (0, 0);
+        for (&(letter, kind), &number) in self.operands.iter().zip(fields) {
+            let operand = Operand { letter: letter as u8, kind };
+            reads |= if operand.is_read() { bits(kind, number) } else { 0 };
+            writes |= if operand.is_written() { bits(kind, number) } else { 0 };
+        }
+        (reads, writes)
     }
 
     /// Bits of the operands.

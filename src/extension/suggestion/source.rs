@@ -1,11 +1,11 @@
-//! A function of an assembled program as assembly text again, with some of its stretches replaced.
+//! A function of an assembled program as assembly text again, from its blocks.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::ops::Range;
 
 use isa::{Isa, Program};
 
+use super::block::Block;
 use super::flow::Flow;
 use super::pattern::line;
 
@@ -35,15 +35,8 @@ fn chain(program: &Program, pc: usize) -> Vec<u16> {
     found
 }
 
-/// The text of a function. `replaced` has, by the word where a stretch begins, its length and the line in its place. `None` where the
-/// function and others lead into each other otherwise than by calls.
-pub fn text(
-    program: &Program,
-    flow: &Flow,
-    isa: &Isa,
-    name: &str,
-    replaced: &BTreeMap<usize, (usize, String)>,
-) -> Option<String> {
+/// The text of a function from its blocks. `None` where the function and others lead into each other otherwise than by calls.
+pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Block]) -> Option<String> {
     let (function, range) = range(program, name)?;
     let leads_in = |pc: usize| flow.targets[pc].is_some_and(|to| to != range.start && range.contains(&to));
     if (0..program.words.len()).any(|pc| !range.contains(&pc) && leads_in(pc)) {
@@ -65,9 +58,8 @@ pub fn text(
     }
     let _ = writeln!(text, ".func {name}");
     let mut open: Vec<u16> = vec![function];
-    let mut pc = range.start;
-    while pc < range.end {
-        let around = chain(program, pc);
+    for block in blocks {
+        let around = chain(program, block.range.start);
         let around = &around[around.iter().position(|&region| region == function)?..];
         let kept = open.iter().zip(around).take_while(|(a, b)| a == b).count();
         while open.len() > kept {
@@ -78,28 +70,34 @@ pub fn text(
             open.push(region);
             let _ = writeln!(text, ".region {}", program.regions[usize::from(region)].name);
         }
-        if pc != range.start && flow.targets[range.clone()].contains(&Some(pc)) {
-            let _ = writeln!(text, "{}:", label(pc)?);
+        let start = block.range.start;
+        if start != range.start && flow.targets[range.clone()].contains(&Some(start)) {
+            let _ = writeln!(text, "{}:", label(start)?);
         }
-        if let Some((length, made)) = replaced.get(&pc) {
+        for item in &block.items {
+            let made = match (&item.made, &item.words[..]) {
+                (Some(made), _) => made.clone(),
+                (None, &[pc]) => single(flow, isa, pc, &label)?,
+                (None, _) => return None,
+            };
             let _ = writeln!(text, "    {made}");
-            pc += length;
-            continue;
         }
-        let instruction = flow.instructions[pc].as_ref()?;
-        let made = match flow.targets[pc] {
-            Some(to) => {
-                let to = label(to)?;
-                instruction.text(isa, |_| to.clone())
-            }
-            None => line(instruction, isa, &|file, number| format!("{file}{number}")),
-        };
-        let _ = writeln!(text, "    {made}");
-        pc += 1;
     }
     for _ in 1..open.len() {
         text.push_str(".endregion\n");
     }
     text.push_str(".endfunc\n");
     Some(text)
+}
+
+/// The line of one word.
+fn single(flow: &Flow, isa: &Isa, pc: usize, label: &dyn Fn(usize) -> Option<String>) -> Option<String> {
+    let instruction = flow.instructions[pc].as_ref()?;
+    Some(match flow.targets[pc] {
+        Some(to) => {
+            let to = label(to)?;
+            instruction.text(isa, |_| to.clone())
+        }
+        None => line(instruction, isa, &|file, number| format!("{file}{number}")),
+    })
 }

@@ -1,0 +1,265 @@
+//! Basic blocks as lists whose order may change, as far as what the instructions read and write allows.
+
+use std::ops::Range;
+
+use emu::timing::Timing;
+use isa::{Instruction, Isa, Program};
+
+use super::flow::{Flow, Registers, registers};
+use super::pattern::{Pattern, is_plain};
+use super::source;
+
+/// Longest sequence.
+const LONGEST: usize = 12;
+
+/// Most instructions among which the parts of a sequence lie.
+const WIDEST: usize = 20;
+
+/// What an instruction does with the local buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Access {
+    None,
+    Reads,
+    Writes,
+}
+
+/// One instruction of a block.
+#[derive(Clone, Debug)]
+pub struct Item {
+    /// The words that it stands for.
+    pub words: Vec<usize>,
+    /// The line in their place, when it was made of them.
+    pub made: Option<String>,
+    reads: Registers,
+    writes: Registers,
+    buffer: Access,
+    /// Whether nothing may change places with it.
+    is_fence: bool,
+    /// Whether it may become part of another one.
+    is_plain: bool,
+}
+
+impl Item {
+    fn new(pc: usize, instruction: Option<&Instruction>, isa: &Isa) -> Item {
+        let words = vec![pc];
+        let Some(instruction) = instruction else {
+            let all = Registers::MAX;
+            return Item {
+                words,
+                made: None,
+                reads: all,
+                writes: all,
+                buffer: Access::Writes,
+                is_fence: true,
+                is_plain: false,
+            };
+        };
+        let (row, is_plain) = (isa.row(instruction.op), is_plain(instruction, isa));
+        // Loads have a result, stores have none but the address.
+        let buffer = match (&*row.room, row.operand(b'd')) {
+            ("local", Some(_)) => Access::Reads,
+            ("local", None) => Access::Writes,
+            _ => Access::None,
+        };
+        let [reads, writes] = [false, true].map(|is_written| registers(instruction, isa, is_written));
+        Item { words, made: None, reads, writes, buffer, is_fence: !is_plain, is_plain }
+    }
+
+    /// Whether two instructions must keep their order.
+    fn conflicts(&self, other: &Item) -> bool {
+        self.is_fence
+            || other.is_fence
+            || self.writes & (other.reads | other.writes) != 0
+            || self.reads & other.writes != 0
+            || self.buffer.max(other.buffer) == Access::Writes && self.buffer.min(other.buffer) != Access::None
+    }
+
+    /// The registers that may be read before it, from those after it.
+    fn live_before(&self, live: Registers) -> Registers {
+        live & !self.writes | self.reads
+    }
+}
+
+/// A sequence that could be one instruction.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// The same for sequences that the same instruction can take the place of.
+    pub key: String,
+    /// The instruction.
+    pub pattern: Pattern,
+    /// The registers of its operands.
+    pub fields: Vec<u8>,
+    /// From the first of its items to the last one.
+    pub window: Range<usize>,
+    /// Whether other items stand between its own.
+    pub is_apart: bool,
+    picks: Vec<usize>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+}
+
+/// A basic block, or the part of one that belongs to one region.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Its words.
+    pub range: Range<usize>,
+    /// The function that it belongs to.
+    pub function: &'static str,
+    /// How often it was executed.
+    pub count: u64,
+    /// Its instructions.
+    pub items: Vec<Item>,
+    /// Sequences in it; `None` when they have to be looked for again.
+    pub candidates: Option<Vec<Candidate>>,
+    /// Registers that may be read behind it.
+    live: Registers,
+}
+
+/// The blocks of a function, in their order; none where it is not in one piece.
+pub fn blocks(program: &Program, flow: &Flow, isa: &Isa, function: &'static str, counts: &[u64]) -> Vec<Block> {
+    let Some((_, range)) = source::range(program, function) else { return Vec::new() };
+    let mut blocks: Vec<Block> = Vec::new();
+    for pc in range {
+        let item = Item::new(pc, flow.instructions[pc].as_ref(), isa);
+        let begins = flow.is_leader[pc] || pc != 0 && program.region_of[pc] != program.region_of[pc - 1];
+        match blocks.last_mut().filter(|_| !begins) {
+            Some(block) => {
+                block.range.end = pc + 1;
+                block.live = flow.live[pc];
+                block.items.push(item);
+            }
+            None => blocks.push(Block {
+                range: pc..pc + 1,
+                function,
+                count: counts.get(pc).copied().unwrap_or(0),
+                items: vec![item],
+                candidates: None,
+                live: flow.live[pc],
+            }),
+        }
+    }
+    blocks
+}
+
+impl Block {
+    /// Looks for sequences, unless that was done and nothing has changed since.
+    pub fn search(&mut self, flow: &Flow, isa: &Isa, timing: &Timing) -> &[Candidate] {
+        if self.candidates.is_none() {
+            let mut found = Vec::new();
+            if self.count != 0 {
+                let ends = |first: usize| first + 1..self.items.len().min(first + WIDEST);
+                for (first, last) in (0..self.items.len()).flat_map(|first| ends(first).map(move |last| (first, last)))
+                {
+                    found.extend(
+                        self.choices(first, last)
+                            .into_iter()
+                            .filter_map(|picks| self.candidate(picks, flow, isa, timing)),
+                    );
+                }
+            }
+            self.candidates = Some(found);
+        }
+        self.candidates.as_deref().unwrap_or_default()
+    }
+
+    /// Items between two, both included, that could be one instruction: all of them, those that the last one needs, those that share
+    /// results with it.
+    fn choices(&self, first: usize, last: usize) -> Vec<Vec<usize>> {
+        let items = &self.items;
+        if !items[first].is_plain || !items[last].is_plain {
+            return Vec::new();
+        }
+        let mut choices: Vec<Vec<usize>> = Vec::new();
+        if items[first..=last].iter().all(|item| item.is_plain) {
+            choices.push((first..=last).collect());
+        }
+        let mut needed = vec![last];
+        let mut related = vec![last];
+        // The instructions before that wrote what this one reads.
+        let sources = |of: usize| {
+            let mut rest = items[of].reads;
+            let writers = (first..of).rev().filter(move |&at| {
+                let is_source = items[at].writes & rest != 0;
+                rest &= !items[at].writes;
+                is_source
+            });
+            writers.filter(|&at| items[at].is_plain)
+        };
+        let mut at = 0;
+        while at < needed.len() {
+            let new: Vec<usize> = sources(needed[at]).filter(|source| !needed.contains(source)).collect();
+            needed.extend(new);
+            at += 1;
+        }
+        let mut at = 0;
+        while at < related.len() {
+            let here = related[at];
+            let users =
+                (here + 1..=last).filter(|&user| items[user].is_plain && sources(user).any(|from| from == here));
+            let new: Vec<usize> = sources(here).chain(users).filter(|other| !related.contains(other)).collect();
+            related.extend(new);
+            at += 1;
+        }
+        for mut picks in [needed, related] {
+            picks.sort_unstable();
+            picks.dedup();
+            if picks[0] == first && !choices.contains(&picks) {
+                choices.push(picks);
+            }
+        }
+        choices.retain(|picks| (2..=LONGEST).contains(&picks.len()));
+        choices
+    }
+
+    /// What has to come before and after the instruction for some items, of those between; `None` where the order does not allow it.
+    fn arrange(&self, picks: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
+        let (mut before, mut after): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+        for at in picks[0]..=*picks.last()? {
+            let item = &self.items[at];
+            let follows = |others: &[usize]| others.iter().any(|&other| self.items[other].conflicts(item));
+            if picks.contains(&at) {
+                if follows(&after) {
+                    return None;
+                }
+                continue;
+            }
+            let earlier = &picks[..picks.partition_point(|&pick| pick < at)];
+            if follows(earlier) || follows(&after) { after.push(at) } else { before.push(at) }
+        }
+        Some((before, after))
+    }
+
+    fn candidate(&self, picks: Vec<usize>, flow: &Flow, isa: &Isa, timing: &Timing) -> Option<Candidate> {
+        let (before, after) = self.arrange(&picks)?;
+        let window = picks[0]..picks.last()? + 1;
+        let behind = self.items[window.end..].iter();
+        let live = behind.rev().fold(self.live, |live, item| item.live_before(live));
+        let live = after.iter().rev().fold(live, |live, &at| self.items[at].live_before(live));
+        let words = picks.iter().flat_map(|&at| &self.items[at].words);
+        let instructions: Option<Vec<Instruction>> = words.map(|&pc| flow.instructions[pc]).collect();
+        let (pattern, fields) = Pattern::new(&instructions?, live, isa, timing)?;
+        let key = format!("{:?} {:?}", pattern.operands, pattern.lines);
+        let is_apart = window.len() != picks.len();
+        Some(Candidate { key, pattern, fields, window, is_apart, picks, before, after })
+    }
+
+    /// Puts an instruction in the place of a sequence.
+    pub fn replace(&mut self, candidate: &Candidate, line: String) {
+        let Candidate { pattern, fields, window, picks, before, after, .. } = candidate;
+        let parts = || picks.iter().map(|&at| &self.items[at]);
+        let (reads, writes) = pattern.registers(fields);
+        let made = Item {
+            words: parts().flat_map(|item| item.words.clone()).collect(),
+            made: Some(line),
+            reads,
+            writes,
+            buffer: parts().map(|item| item.buffer).max().unwrap_or(Access::None),
+            is_fence: false,
+            is_plain: false,
+        };
+        let at = |places: &[usize]| -> Vec<Item> { places.iter().map(|&at| self.items[at].clone()).collect() };
+        let order: Vec<Item> = at(before).into_iter().chain([made]).chain(at(after)).collect();
+        self.items.splice(window.clone(), order);
+        self.candidates = None;
+    }
+}

@@ -274,6 +274,7 @@ fn main() {
                 run: Box::new(engine(Engine::Fast, false)),
                 times: Vec::new(),
             },
+            Contender { name: "lockstep".into(), run: Box::new(engine(Engine::Lockstep, true)), times: Vec::new() },
             Contender { name: "checked".into(), run: Box::new(engine(Engine::Checked, true)), times: Vec::new() },
         ];
         let mut sums = Vec::new();

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use emu::code::Code;
-use emu::machine::{self, Frame};
+use emu::machine::{self, Engine, Frame};
 use emu::profile::Profile;
 use isa::diagnostic::Report;
 use kernels::build::{Build, Crop};
@@ -57,6 +57,8 @@ pub struct Drawing {
     pub picture: Picture,
     /// The same part in double precision.
     pub reference: Option<Picture>,
+    /// What executed the cores' program.
+    pub engine: Engine,
     /// How far they are apart.
     pub error: Option<PictureError>,
     /// What results lost, where that was counted.
@@ -81,9 +83,10 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let crop = load.build.crop;
     let built = Instant::now();
     let has_profile = job.detail == Detail::Functions;
-    let options =
-        machine::Options { has_profile, has_items: true, has_losses: job.flags, ..machine::Options::default() };
+    let (has_losses, engine) = (job.flags, job.engine);
+    let options = machine::Options { has_profile, has_items: true, has_losses, engine, ..machine::Options::default() };
     let setup = load.setup(&job.machine, options);
+    let engine = setup.engine();
     let (frame, reference) = std::thread::scope(|scope| {
         let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
         let frame = timed(|| machine::run(&setup, load.memory.clone(), progress));
@@ -107,7 +110,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let build = load.build;
     let warnings = build.warnings.clone();
     let times = Times { build: built - start, run, reference: reference_time };
-    Ok(Drawing { image, build, frame, crop, words, picture, reference, error, flags, warnings, times })
+    Ok(Drawing { image, build, frame, crop, words, picture, reference, engine, error, flags, warnings, times })
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use emu::machine::Config;
+use emu::machine::{Config, Engine};
 use isa::Isa;
 use isa::diagnostic::{Diagnostic, Report};
 use kernels::build::{Crop, Options as KernelOptions};
@@ -23,7 +23,7 @@ const MOST_PIXELS: u64 = 1 << 24;
 /// What is asked of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
-    /// Totals of functions and regions, which take the interpreter.
+    /// Totals of functions and regions, which take time.
     Functions,
     /// Nothing more.
     Totals,
@@ -46,6 +46,8 @@ pub struct Job {
     pub machine_name: String,
     /// The machine.
     pub machine: Config,
+    /// What executes its programs.
+    pub engine: Engine,
     /// What is recorded.
     pub detail: Detail,
     /// Whether it is counted what results lose.
@@ -93,6 +95,7 @@ impl Job {
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
+            engine: Engine::default(),
             detail: Detail::Functions,
             flags: false,
             warnings: Report::default(),
@@ -124,6 +127,7 @@ impl Job {
         };
         check_size(job.view.size)?;
         (job.machine_name, job.machine) = machine::find(&arguments.machine.machine)?;
+        job.engine = arguments.machine.engine;
         job.adjust_machine(&arguments.machine, &arguments.numbers);
         job.memory = MemoryOptions {
             word: job.machine.arithmetic.word,

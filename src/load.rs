@@ -1,7 +1,7 @@
 //! What a machine is given to do, apart from the machine: programs, global memory and its kinds of data. A picture is
 //! one such load, the report's estimate of a picture another.
 
-use emu::machine::{Config, Options, Setup};
+use emu::machine::{Config, Engine, Options, Setup};
 use emu::octets::Memory;
 use isa::Isa;
 use isa::diagnostic::Report;
@@ -29,6 +29,8 @@ pub struct Load {
     pub memory: Memory,
     /// Names for ranges of it.
     pub kinds: Vec<(std::ops::Range<u32>, String)>,
+    /// What executes the programs.
+    pub engine: Engine,
 }
 
 /// What a kind of data is called where its octets are counted.
@@ -50,7 +52,7 @@ impl Load {
         let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
         let kinds = image.regions.iter().map(|(kind, range)| (range.clone(), traffic(*kind).to_owned())).collect();
         let memory = Memory::new(std::mem::take(&mut image.bytes));
-        Ok((Load { isa, build, memory, kinds }, image))
+        Ok((Load { isa, build, memory, kinds, engine: job.engine }, image))
     }
 
     /// The report's estimate of [`ANNEX_PIXELS`] pixels.
@@ -62,7 +64,8 @@ impl Load {
         let (cores, main) = load::programs(ANNEX_PIXELS, &isa)?;
         let crop = kernels::build::Crop { column: 0, row: 0, width: ANNEX_PIXELS, height: 1 };
         let build = Build { cores, main, crop, warnings: Report::default() };
-        Ok(Load { isa, build, memory: Memory::new(vec![0; load::MEMORY]), kinds: Vec::new() })
+        let memory = Memory::new(vec![0; load::MEMORY]);
+        Ok(Load { isa, build, memory, kinds: Vec::new(), engine: Engine::default() })
     }
 
     /// The load on a machine.

@@ -2,7 +2,6 @@
 //! are compared with. It knows nothing of other cores: where the machine is not ready it stops and can be resumed.
 
 use isa::Op;
-use isa::number::Vector;
 use isa::table::Ending;
 
 use crate::code::Code;
@@ -13,7 +12,7 @@ use crate::exec::{
 use crate::meaning::Units;
 use crate::octets::Buffer;
 use crate::profile::Observer;
-use crate::registers::Registers;
+use crate::registers::{Registers, read, write};
 use crate::tally::Tally;
 use crate::trap::{Fault, Stop};
 
@@ -86,65 +85,6 @@ pub enum Pause {
     Wait,
     /// The instruction at the program counter went wrong; nothing of it happened.
     Fault(Fault),
-}
-
-/// The value of an operand that a meaning reads.
-macro_rules! read {
-    ($registers:expr, $fields:expr, $letter:ident S) => {
-        $registers.scalar($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident A) => {
-        $registers.scalar($fields.$letter) as u32
-    };
-    ($registers:expr, $fields:expr, $letter:ident V) => {
-        $registers.vector($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident W) => {
-        $registers.wide($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident V2) => {
-        $registers.vectors::<2>($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident V3) => {
-        $registers.vectors::<3>($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident V5) => {
-        $registers.vectors::<5>($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident W3) => {
-        $registers.wides::<3>($fields.$letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident $immediate:ident) => {
-        $fields.$letter
-    };
-}
-
-/// Puts a value where a written operand says.
-macro_rules! write {
-    ($registers:expr, $fields:expr, $letter:ident S) => {{
-        let value: i32 = $letter;
-        $registers.set_scalar($fields.$letter, value)
-    }};
-    ($registers:expr, $fields:expr, $letter:ident V) => {{
-        let value: Vector = $letter;
-        $registers.set_vector($fields.$letter, value)
-    }};
-    ($registers:expr, $fields:expr, $letter:ident W) => {{
-        let value: i64 = $letter;
-        $registers.set_wide($fields.$letter, value)
-    }};
-    ($registers:expr, $fields:expr, $letter:ident V2) => {
-        $registers.set_vectors::<2>($fields.$letter, $letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident V3) => {
-        $registers.set_vectors::<3>($fields.$letter, $letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident V5) => {
-        $registers.set_vectors::<5>($fields.$letter, $letter)
-    };
-    ($registers:expr, $fields:expr, $letter:ident W3) => {
-        $registers.set_wides::<3>($fields.$letter, $letter)
-    };
 }
 
 /// Runs until the program halts, waits or goes wrong.

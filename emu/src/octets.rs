@@ -212,6 +212,7 @@ impl Memory {
     ///
     /// # Errors
     /// A range that leaves the memory.
+    #[inline(always)]
     pub fn read_words(&self, address: u32, words: &mut [i32]) -> Result<(), Fault> {
         let (octets, _) = self.slice(address, 4 * words.len() as u32)?.as_chunks::<4>();
         for (word, &octets) in words.iter_mut().zip(octets) {

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use emu::machine::Engine;
 use scenes::layout::Layout;
 
 /// Options of the machine.
@@ -17,6 +18,18 @@ pub struct MachineArguments {
     /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = layout())]
     pub layout: Option<Layout>,
+    /// What executes the programs; only the host's time depends on it. auto: the fastest that suits.
+    #[arg(long, value_name = "NAME", value_parser = engine(), default_value = AUTO)]
+    pub engine: Engine,
+}
+
+/// The engine is chosen.
+const AUTO: &str = "auto";
+
+/// Names of the engines.
+pub fn engine() -> impl TypedValueParser<Value = Engine> {
+    let names = PossibleValuesParser::new([AUTO].into_iter().chain(Engine::ALL.map(Engine::name)));
+    names.map(|name| Engine::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default())
 }
 
 /// Names of the layouts.

@@ -14,7 +14,7 @@ mod view;
 pub use effort::EffortArguments;
 pub use extension::{ExtensionArguments, extend};
 pub use kernel::{KernelArguments, plain};
-pub use machine::{MachineArguments, layout};
+pub use machine::{MachineArguments, engine, layout};
 pub use numbers::NumberArguments;
 pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};

@@ -26,12 +26,14 @@ use crate::load::Load;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Runner {
-    /// Work items in lock-step, counted.
+    /// Work items one after the other, counted by runs.
     Fast,
     /// The same without counting.
     FastUncounted,
     /// Counted, with the clocks of the machine.
     FastClocks,
+    /// Work items in lock-step, counted.
+    Lockstep,
     /// The interpreter, counted.
     Checked,
     /// The profile's functions in Rust, on the same tree and the same rays.
@@ -42,8 +44,15 @@ pub enum Runner {
 
 impl Runner {
     /// All, in the order of results.
-    pub const ALL: [Runner; 6] =
-        [Runner::Fast, Runner::FastUncounted, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
+    pub const ALL: [Runner; 7] = [
+        Runner::Fast,
+        Runner::FastUncounted,
+        Runner::FastClocks,
+        Runner::Lockstep,
+        Runner::Checked,
+        Runner::Twin,
+        Runner::Reference,
+    ];
 
     /// Name in tables.
     pub const fn name(self) -> &'static str {
@@ -51,6 +60,7 @@ impl Runner {
             Runner::Fast => "fast",
             Runner::FastUncounted => "fast, uncounted",
             Runner::FastClocks => "fast, clocks",
+            Runner::Lockstep => "lockstep",
             Runner::Checked => "checked",
             Runner::Twin => "native twin",
             Runner::Reference => "native f64",
@@ -65,7 +75,7 @@ pub struct Measured {
     pub scene: String,
     /// Profile of the kernels.
     pub profile: &'static str,
-    /// Who computed it: `fast`, `fast-uncounted`, `fast-clocks`, `checked`, `twin` or `reference`.
+    /// Who computed it: `fast`, `fast-uncounted`, `fast-clocks`, `lockstep`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Host's nanoseconds a pixel, the median of the runs.
@@ -78,7 +88,7 @@ pub struct Measured {
     pub instructions: Option<f64>,
     /// Millions of rays a second: camera, secondary and shadow rays.
     pub rays: f64,
-    /// Share of the lanes that had work while groups ran, in [0, 1]; null for others than the fast engine.
+    /// Share of the lanes that had work while groups ran, in [0, 1]; null for others than lock-step.
     pub lanes: Option<f64>,
 }
 
@@ -104,7 +114,8 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let pixels = u64::from(crop.width) * u64::from(crop.height);
     let own_packet = load.build.cores.symbols.get(Function::OwnPacket.name());
     let other_rays = own_packet.map_or(0, |&pc| counted.tally.word(&code, pc as u32).instructions);
-    let lanes = (counted.rounds != 0).then(|| instructions as f64 / (counted.rounds * emu::fast::LANES as u64) as f64);
+    let rounds = count(&setup(Engine::Lockstep))?.rounds;
+    let lanes = (rounds != 0).then(|| instructions as f64 / (rounds * emu::fast::LANES as u64) as f64);
 
     let mut times: [Vec<f64>; Runner::ALL.len()] = Default::default();
     for _ in 0..runs {
@@ -114,6 +125,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 Runner::FastUncounted => {
                     timed(|| known(machine::compute(&setup(Engine::Fast), &load.memory)).map(drop))?
                 }
+                Runner::Lockstep => timed(|| count(&setup(Engine::Lockstep)).map(drop))?,
                 Runner::Checked => timed(|| count(&setup(Engine::Checked)).map(drop))?,
                 Runner::FastClocks => {
                     let run = || machine::run(&setup(Engine::Fast), load.memory.clone(), &mut |_| {});
@@ -150,7 +162,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 of_twin: median / twin,
                 instructions: (!is_native).then(|| instructions as f64 / median / 1e6),
                 rays: (pixels + other_rays) as f64 / median / 1e6,
-                lanes: lanes.filter(|_| matches!(runner, Runner::Fast | Runner::FastUncounted | Runner::FastClocks)),
+                lanes: lanes.filter(|_| runner == Runner::Lockstep),
             }
         })
         .collect())

@@ -29,7 +29,7 @@ Examples:
 
 /// Measures how fast the engines compute pictures, beside native code.
 ///
-/// All take turns, and ratios are those of medians. `fast` and `checked` compute and count the cores' work, `fast, uncounted`
+/// All take turns, and ratios are those of medians. `fast`, `lockstep` and `checked` compute and count the cores' work, `fast, uncounted`
 /// only computes it, `fast, clocks` puts it on the machine's clocks as well. The native twin is the profile's functions in Rust on the same tree and the same
 /// rays, native f64 the reference picture in double precision.
 #[derive(Args, Clone, Debug)]

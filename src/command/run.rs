@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use emu::code::Code;
+use emu::fast::Features;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use isa::diagnostic::{Diagnostic, Report};
@@ -65,6 +66,9 @@ pub struct RunArguments {
     /// Machine: a preset's name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
     machine: String,
+    /// What executes the program; only the host's time depends on it. auto: the fastest that suits.
+    #[arg(long, value_name = "NAME", value_parser = ["auto", "fast", "checked"], default_value = "auto")]
+    engine: String,
     /// Prints the results as JSON instead of tables.
     #[arg(long)]
     json: bool,
@@ -89,7 +93,8 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         has_profile: true,
         has_losses: arguments.flags,
     };
-    let run = single::run(&single, Memory::new(memory))?;
+    let features = (arguments.engine != "checked").then(Features::best);
+    let run = single::run_with(&single, Memory::new(memory), features)?;
     let file = arguments.file.display().to_string();
     let code = Code::new(&program, &isa, config.timing());
     let flags = arguments.flags.then(|| result::losses(&code, &run.tally));

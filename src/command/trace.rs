@@ -129,7 +129,7 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
 fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<Frame, Failure> {
     let crop = load.build.crop;
     let bar = terminal.progress("pixels", u64::from(crop.width) * u64::from(crop.height));
-    let setup = load.setup(config, Options { has_items: true, window, ..Options::default() });
+    let setup = load.setup(config, Options { has_items: true, window, engine: load.engine, ..Options::default() });
     let frame = machine::run(&setup, load.memory.clone(), &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     Ok(frame?)

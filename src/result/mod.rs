@@ -106,6 +106,8 @@ pub struct Render {
     pub method: &'static str,
     /// Why it could not be replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
+    /// What executed the cores' program: fast, lockstep or checked. Nothing else depends on it.
+    pub engine: &'static str,
     /// Where the clocks of each core went.
     pub cores: Vec<Processor>,
     /// Functions of the cores' program.
@@ -309,6 +311,7 @@ impl Render {
             pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
             method: frame.method.name(),
             stepped_because: frame.method.reason(),
+            engine: drawing.engine.name(),
             cores: (0..).zip(cores).map(|(number, core)| Processor::new(core, frame.waits.get(number))).collect(),
             functions: regions(frame.profile.as_ref(), true),
             regions: regions(frame.profile.as_ref(), false),

@@ -1,6 +1,7 @@
 //! What a case really does: messages of the assembler, or a run on an engine that can be looked at after each line.
 
 use emu::code::Code;
+use emu::fast::Features;
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
@@ -20,7 +21,11 @@ pub struct Engine {
 }
 
 /// All engines; the first one is the specification.
-pub const ENGINES: &[Engine] = &[Engine { name: "checked", run: single::run }];
+pub const ENGINES: &[Engine] = &[
+    Engine { name: "checked", run: |single, memory| single::run_with(single, memory, None) },
+    Engine { name: "fast", run: single::run },
+    Engine { name: "fast, baseline", run: |single, memory| single::run_with(single, memory, Some(Features::Baseline)) },
+];
 
 /// One thing that was said, with its line; 0 where it has none.
 #[derive(Clone, Debug, PartialEq, Eq)]

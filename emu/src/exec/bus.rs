@@ -108,6 +108,7 @@ pub struct Port<'a, L: ?Sized = dyn Link + 'a> {
 
 impl<L: Link + ?Sized> Port<'_, L> {
     /// Words from global memory, in one transfer.
+    #[inline]
     fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
         let mut words = [0; N];
         self.link.read(address, &mut words)?;
@@ -116,65 +117,78 @@ impl<L: Link + ?Sized> Port<'_, L> {
 }
 
 impl<L: Link + ?Sized> BusRoom for Port<'_, L> {
+    #[inline]
     fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
         self.link.load(self.buffer, a, b, c as u32)?;
         Ok(Each(c as u32))
     }
 
+    #[inline]
     fn store(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
         self.link.store(self.buffer, a, b, c as u32)?;
         Ok(Each(c as u32))
     }
 
+    #[inline]
     fn ldw(&mut self, a: u32, i: i32) -> Result<(i32, Done), Stop> {
         let [word] = self.words(a.wrapping_add_signed(i))?;
         Ok((word, Done))
     }
 
+    #[inline]
     fn ldwide(&mut self, a: u32, i: i32) -> Result<(i64, Done), Stop> {
         let [low, high] = self.words(a.wrapping_add_signed(i))?;
         Ok((i64::from(high) << 32 | i64::from(low as u32), Done))
     }
 
+    #[inline]
     fn ldv3(&mut self, a: u32, i: i32) -> Result<([Vector; 3], Done), Stop> {
         let words: [i32; 9] = self.words(a.wrapping_add_signed(i))?;
         Ok((std::array::from_fn(|at| std::array::from_fn(|lane| words[3 * at + lane])), Done))
     }
 
+    #[inline]
     fn stw(&mut self, b: i32, a: u32, i: i32) -> Result<Done, Stop> {
         self.link.write(a.wrapping_add_signed(i), &[b])?;
         Ok(Done)
     }
 
+    #[inline]
     fn stv(&mut self, b: Vector, a: u32, i: i32) -> Result<Done, Stop> {
         self.link.write(a.wrapping_add_signed(i), &b)?;
         Ok(Done)
     }
 
+    #[inline]
     fn fetchadd(&mut self, a: u32, b: i32) -> Result<(i32, Done), Stop> {
         Ok((self.link.fetch_add(a, b)?, Done))
     }
 
+    #[inline]
     fn send2(&mut self, a: i32, b: [Vector; 2]) -> Result<Done, Stop> {
         self.link.send(a, Message::new(b))?;
         Ok(Done)
     }
 
+    #[inline]
     fn send5(&mut self, a: i32, b: [Vector; 5]) -> Result<Done, Stop> {
         self.link.send(a, Message::new(b))?;
         Ok(Done)
     }
 
+    #[inline]
     fn recv2(&mut self) -> Result<([Vector; 2], i32, Done), Stop> {
         let (message, sender) = self.link.receive()?;
         Ok((message.open()?, sender as i32, Done))
     }
 
+    #[inline]
     fn recv5(&mut self) -> Result<([Vector; 5], i32, Done), Stop> {
         let (message, sender) = self.link.receive()?;
         Ok((message.open()?, sender as i32, Done))
     }
 
+    #[inline]
     fn barrier(&mut self) -> Result<Done, Stop> {
         self.link.barrier()?;
         Ok(Done)

@@ -9,6 +9,7 @@ mod origins;
 mod plan;
 mod ray;
 mod rows;
+pub mod single;
 
 pub use group::{Counted, Counting, Group, Moment, Uncounted, Unusual, Wires};
 pub use lanes::{LANES, Mask};

@@ -6,7 +6,7 @@ use isa::Op;
 
 /// Rows whose meanings do not become vector instructions: they go from lane to lane. A row that is missing here, or here without need, costs
 /// time and nothing else.
-const fn is_heavy(op: Op) -> bool {
+pub(super) const fn is_heavy(op: Op) -> bool {
     matches!(
         op,
         Op::div

@@ -7,7 +7,7 @@ use super::{Failure, Setup, Work, check, choose, replay, scout};
 use crate::checked::Pause;
 use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::{Observer, Profile};
+use crate::profile::{Profile, RunObserver};
 use crate::tally::Tally;
 
 /// What a frame computes and counts, whatever the time it takes.
@@ -55,7 +55,7 @@ struct Counting<'a> {
 impl Work for Counting<'_> {
     type Result = Result<Count, Reason>;
 
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let Counting { setup, memory, keeping } = self;
         replay::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);

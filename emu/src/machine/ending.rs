@@ -11,7 +11,7 @@ use super::schedule::Machine;
 use super::trace::Spans;
 use crate::code::Code;
 use crate::exec::Watch;
-use crate::profile::{Observer, Profile};
+use crate::profile::{Profile, RunObserver};
 use crate::quantity::Octets;
 use crate::tally::Tally;
 use crate::trap::{Fault, Trap};
@@ -34,7 +34,7 @@ impl Ending {
     }
 }
 
-impl<T: Watch, O: Observer> Machine<'_, T, O> {
+impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
     /// The trap of a processor that stopped.
     pub(super) fn trap(&self, number: usize) -> Trap {
         let processor = &self.processors[number];
@@ -81,17 +81,19 @@ impl<T: Watch, O: Observer> Machine<'_, T, O> {
             self.processors.iter_mut().map(|processor| processor.spans.take().map_or(Vec::new(), Spans::into_list));
         let spans = spans.collect();
         let trace = self.bus_watch.map(|watch| watch.into_trace(spans));
-        let main = self.processors.pop().expect("a machine has a main processor");
+        let mut main = self.processors.pop().expect("a machine has a main processor");
+        let main_tally = main.take_tally();
         let mut tally = Tally::new(core_code);
         let mut profile: Option<Profile> = None;
-        for processor in self.processors {
-            tally.merge(&processor.tally);
-            match (&mut profile, processor.observer.into_profile(core_code, &processor.tally)) {
+        for mut processor in self.processors {
+            let more = processor.take_tally();
+            tally.merge(&more);
+            match (&mut profile, processor.observer.into_profile(core_code, &more)) {
                 (Some(profile), Some(more)) => profile.merge(&more),
                 (profile, more) => *profile = more,
             }
         }
-        let asked = tally.counts(core_code)[Class::Octet] + main.tally.counts(main_code)[Class::Octet];
+        let asked = tally.counts(core_code)[Class::Octet] + main_tally.counts(main_code)[Class::Octet];
         Frame {
             method: Method::Stepped { why: "" },
             clocks,
@@ -104,8 +106,8 @@ impl<T: Watch, O: Observer> Machine<'_, T, O> {
             kinds: self.kinds.into_totals(),
             memory: self.shared.memory,
             tally,
-            main_profile: main.observer.into_profile(main_code, &main.tally),
-            main_tally: main.tally,
+            main_profile: main.observer.into_profile(main_code, &main_tally),
+            main_tally,
             profile,
             trace,
             items: self.items,

@@ -6,13 +6,16 @@ use super::frame::KindUse;
 use super::station::Request;
 use crate::quantity::Octets;
 
+/// Instructions whose ranges are remembered.
+const RECENT: usize = 32;
+
 /// Totals by kind.
 #[derive(Clone, Debug)]
 pub struct Kinds {
     ranges: Vec<(Range<u32>, usize)>,
     totals: Vec<KindUse>,
-    /// The range that was met last: mostly it is met again.
-    last: (Range<u32>, usize),
+    /// The ranges that were met last, by the instruction that asked: mostly it meets the same again.
+    last: [(u32, u32, u32); RECENT],
     message: usize,
     other: usize,
 }
@@ -20,7 +23,8 @@ pub struct Kinds {
 impl Kinds {
     /// Nothing moved yet.
     pub fn new(named: &[(Range<u32>, String)]) -> Kinds {
-        let mut kinds = Kinds { ranges: Vec::new(), totals: Vec::new(), last: (0..0, 0), message: 0, other: 0 };
+        let mut kinds =
+            Kinds { ranges: Vec::new(), totals: Vec::new(), last: [(0, 0, 0); RECENT], message: 0, other: 0 };
         for (range, kind) in named {
             let number = kinds.number(kind);
             kinds.ranges.push((range.clone(), number));
@@ -40,25 +44,28 @@ impl Kinds {
         })
     }
 
-    /// Adds a transfer; one that runs over the end of a range belongs where it starts.
-    pub fn add(&mut self, request: Option<Request>) {
+    /// Adds what the instruction at `pc` asked for; a transfer that runs over the end of a range belongs where it starts.
+    #[inline(always)]
+    pub fn add(&mut self, pc: u32, request: Option<Request>) {
         match request {
             Some(Request::Transfer { address, octets, .. }) => {
-                let (range, kind) = self.last.clone();
-                if range.contains(&address) {
-                    self.totals[kind].octets += octets;
-                    return;
-                }
-                let after = self.ranges.partition_point(|(range, _)| range.start <= address);
-                let found = self.ranges[..after].last().filter(|(range, _)| range.contains(&address));
-                self.totals[found.map_or(self.other, |&(_, kind)| kind)].octets += octets;
-                if let Some(found) = found {
-                    self.last = found.clone();
-                }
+                let (start, length, kind) = self.last[pc as usize % RECENT];
+                let kind = if address.wrapping_sub(start) < length { kind as usize } else { self.find(pc, address) };
+                self.totals[kind].octets += octets;
             }
             Some(Request::Send { octets, .. }) => self.totals[self.message].octets += octets,
             _ => {}
         }
+    }
+
+    /// The kind at an address.
+    #[inline(never)]
+    fn find(&mut self, pc: u32, address: u32) -> usize {
+        let after = self.ranges.partition_point(|(range, _)| range.start <= address);
+        let found = self.ranges[..after].last().filter(|(range, _)| range.contains(&address));
+        let Some(&(Range { start, end }, kind)) = found else { return self.other };
+        self.last[pc as usize % RECENT] = (start, end - start, kind as u32);
+        kind
     }
 
     /// Nothing moved again.

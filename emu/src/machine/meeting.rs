@@ -3,10 +3,10 @@
 use super::processor::{Act, Processor, Standing};
 use super::schedule::Machine;
 use crate::exec::Watch;
-use crate::profile::Observer;
+use crate::profile::RunObserver;
 use crate::quantity::Clocks;
 
-impl<T: Watch, O: Observer> Machine<'_, T, O> {
+impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
     /// Sets when a listening processor takes its next message, when there is one.
     pub(super) fn listen(&mut self, number: usize) {
         let processor = &mut self.processors[number];

@@ -43,11 +43,11 @@ pub use recorded::Recorded;
 
 use trace::Window;
 
-use crate::code::check_bodies;
+use crate::code::{Code, check_bodies};
 use crate::exec::{Watch, Watching};
-use crate::fast::Features;
+use crate::fast::{Features, Plan};
 use crate::octets::Memory;
-use crate::profile::{Observer, Profiler, Unobserved};
+use crate::profile::{Profiler, RunObserver, Unobserved};
 use crate::trap::Trap;
 use ending::Ending;
 
@@ -71,11 +71,38 @@ pub struct Setup<'a> {
 /// Which engine runs what can run on several. The results are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Engine {
-    /// Many work items in lock-step, with the host's vector instructions: [`crate::fast`].
+    /// One work item after the other, a run of instructions at a time: [`crate::fast::single`].
     #[default]
     Fast,
+    /// Many work items in lock-step, with the host's vector instructions: [`crate::fast`].
+    Lockstep,
     /// The interpreter, one instruction after the other: [`crate::checked`].
     Checked,
+}
+
+impl Engine {
+    /// All.
+    pub const ALL: [Engine; 3] = [Engine::Fast, Engine::Lockstep, Engine::Checked];
+
+    /// Name in options and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Engine::Fast => "fast",
+            Engine::Lockstep => "lockstep",
+            Engine::Checked => "checked",
+        }
+    }
+}
+
+impl Setup<'_> {
+    /// The engine that runs the cores' program: the one that is asked for, or the interpreter where that one does not suit the arithmetic, the
+    /// program or what is recorded.
+    pub fn engine(&self) -> Engine {
+        let Options { engine, has_profile, has_losses, .. } = self.options;
+        let is_watched = watching(self.config, has_losses).is_some() || has_profile && engine == Engine::Lockstep;
+        let code = Code::new(self.core, self.isa, self.config.timing());
+        if is_watched || Plan::new(&code).is_none() { Engine::Checked } else { engine }
+    }
 }
 
 /// What a run records beyond counts and times.
@@ -89,10 +116,17 @@ pub struct Options {
     pub has_losses: bool,
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,
-    /// What runs the work items. Runs with a profile, and on other arithmetic than the default one, always take the interpreter.
+    /// What runs the work items; see [`Setup::engine`].
     pub engine: Engine,
     /// What the fast engine may use of the host at most; `None` for all that there is.
     pub features: Option<Features>,
+}
+
+impl Options {
+    /// What programs may use of the host that are not for the interpreter alone.
+    pub(crate) fn features(&self) -> Option<Features> {
+        (self.engine != Engine::Checked).then(|| self.features.unwrap_or_else(Features::best))
+    }
 }
 
 /// Why a run has no result.
@@ -249,7 +283,7 @@ trait Work {
     type Result;
 
     /// Does it.
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result;
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result;
 }
 
 /// Does work on the arithmetic and for the observer that a machine needs.
@@ -271,7 +305,7 @@ struct Stepping<'a> {
 impl Work for Stepping<'_> {
     type Result = Result<Frame, Ending>;
 
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         schedule::run::<T, O>(self.setup, self.memory, arithmetic, None, self.progress)
     }
 }
@@ -285,7 +319,7 @@ struct Replaying<'a> {
 impl Work for Replaying<'_> {
     type Result = Vec<Result<Frame, Failure>>;
 
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)
     }
 }

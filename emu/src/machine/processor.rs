@@ -10,8 +10,10 @@ use super::trace::{Doing, Spans};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Message, Watch};
+use crate::fast::Features;
+use crate::fast::single::Driver;
 use crate::octets::Buffer;
-use crate::profile::{Observer, Unobserved};
+use crate::profile::{RunObserver, Unobserved};
 use crate::quantity::{Clocks, Octets};
 use crate::tally::Tally;
 use crate::trap::Fault;
@@ -93,14 +95,15 @@ pub struct Advance {
 pub struct Processor<'a, O> {
     /// Its program.
     pub code: &'a Code<'a>,
+    /// What executes it.
+    driver: Driver<'a>,
     /// Who it is.
     pub seat: Seat,
     /// What its program sees.
     pub state: State,
     /// The buffer after reset.
     pub initial: Buffer,
-    /// Passes of its program.
-    pub tally: Tally,
+    tally: Tally,
     /// Who watches it.
     pub observer: O,
     /// The work item that it replays instead of running its program.
@@ -128,12 +131,13 @@ pub struct Processor<'a, O> {
     pub begins_by_receiving: bool,
 }
 
-impl<'a, O: Observer> Processor<'a, O> {
-    /// A processor after reset.
-    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32) -> Processor<'a, O> {
+impl<'a, O: RunObserver> Processor<'a, O> {
+    /// A processor after reset, on the interpreter alone where no features are given.
+    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32, features: Option<Features>) -> Processor<'a, O> {
         let initial = Buffer::new(&code.program.buffer, buffer_octets);
         Processor {
             code,
+            driver: Driver::new(code, features),
             seat,
             state: State::new(code, initial.clone()),
             initial,
@@ -172,20 +176,19 @@ impl<'a, O: Observer> Processor<'a, O> {
         }
         let (clocks, steps) = (self.state.clocks, self.state.steps);
         let mut station = Station::new(shared, self.seat.core, has_leave.then_some(self.clock));
-        let pause = checked::run(
-            self.code,
-            self.seat,
-            &mut self.state,
-            arithmetic,
-            &mut station,
-            &mut self.tally,
-            &mut self.observer,
-        );
+        let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
+        let pause = self.driver.run(self.seat, state, arithmetic, &mut station, tally, observer);
         self.request = station.request;
         let taken = station.taken;
         let steps = self.state.steps - steps;
         self.spend(self.state.clocks - clocks, steps, has_leave);
         Advance { pause, taken, steps }
+    }
+
+    /// The passes of its program so far.
+    pub fn take_tally(&mut self) -> Tally {
+        self.driver.fold(&mut self.tally);
+        std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 
     /// Starts its program, or the next recorded work item, from reset.

@@ -13,7 +13,7 @@ use super::strands::Keeping;
 use super::{Failure, Frame, Setup, Work, check, choose, replay, schedule};
 use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::Observer;
+use crate::profile::RunObserver;
 
 /// All work items of a frame.
 pub struct Recorded {
@@ -61,7 +61,7 @@ struct Recording<'a> {
 impl Work for Recording<'_> {
     type Result = Result<Recorded, Reason>;
 
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let Recording { setup, memory } = self;
         let prefix = replay::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
@@ -85,7 +85,7 @@ struct Replaying<'a> {
 impl Work for Replaying<'_> {
     type Result = Result<Frame, Ending>;
 
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let (sender, receiver) = channel();
         for batch in &self.recorded.batches {
             sender.send(batch.clone()).expect("the receiver is below");

@@ -4,15 +4,16 @@ use super::kinds::Kinds;
 use super::recording::{Reason, Recording, Segment};
 use super::room::Room;
 use super::station::{Access, Request};
-use super::strands::{Keeping, Strand, Strands};
+use super::strands::{Keeping, Strand, StrandLink, Strands};
 use super::{Engine, Setup};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
-use crate::fast::{self, Counted, Features, Group, LANES, Mask, Plan, Uncounted, Unusual};
+use crate::fast::single::{self, Count, Stopped};
+use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Uncounted, Unusual};
 use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
-use crate::profile::Observer;
+use crate::profile::{Observer, RunObserver, Unobserved};
 use crate::quantity::Octets;
 use crate::tally::Tally;
 use crate::trap::{Fault, Stop};
@@ -126,6 +127,14 @@ pub struct Recorder<'a, T, O> {
     /// Who watches them.
     pub observer: Independence<O>,
     lockstep: Option<Lockstep<'a>>,
+    single: Option<One<'a>>,
+}
+
+/// What a core needs to record one item after the other, quickly.
+struct One<'a> {
+    plan: Plan<'a>,
+    count: Count,
+    features: Features,
 }
 
 /// What a core needs to record many items at once.
@@ -137,7 +146,7 @@ struct Lockstep<'a> {
     rounds: u64,
 }
 
-impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
+impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// Work items that may be recorded at once.
     pub const AT_ONCE: usize = LANES;
 
@@ -147,15 +156,19 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
         // Who watches each instruction has to see them one after the other.
-        let is_fast = setup.options.engine == Engine::Fast && !O::IS_ACTIVE && !T::IS_WATCHING;
-        let lockstep = is_fast.then(|| Plan::new(code)).flatten().map(|plan| Lockstep {
+        let (engine, features) = (setup.options.engine, setup.options.features.unwrap_or_else(Features::best));
+        let is_lockstep = engine == Engine::Lockstep && !O::IS_ACTIVE && !T::IS_WATCHING;
+        let is_single = engine == Engine::Fast && !T::IS_WATCHING;
+        let single = is_single.then(|| Plan::new(code)).flatten();
+        let lockstep = is_lockstep.then(|| Plan::new(code)).flatten().map(|plan| Lockstep {
             group: Box::new(Group::new(&plan, seat, &initial)),
             plan,
-            features: setup.options.features.unwrap_or_else(Features::best),
+            features,
             rounds: 0,
         });
         Recorder {
             lockstep,
+            single: single.map(|plan| One { count: Count::new(&plan, true), plan, features }),
             keeping,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
@@ -173,11 +186,11 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         checked::run(self.code, self.seat, &mut self.state, &self.arithmetic, wire, &mut self.tally, &mut self.observer)
     }
 
-    fn wire(&self, message: Message) -> Wire<'a> {
+    fn wire(&self, message: Option<Message>) -> Wire<'a> {
         Wire {
             memory: self.memory,
             main: self.seat.cores,
-            message: Some(message),
+            message,
             has_leave: false,
             request: None,
             sent: Vec::new(),
@@ -190,7 +203,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// # Errors
     /// Something else comes first.
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
-        let mut wire = self.wire(Message::new([[0; 3]]));
+        let mut wire = self.wire(Some(Message::new([[0; 3]])));
         match self.run(&mut wire) {
             Pause::Wait if wire.request == Some(Request::Receive) => {
                 Ok(Prefix { clocks: self.state.clocks, pc: self.state.pc })
@@ -263,7 +276,34 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         if let Some(Lockstep { plan, group, .. }) = &mut self.lockstep {
             group.meter.fold(plan, &mut self.tally);
         }
+        if let Some(One { plan, count, .. }) = &mut self.single {
+            count.fold(plan, &mut self.tally);
+        }
         std::mem::replace(&mut self.tally, Tally::new(self.code))
+    }
+
+    /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
+    fn run_quickly(&mut self, strand: &mut Strand, room: &Room) -> Option<Stopped> {
+        let One { plan, count, features } = self.single.as_mut()?;
+        let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
+        let moment = Moment { pc: 0, clocks: 0 };
+        let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, keeping, moment };
+        count.origin = self.observer.origin;
+        let (seat, state, observer) = (self.seat, &mut self.state, &mut self.observer.inner);
+        let stopped = match keeping {
+            Keeping::Nothing if !O::IS_ACTIVE => {
+                single::run::<_, _, Uncounted>(*features, plan, seat, state, &mut link, count, &mut Unobserved)
+            }
+            _ if !O::IS_ACTIVE => {
+                single::run::<_, _, Counted>(*features, plan, seat, state, &mut link, count, &mut Unobserved)
+            }
+            _ => {
+                let link: &mut &mut dyn single::Wire = &mut (&mut link as _);
+                single::run::<_, _, Counted>(*features, plan, seat, state, link, count, observer)
+            }
+        };
+        self.observer.origin = count.origin;
+        Some(stopped)
     }
 
     /// Runs a work item from reset to its end.
@@ -273,11 +313,16 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
-        let mut wire = self.wire(message);
-        let mut segments = Vec::new();
-        let mut octets = Octets(0);
-        let mut before = 0;
+        let mut strand = Strand { message: Some(message), ..Strand::default() };
+        let stopped = self.run_quickly(&mut strand, room);
+        let mut wire = Wire { sent: strand.sent, ..self.wire(strand.message) };
+        let (mut segments, mut octets, mut before) = (strand.segments, strand.octets, strand.before);
         let end = loop {
+            match stopped {
+                Some(Stopped::Halt) => break Pause::Halt,
+                Some(Stopped::Fault(fault)) => break Pause::Fault(fault),
+                _ => {}
+            }
             let pause = self.run(&mut wire);
             if pause != Pause::Wait {
                 break pause;
@@ -294,7 +339,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 let segment = Segment::new(clocks, self.state.pc, request, wire.sent.len());
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 octets += segment.octets();
-                self.kinds.add(Some(request));
+                self.kinds.add(self.state.pc, Some(request));
                 segments.push(segment);
                 if segments.len().is_multiple_of(Room::PORTION) && !room.take(Room::PORTION) {
                     return Err("there is no room for it");

@@ -18,14 +18,14 @@ use super::{Failure, Frame, Setup};
 use crate::code::Code;
 use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::{Observer, Unobserved};
+use crate::profile::{RunObserver, Unobserved};
 use crate::quantity::Octets;
 
 /// Batches that may wait for a machine.
 const AHEAD: usize = 2;
 
 /// Runs machines whose work items do the same in the same clocks of computing. `progress` is told of the first one.
-pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
+pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     setups: &[Setup],
     memory: &Memory,
     arithmetic: &T,
@@ -65,7 +65,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 }
 
 /// The scout on a thread of its own, the first machine on this one, each other one on another.
-fn replay<T: Watch + Clone + Send, O: Observer + Send>(
+fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     setups: &[Setup],
     prefix: Prefix,
     memory: &Memory,

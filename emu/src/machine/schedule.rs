@@ -16,13 +16,13 @@ use crate::checked::{Pause, Seat};
 use crate::code::Code;
 use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::Observer;
+use crate::profile::RunObserver;
 use crate::quantity::{Clocks, Octets};
 use crate::trap::Fault;
 
 /// Runs a frame on one arithmetic and with one kind of observer. With recorded work items the cores replay them; their
 /// counts are then missing from the frame.
-pub fn run<T: Watch, O: Observer>(
+pub fn run<T: Watch, O: RunObserver>(
     setup: &Setup,
     memory: Memory,
     arithmetic: &T,
@@ -73,7 +73,7 @@ pub(super) struct Machine<'a, T, O> {
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
+impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
     fn new(
         setup: &'a Setup<'a>,
         shared: Shared,
@@ -87,14 +87,14 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
         let mut processors = Vec::with_capacity(cores as usize + 1);
         for core in 0..cores {
             let seat = Seat { core, cores, step_limit: config.step_limit };
-            let mut processor = Processor::new(core_code, seat, config.buffer_octets);
+            let mut processor = Processor::new(core_code, seat, config.buffer_octets, setup.options.features());
             processor.tape = shared.library.is_some().then(Tape::default);
             processor.cache = Cache::new(&config.cache, &setup.kinds);
             processors.push(processor);
         }
         let window = setup.options.window;
         let seat = Seat { core: cores, cores, step_limit: config.main.step_limit };
-        processors.push(Processor::new(main_code, seat, config.main.buffer_octets));
+        processors.push(Processor::new(main_code, seat, config.main.buffer_octets, setup.options.features()));
         for processor in &mut processors {
             processor.spans = window.map(Spans::new);
         }
@@ -268,7 +268,7 @@ impl<'a, T: Watch, O: Observer> Machine<'a, T, O> {
             return;
         }
         processor.used.octets += processor.asked_octets();
-        self.kinds.add(processor.request);
+        self.kinds.add(processor.state.pc, processor.request);
     }
 
     /// Does the next thing that concerns others; false when there is none.

@@ -12,11 +12,12 @@ use super::recorder::Recorder;
 use super::recording::{Reason, Recording};
 use super::room::Room;
 use super::strands::Keeping;
-use crate::checked::{self, Pause, Seat, State};
+use crate::checked::{Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
+use crate::fast::single::Driver;
 use crate::octets::{Buffer, Memory};
-use crate::profile::{Observer, Profile, Unobserved};
+use crate::profile::{Observer, Profile, RunObserver, Unobserved};
 use crate::tally::Tally;
 use crate::trap::{Fault, Stop};
 
@@ -83,7 +84,7 @@ impl Link for Desk<'_> {
 }
 
 /// Records work items on all host threads. The recordings are in the order of the messages, whoever made them.
-fn record<T: Watch + Send, O: Observer + Send>(
+fn record<T: Watch + Send, O: RunObserver + Send>(
     recorders: &mut [Recorder<T, O>],
     work: &[(u32, Message)],
 ) -> Result<Vec<Arc<Recording>>, Reason> {
@@ -137,7 +138,7 @@ pub struct Survey {
 }
 
 /// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
-pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
+pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     setup: &Setup,
     memory: &Memory,
     arithmetic: T,
@@ -153,11 +154,12 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
     let mut tally = Tally::new(&main_code);
+    let mut driver = Driver::new(&main_code, setup.options.features());
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
         let seat = Seat { core: LANES, cores: LANES, step_limit };
         let nobody = &mut Unobserved;
-        let pause = checked::run(&main_code, seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
+        let pause = driver.run(seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
         if desk.work.is_empty() {
             break pause;
         }

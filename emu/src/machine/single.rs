@@ -11,8 +11,9 @@ use super::station::{Request, Shared};
 use crate::checked::{Pause, Seat, State};
 use crate::code::{Code, check_bodies};
 use crate::exec::{Watch, Watching};
+use crate::fast::Features;
 use crate::octets::Memory;
-use crate::profile::{Observer, Profile, Profiler, Unobserved};
+use crate::profile::{Profile, Profiler, RunObserver, Unobserved};
 use crate::quantity::Clocks;
 use crate::registers::Registers;
 use crate::tally::Tally;
@@ -61,6 +62,14 @@ pub struct SingleRun {
 /// # Errors
 /// A machine out of its ranges, or initial data that do not fit the buffer.
 pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
+    run_with(single, memory, Some(Features::best()))
+}
+
+/// The same with what the fast engine may use of the host at most, or on the interpreter alone. The results are the same.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_with(single: &Single, memory: Memory, features: Option<Features>) -> Result<SingleRun, Report> {
     single.config.check()?;
     check_buffer("a core", single.program, single.config.buffer_octets)?;
     check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
@@ -68,26 +77,31 @@ pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
     let traps = arithmetic.trap_division_by_zero;
     let watching = Watching::new(arithmetic.modes(), traps);
     Ok(if single.has_losses {
-        run_on(single, memory, &watching.with_losses())
+        run_on(single, memory, &watching.with_losses(), features)
     } else if arithmetic.modes() == Modes::default() && !traps {
-        run_on(single, memory, &Nearest32)
+        run_on(single, memory, &Nearest32, features)
     } else {
-        run_on(single, memory, &watching)
+        run_on(single, memory, &watching, features)
     })
 }
 
-fn run_on<T: Watch>(single: &Single, memory: Memory, arithmetic: &T) -> SingleRun {
+fn run_on<T: Watch>(single: &Single, memory: Memory, arithmetic: &T, features: Option<Features>) -> SingleRun {
     if single.has_profile {
-        run_observed::<T, Profiler>(single, memory, arithmetic)
+        run_observed::<T, Profiler>(single, memory, arithmetic, features)
     } else {
-        run_observed::<T, Unobserved>(single, memory, arithmetic)
+        run_observed::<T, Unobserved>(single, memory, arithmetic, features)
     }
 }
 
-fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmetic: &T) -> SingleRun {
+fn run_observed<T: Watch, O: RunObserver>(
+    single: &Single,
+    memory: Memory,
+    arithmetic: &T,
+    features: Option<Features>,
+) -> SingleRun {
     let code = Code::new(single.program, single.isa, single.config.timing());
     let seat = Seat { core: 0, cores: 1, step_limit: single.step_limit };
-    let mut processor: Processor<O> = Processor::new(&code, seat, single.config.buffer_octets);
+    let mut processor: Processor<O> = Processor::new(&code, seat, single.config.buffer_octets, features);
     let mut shared = Shared::new(memory, 1, None);
     processor.state.registers = single.registers.clone();
     processor.observer.begin(processor.state.pc);
@@ -114,14 +128,15 @@ fn run_observed<T: Watch, O: Observer>(single: &Single, memory: Memory, arithmet
         has_leave = true;
     };
     processor.observer.end();
+    let tally = processor.take_tally();
     let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, &code));
     SingleRun {
-        profile: processor.observer.into_profile(&code, &processor.tally),
+        profile: processor.observer.into_profile(&code, &tally),
         state: processor.state,
         memory: shared.memory,
         clocks: processor.clock,
         waiting: processor.used.waiting,
-        tally: processor.tally,
+        tally,
         trap,
     }
 }

@@ -1,10 +1,11 @@
-//! The links of work items that are recorded in lock-step, and what they do.
+//! The links of work items that are recorded by the fast engines, and what they do.
 
 use super::kinds::Kinds;
 use super::recording::Segment;
 use super::room::Room;
 use super::station::{Access, Request};
 use crate::exec::{Link, Message};
+use crate::fast::single::Wire;
 use crate::fast::{Moment, Wires};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::Octets;
@@ -42,52 +43,74 @@ pub(super) struct Strand {
 }
 
 /// The link of one of them: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
-struct StrandLink<'s, 'a> {
-    all: &'s mut Strands<'a>,
-    lane: usize,
-    moment: Moment,
+pub(super) struct StrandLink<'s> {
+    pub memory: &'s Memory,
+    pub main: u32,
+    pub room: &'s Room,
+    pub kinds: &'s mut Kinds,
+    pub strand: &'s mut Strand,
+    pub keeping: Keeping,
+    pub moment: Moment,
 }
 
 impl<'a> Wires for Strands<'a> {
     #[inline(always)]
     fn link(&mut self, lane: usize, moment: Moment) -> impl Link {
-        StrandLink { all: self, lane, moment }
+        let Strands { memory, main, room, kinds, strands, keeping } = self;
+        StrandLink { memory, main: *main, room, kinds, strand: &mut strands[lane], keeping: *keeping, moment }
     }
 }
 
-impl StrandLink<'_, '_> {
+impl Wire for StrandLink<'_> {
+    #[inline(always)]
+    fn keeps_time(&self) -> bool {
+        self.keeping == Keeping::Segments
+    }
+
+    #[inline(always)]
+    fn note(&mut self, moment: Moment) {
+        self.moment = moment;
+    }
+}
+
+impl StrandLink<'_> {
+    #[inline(always)]
     fn enter(&mut self, request: Request) -> Result<(), Stop> {
-        let strand = &mut self.all.strands[self.lane];
-        if strand.message.is_some() {
+        if self.strand.message.is_some() {
             return Err(Stop::Wait);
         }
-        match self.all.keeping {
-            Keeping::Nothing => return Ok(()),
-            Keeping::Passes | Keeping::Segments => self.all.kinds.add(Some(request)),
-        }
-        if self.all.keeping == Keeping::Passes {
-            return Ok(());
-        }
-        let clocks = self.moment.clocks - strand.before;
-        let segment = Segment::new(clocks, self.moment.pc, request, strand.sent.len()).ok_or(Stop::Wait)?;
-        strand.octets += segment.octets();
-        strand.before = self.moment.clocks;
-        strand.segments.push(segment);
-        if strand.segments.len().is_multiple_of(Room::PORTION) && !self.all.room.take(Room::PORTION) {
-            return Err(Stop::Wait);
+        match self.keeping {
+            Keeping::Nothing => {}
+            Keeping::Passes => self.kinds.add(self.moment.pc, Some(request)),
+            Keeping::Segments => return self.keep(request),
         }
         Ok(())
     }
 
+    fn keep(&mut self, request: Request) -> Result<(), Stop> {
+        let strand = &mut *self.strand;
+        let clocks = self.moment.clocks - strand.before;
+        let segment = Segment::new(clocks, self.moment.pc, request, strand.sent.len()).ok_or(Stop::Wait)?;
+        if (strand.segments.len() + 1).is_multiple_of(Room::PORTION) && !self.room.take(Room::PORTION) {
+            return Err(Stop::Wait);
+        }
+        strand.octets += segment.octets();
+        strand.before = self.moment.clocks;
+        strand.segments.push(segment);
+        self.kinds.add(self.moment.pc, Some(request));
+        Ok(())
+    }
+
+    #[inline(always)]
     fn read_octets(&mut self, access: Access, from: u32, octets: u32) -> Result<&[u8], Stop> {
-        let memory = self.all.memory;
+        let memory = self.memory;
         let found = memory.slice(from, octets)?;
         self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })?;
         Ok(found)
     }
 }
 
-impl Link for StrandLink<'_, '_> {
+impl Link for StrandLink<'_> {
     #[inline]
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
@@ -99,10 +122,10 @@ impl Link for StrandLink<'_, '_> {
         Err(Stop::Wait)
     }
 
-    #[inline]
+    #[inline(always)]
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
-        Ok(self.all.memory.read_words(address, words)?)
+        Ok(self.memory.read_words(address, words)?)
     }
 
     fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
@@ -114,19 +137,19 @@ impl Link for StrandLink<'_, '_> {
     }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
-        if u32::try_from(to).ok() != Some(self.all.main) {
+        if u32::try_from(to).ok() != Some(self.main) {
             return Err(Stop::Wait);
         }
-        self.enter(Request::Send { to: self.all.main, octets: Octets(message.octets().into()) })?;
-        self.all.strands[self.lane].sent.push(message);
+        self.enter(Request::Send { to: self.main, octets: Octets(message.octets().into()) })?;
+        self.strand.sent.push(message);
         Ok(())
     }
 
     fn receive(&mut self) -> Result<(Message, u32), Stop> {
-        let strand = &mut self.all.strands[self.lane];
+        let strand = &mut *self.strand;
         let message = strand.message.take().ok_or(Stop::Wait)?;
         strand.before = self.moment.clocks;
-        Ok((message, self.all.main))
+        Ok((message, self.main))
     }
 
     fn barrier(&mut self) -> Result<(), Stop> {

@@ -2,6 +2,8 @@
 
 mod profiler;
 
+use std::ops::Range;
+
 use isa::Counts;
 
 pub use profiler::Profiler;
@@ -32,6 +34,22 @@ pub trait Observer {
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile>;
 }
 
+/// An observer for engines that count several words at once, too: they call these instead of [`Observer::step`].
+pub trait RunObserver: Observer {
+    /// Some words ended, one behind the other. Those with several exits, and units, are told by
+    /// [`RunObserver::pass`].
+    fn walked(&mut self, words: Range<u32>);
+
+    /// A pass through an exit: of a word with several, or with units of one that `is_only`.
+    fn pass(&mut self, exit: usize, is_only: bool, units: u32);
+
+    /// Whether the word behind this one belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
+    fn is_border(&self, pc: u32) -> bool;
+
+    /// Control goes from one word to another; what ended before was told.
+    fn go(&mut self, pc: u32, next: u32, motion: Motion);
+}
+
 /// Nobody.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
@@ -52,6 +70,18 @@ impl Observer for Unobserved {
     fn into_profile(self, _: &Code, _: &Tally) -> Option<Profile> {
         None
     }
+}
+
+impl RunObserver for Unobserved {
+    fn walked(&mut self, _: Range<u32>) {}
+
+    fn pass(&mut self, _: usize, _: bool, _: u32) {}
+
+    fn is_border(&self, _: u32) -> bool {
+        false
+    }
+
+    fn go(&mut self, _: u32, _: u32, _: Motion) {}
 }
 
 /// What one function or region cost.

@@ -1,9 +1,11 @@
 //! Follows calls, returns and regions while a program runs, with a stack of what is open and snapshots of the running
 //! totals.
 
+use std::ops::Range;
+
 use isa::Counts;
 
-use super::{Observer, Profile, RegionProfile};
+use super::{Observer, Profile, RegionProfile, RunObserver};
 use crate::code::Code;
 use crate::exec::Motion;
 use crate::tally::Tally;
@@ -33,6 +35,8 @@ enum Open {
 pub struct Profiler {
     /// Cost of each exit of the program, and what a unit of it adds.
     costs: Vec<(Counts, Counts)>,
+    /// What the words up to each one cost together, those with several exits left out.
+    before: Vec<Counts>,
     /// The innermost region of each word.
     region_of: Vec<Option<u16>>,
     /// Regions from the outermost to a region itself.
@@ -133,8 +137,15 @@ impl Observer for Profiler {
             chain.reverse();
             chain
         };
+        let mut before = vec![Counts::ZERO];
+        for pc in 0..code.words() {
+            let passes = code.passes_of(pc);
+            let cost = if passes.len() == 1 { code.pass_cost(passes.start).0 } else { Counts::ZERO };
+            before.push(before[pc as usize] + cost);
+        }
         Profiler {
             costs,
+            before,
             region_of: (0..code.slots().len() as u32).map(region).collect(),
             chains: (0..regions.len()).map(chain).collect(),
             regions: Profile::exclusive(code, &Tally::default()).regions,
@@ -158,12 +169,7 @@ impl Observer for Profiler {
         if units != 0 {
             self.total += each.times(units.into());
         }
-        match motion {
-            Motion::Call => self.call(pc.wrapping_add(1), next),
-            Motion::Return => self.go_back(next),
-            Motion::Jump if self.deeper == 0 && self.chain(pc) != self.chain(next) => self.move_to(next),
-            Motion::Jump => {}
-        }
+        self.go(pc, next, motion);
     }
 
     fn end(&mut self) {
@@ -181,5 +187,39 @@ impl Observer for Profiler {
             (region.least_elementary, region.most_elementary) = (found.least_elementary, found.most_elementary);
         }
         Some(profile)
+    }
+}
+
+impl RunObserver for Profiler {
+    fn walked(&mut self, words: Range<u32>) {
+        let at = |pc: u32| self.before[pc as usize];
+        let (from, to) = (at(words.start), at(words.end));
+        for (total, (to, from)) in self.total.0.iter_mut().zip(to.0.iter().zip(from.0)) {
+            *total += to - from;
+        }
+    }
+
+    fn pass(&mut self, exit: usize, is_only: bool, units: u32) {
+        let (cost, each) = &self.costs[exit];
+        if !is_only {
+            self.total += *cost;
+        }
+        if units != 0 {
+            self.total += each.times(units.into());
+        }
+    }
+
+    fn is_border(&self, pc: u32) -> bool {
+        self.chain(pc) != self.chain(pc + 1)
+    }
+
+    #[inline]
+    fn go(&mut self, pc: u32, next: u32, motion: Motion) {
+        match motion {
+            Motion::Call => self.call(pc.wrapping_add(1), next),
+            Motion::Return => self.go_back(next),
+            Motion::Jump if self.deeper == 0 && self.chain(pc) != self.chain(next) => self.move_to(next),
+            Motion::Jump => {}
+        }
     }
 }

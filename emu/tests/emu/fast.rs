@@ -36,10 +36,12 @@ fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
     let checked = run(Engine::Checked, None);
     for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
-        let fast = run(Engine::Fast, Some(features));
-        if fast != checked {
-            let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
-            panic!("{name} with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
+        for engine in [Engine::Fast, Engine::Lockstep] {
+            let fast = run(engine, Some(features));
+            if fast != checked {
+                let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
+                panic!("{name}, {engine:?} with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
+            }
         }
     }
     checked
@@ -215,11 +217,11 @@ fn groups_run_together() {
     };
     let memory = Memory::new(vec![3; MEMORY as usize]);
     let count = |engine| machine::count(&setup(engine), &memory).expect("it runs").expect("it is counted");
-    let (fast, checked) = (count(Engine::Fast), count(Engine::Checked));
+    let (fast, checked) = (count(Engine::Lockstep), count(Engine::Checked));
     assert_eq!((&fast.memory, &fast.tally, checked.rounds), (&checked.memory, &checked.tally, 0));
     // Without a branch all of a group are always together: 45 items are two groups.
     assert_eq!(fast.rounds * ITEMS as u64, 2 * fast.tally.instructions());
-    let plain = machine::compute(&setup(Engine::Fast), &memory).expect("it runs").expect("it is computed");
+    let plain = machine::compute(&setup(Engine::Lockstep), &memory).expect("it runs").expect("it is computed");
     assert_eq!((&plain.memory, plain.tally.instructions()), (&fast.memory, 0));
 }
 
@@ -237,6 +239,40 @@ fn any_row_on_any_operands() {
         });
         same(&isa.row(op).name, &core, 1 << 20).unwrap_or_else(|error| panic!("{op:?}: {error}"));
     }
+}
+
+/// Rows go on to each other by jumps; were one of them a call, it would leave something on the stack each time.
+#[test]
+fn a_long_loop_over_all_rows_takes_no_stack() {
+    let isa = Isa::base();
+    let mut random = Random(77);
+    let core = program(|p| {
+        scatter(p, &mut random);
+        p.constant(27, 20_000);
+        let again = p.here();
+        for &op in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)) {
+            instruction(p, &mut random, op, isa.row(op));
+        }
+        let (function, over) = (p.label(), p.label());
+        p.branch(Op::call, &[28], function).branch(Op::jump, &[], over);
+        p.place(function);
+        p.emit(Op::ret, &[28]);
+        p.place(over);
+        for op in [Op::beq, Op::bne, Op::blt, Op::bge, Op::bltu, Op::bgeu] {
+            let next = p.label();
+            p.branch(op, &[1, 2], next);
+            p.place(next);
+        }
+        p.emit(Op::isubi, &[27, 27, 1]);
+        p.branch(Op::bne, &[27, 0], again);
+        gather(p);
+    });
+    let (config, main) = (Config { step_limit: 1 << 30, ..Config::default() }, dispatch(1));
+    let options = Options::default();
+    let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
+    let count =
+        machine::count(&setup, &Memory::new(vec![3; MEMORY as usize])).expect("it runs").expect("it is counted");
+    assert!(count.tally.instructions() > 20_000 * 100);
 }
 
 #[test]

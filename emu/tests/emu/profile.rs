@@ -24,6 +24,8 @@ pub fn run(program: &Program) -> (Profile, Counts) {
         has_losses: false,
     };
     let run = single::run(&single, Memory::default()).expect("the setup is right");
+    let checked = single::run_with(&single, Memory::default(), None).expect("the setup is right");
+    assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());
     let counts = run.tally.counts(&code);

@@ -58,12 +58,11 @@ impl Plane {
     /// Whether the ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
     ///
     /// Of planes of axes j < k that the ray itself meets at the same t > 0, that of j comes first exactly when D_j >= 0: its t changes by
-    /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Products have 65 bits with their sign.
+    /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Runs stay below 2^32, so products fit 64 bits.
     #[inline]
     fn is_before(self, other: Plane, ray: &Ray) -> bool {
         let ((run, slope), (other_run, other_slope)) = (self.run_and_slope(ray), other.run_and_slope(ray));
-        let here = i128::from(run) * i128::from(other_slope);
-        let there = i128::from(other_run) * i128::from(slope);
+        let (here, there) = (run * other_slope, other_run * slope);
         let is_same_way = (slope < 0) == (other_slope < 0);
         match if is_same_way { here.cmp(&there) } else { there.cmp(&here) } {
             Ordering::Less => true,

@@ -1,0 +1,166 @@
+//! A ray against a triangle in doubles of which the host computes four at once: decided where no rounding error can have turned a sign or the
+//! rounding of a quotient, by the bounds of the filter of [`isa::number::ray::triangle`]; the rest is left to exact integers.
+
+use std::arch::x86_64::*;
+
+use isa::Fields;
+use isa::number::{Nearest32, Vector};
+use isa::table::exit::rtri::{Exit, Way};
+
+use super::operands::set_vector;
+use crate::exec::RayRoom;
+use crate::registers::Registers;
+
+/// Bound on the error of a determinant, in units of the product of the largest lanes of its three vectors.
+const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// Largest quotient that is decided here: beyond it, the word may saturate.
+const LARGEST: f64 = 2147483000.0;
+
+/// Lane 0 of the next three for y, z, x, as [`_mm256_permute4x64_pd`] takes it.
+const NEXT: i32 = 0b11_00_10_01;
+
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn vector(registers: &Registers, number: u8) -> __m256d {
+    let [x, y, z, w] = *registers.padded(number);
+    _mm256_cvtepi32_pd(_mm_setr_epi32(x, y, z, w))
+}
+
+/// Its fourth lane is 0. A lane is off by less than the filter's bound allows: one of the two products is not rounded.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn cross(a: __m256d, b: __m256d) -> __m256d {
+    let (next_a, next_b) = (_mm256_permute4x64_pd::<NEXT>(a), _mm256_permute4x64_pd::<NEXT>(b));
+    _mm256_permute4x64_pd::<NEXT>(_mm256_fmsub_pd(a, next_b, _mm256_mul_pd(next_a, b)))
+}
+
+/// The sums of the lanes of four vectors.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn sums(a: __m256d, b: __m256d, c: __m256d, d: __m256d) -> __m256d {
+    let (first, second) = (_mm256_hadd_pd(a, b), _mm256_hadd_pd(c, d));
+    _mm256_add_pd(_mm256_permute2f128_pd::<0x20>(first, second), _mm256_permute2f128_pd::<0x31>(first, second))
+}
+
+/// The largest magnitudes of the lanes of four vectors.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn largest(vectors: [__m256d; 4]) -> __m256d {
+    let sign = _mm256_set1_pd(-0.0);
+    let [a, b, c, d] = vectors;
+    let [a, b, c, d] =
+        [_mm256_andnot_pd(sign, a), _mm256_andnot_pd(sign, b), _mm256_andnot_pd(sign, c), _mm256_andnot_pd(sign, d)];
+    let first = _mm256_max_pd(_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    let second = _mm256_max_pd(_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+    _mm256_max_pd(_mm256_permute2f128_pd::<0x20>(first, second), _mm256_permute2f128_pd::<0x31>(first, second))
+}
+
+/// Bits in the order of the tests (determinant, u, v, w, t) from those of the lanes (determinant, u, v, t).
+#[inline(always)]
+fn in_order(lanes: i32, w: bool) -> u32 {
+    let lanes = lanes as u32;
+    lanes & 7 | u32::from(w) << 3 | (lanes & 8) << 1
+}
+
+/// A ray against a triangle; see the row.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
+    let (origin, direction) = (vector(registers, fields.a), vector(registers, fields.a.wrapping_add(1)));
+    let corner = vector(registers, fields.b);
+    let edge1 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(1)), corner);
+    let edge2 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(2)), corner);
+    let start = _mm256_sub_pd(origin, corner);
+    let (p, q) = (cross(direction, edge2), cross(start, edge1));
+    // The determinant, u, v and t, all turned so that the determinant is positive.
+    let found =
+        sums(_mm256_mul_pd(p, edge1), _mm256_mul_pd(p, start), _mm256_mul_pd(q, direction), _mm256_mul_pd(q, edge2));
+    let turn = _mm256_and_pd(_mm256_permute4x64_pd::<0>(found), _mm256_set1_pd(-0.0));
+    let found = _mm256_xor_pd(found, turn);
+    let large = largest([direction, edge1, edge2, start]);
+    // Direction, direction, direction, start; edge1, edge2, edge1, edge1; edge2, start, start, edge2.
+    let margin = _mm256_mul_pd(
+        _mm256_mul_pd(_mm256_set1_pd(DETERMINANT), _mm256_permute4x64_pd::<0b11_00_00_00>(large)),
+        _mm256_mul_pd(_mm256_permute4x64_pd::<0b01_01_10_01>(large), _mm256_permute4x64_pd::<0b10_11_11_10>(large)),
+    );
+    let [whole, u, v, _] = lanes(found);
+    let [whole_margin, u_margin, v_margin, _] = lanes(margin);
+    let (w, w_margin) = (whole - u - v, 2.0 * (whole_margin + u_margin + v_margin));
+    let inside = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(found, margin));
+    let below = _mm256_xor_pd(margin, _mm256_set1_pd(-0.0));
+    let outside = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(found, below));
+    let (inside, outside) = (in_order(inside, w > w_margin), in_order(outside, w < -w_margin));
+    // The first test that is not passed decides, if it is decided.
+    let passed = inside.trailing_ones();
+    if outside >> passed & 1 == 1 {
+        const WAYS: [Way; 8] =
+            [Way::Parallel, Way::OutsideU, Way::OutsideV, Way::OutsideW, Way::Behind, Way::Hit, Way::Hit, Way::Hit];
+        registers.set_scalar(fields.d, i32::MAX);
+        set_vector(registers, fields.e, [0; 3]);
+        return Exit { way: WAYS[passed as usize & 7], units: 0 };
+    }
+    if passed == 5
+        && let Some((t, weights)) = hit(found, margin, whole, whole_margin, fields.i)
+    {
+        registers.set_scalar(fields.d, t);
+        set_vector(registers, fields.e, weights);
+        return Exit { way: Way::Hit, units: 0 };
+    }
+    exactly(registers, fields)
+}
+
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn lanes(vector: __m256d) -> [f64; 4] {
+    let (low, high) = (_mm256_castpd256_pd128(vector), _mm256_extractf128_pd::<1>(vector));
+    [low, high]
+        .map(|half| [_mm_cvtsd_f64(half), _mm_cvtsd_f64(_mm_unpackhi_pd(half, half))])
+        .as_flattened()
+        .try_into()
+        .expect("two halves of two")
+}
+
+/// The quotients by the determinant, to nearest, ties up, where they are sure.
+///
+/// A determinant is off by at most its margin, the divisor by `doubt` of itself, at most one half; then a quotient is off by at most
+/// 2 (margin + quotient doubt) / divisor, and by 2^-50 of itself from the operations here. Sure is what lies further than twice that from
+/// where rounding turns.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn hit(found: __m256d, margin: __m256d, whole: f64, whole_margin: f64, shift: i32) -> Option<(i32, Vector)> {
+    let weight = (1u64 << 30) as f64;
+    let scale = _mm256_setr_pd(0.0, weight, weight, (1u64 << (shift & 63)) as f64);
+    let inverse = 1.0 / whole;
+    let doubt = whole_margin * inverse;
+    let factor = _mm256_mul_pd(_mm256_set1_pd(inverse), scale);
+    let quotient = _mm256_mul_pd(found, factor);
+    let half_up = _mm256_add_pd(quotient, _mm256_set1_pd(0.5));
+    let floor = _mm256_floor_pd(half_up);
+    let above = _mm256_sub_pd(half_up, floor);
+    let spread = _mm256_fmadd_pd(margin, factor, _mm256_mul_pd(quotient, _mm256_set1_pd(doubt)));
+    let error = _mm256_fmadd_pd(_mm256_set1_pd(4.0), spread, _mm256_mul_pd(half_up, _mm256_set1_pd(DETERMINANT)));
+    let sure = _mm256_and_pd(
+        _mm256_and_pd(
+            _mm256_cmp_pd::<_CMP_GT_OQ>(above, error),
+            _mm256_cmp_pd::<_CMP_LT_OQ>(above, _mm256_sub_pd(_mm256_set1_pd(1.0), error)),
+        ),
+        _mm256_cmp_pd::<_CMP_LT_OQ>(quotient, _mm256_set1_pd(LARGEST)),
+    );
+    if _mm256_movemask_pd(sure) & 0b1110 != 0b1110 || doubt >= 0.5 {
+        return None;
+    }
+    let words = _mm256_cvttpd_epi32(floor);
+    let (u, v, t) = (_mm_extract_epi32::<1>(words), _mm_extract_epi32::<2>(words), _mm_extract_epi32::<3>(words));
+    Some((t, [u, v, 0]))
+}
+
+#[cold]
+#[inline(never)]
+fn exactly(registers: &mut Registers, fields: &Fields) -> Exit {
+    let (t, weights, exit) =
+        RayRoom::rtri(&Nearest32, registers.vectors(fields.a), registers.vectors(fields.b), fields.i);
+    registers.set_scalar(fields.d, t);
+    set_vector(registers, fields.e, weights);
+    exit
+}

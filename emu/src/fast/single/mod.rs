@@ -1,0 +1,155 @@
+//! One work item after the other, without a look at each instruction's count or at the clock: a program is walked in *runs*, from any word to
+//! the next control row, and what a run takes is added once. Whatever is unusual is left to [`crate::checked`], which goes on where this
+//! stopped, from the same [`State`].
+
+mod count;
+#[cfg(target_arch = "x86_64")]
+mod doubles;
+mod driver;
+mod fuse;
+mod operands;
+#[cfg(target_arch = "x86_64")]
+mod planes;
+mod rows;
+mod walk;
+
+use fuse::Fuse;
+use walk::{Ended, Place, Walk};
+
+pub use count::Count;
+pub use driver::Driver;
+
+use super::plan::Plan;
+use super::{Counting, Features, Moment};
+use crate::checked::{Seat, State};
+use crate::exec::{Link, Message};
+use crate::octets::Buffer;
+use crate::profile::RunObserver;
+use crate::registers::Registers;
+use crate::trap::{Fault, Stop};
+
+/// The machine as a work item sees it.
+pub trait Wire: Link {
+    /// Whether it wants to know when it is asked.
+    fn keeps_time(&self) -> bool;
+
+    /// When and where it is asked next; the time only where it is kept.
+    fn note(&mut self, moment: Moment);
+}
+
+/// A link to which the time does not matter.
+pub struct Timeless<'a>(pub &'a mut dyn Link);
+
+/// Why the engine stopped. The state is that before the instruction at the program counter, but for `halt`, which has been executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The program executed `halt`.
+    Halt,
+    /// The instruction at the program counter waits for the machine.
+    Wait,
+    /// The instruction at the program counter asked the machine for something and went wrong.
+    Fault(Fault),
+    /// The instruction at the program counter is for the interpreter.
+    Unusual,
+}
+
+/// Runs until the program halts, waits or comes to something unusual, with the best features of the host that are not above those given. The
+/// results are the same with all of them.
+pub fn run<L: Wire, O: RunObserver, C: Counting>(
+    features: Features,
+    plan: &Plan,
+    seat: Seat,
+    state: &mut State,
+    link: &mut L,
+    count: &mut Count,
+    observer: &mut O,
+) -> Stopped {
+    #[cfg(target_arch = "x86_64")]
+    if features >= Features::Avx2 && Features::Avx2.is_present() {
+        let run = |registers: &mut Registers, first: Place, walk: &mut Walk<L, O>| {
+            // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
+            unsafe { rows::avx2::run::<L, O, C>(registers, first, walk) }
+        };
+        return walk::<L, O, C>(plan, seat, state, link, count, observer, run);
+    }
+    let _ = features;
+    // Hosts without vector instructions are few: one function serves all links there.
+    let mut link: &mut dyn Wire = link;
+    let run = rows::baseline::run::<&mut dyn Wire, O, C>;
+    walk::<_, O, C>(plan, seat, state, &mut link, count, observer, run)
+}
+
+fn walk<L: Wire, O: RunObserver, C: Counting>(
+    plan: &Plan,
+    seat: Seat,
+    state: &mut State,
+    link: &mut L,
+    count: &mut Count,
+    observer: &mut O,
+    run: impl FnOnce(&mut Registers, Place, &mut Walk<L, O>),
+) -> Stopped {
+    let fuse = Fuse::new(state, seat, count.origin, count.is_following);
+    let from = state.pc;
+    let State { registers, buffer, .. } = &mut *state;
+    let stop = Ended { stopped: Stopped::Unusual, pc: from, sums: 0, is_cut: false };
+    let mut walk = Walk { plan, seat, buffer, link, count, observer, fuse, from, stop };
+    let sums = walk.fuse.begin();
+    let first = walk.begin::<C>(from, sums);
+    run(registers, first, &mut walk);
+    let Ended { stopped, pc, sums, is_cut } = walk.stop;
+    let rest = is_cut.then(|| plan.run_toll(pc));
+    if is_cut {
+        walk.count.runs[pc as usize].cut += u64::from(C::IS_ON);
+        if O::IS_ACTIVE {
+            walk.observer.walked(walk.from..pc);
+        }
+    }
+    let fuse = walk.fuse;
+    count.origin = fuse.settle(plan, state, sums, pc, rest);
+    stopped
+}
+
+macro_rules! hand_on {
+    ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+        impl Link for Timeless<'_> {
+            $(fn $name(&mut self, $($argument: $kind),*) -> Result<$result, Stop> {
+                self.0.$name($($argument),*)
+            })*
+        }
+
+        impl Link for &mut dyn Wire {
+            $(fn $name(&mut self, $($argument: $kind),*) -> Result<$result, Stop> {
+                (**self).$name($($argument),*)
+            })*
+        }
+    };
+}
+
+hand_on! {
+    load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
+    store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
+    read(address: u32, words: &mut [i32]) -> ();
+    write(address: u32, words: &[i32]) -> ();
+    fetch_add(address: u32, more: i32) -> i32;
+    send(to: i32, message: Message) -> ();
+    receive() -> (Message, u32);
+    barrier() -> ();
+}
+
+impl Wire for Timeless<'_> {
+    fn keeps_time(&self) -> bool {
+        false
+    }
+
+    fn note(&mut self, _: Moment) {}
+}
+
+impl Wire for &mut dyn Wire {
+    fn keeps_time(&self) -> bool {
+        (**self).keeps_time()
+    }
+
+    fn note(&mut self, moment: Moment) {
+        (**self).note(moment);
+    }
+}

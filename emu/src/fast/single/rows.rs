@@ -1,0 +1,257 @@
+//! A function a row, stamped from the table once a set of host features, from the same meanings as the interpreter's, and the loop that
+//! calls one after the other.
+
+use super::walk::{Place, Walk};
+use crate::fast::plan::Step;
+use crate::registers::Registers;
+
+/// A row: it does what the step says, goes on with the rows behind it as long as they are cheap, and yields where that led to.
+/// The last number is that of [`Place::sums`].
+type RowFunction<L, O> = unsafe fn(&mut Registers, *const Step, &mut Walk<L, O>, u64) -> Place;
+
+/// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
+macro_rules! thread {
+    ($place:expr, ($registers:ident $walk:ident $L:ident $O:ident $C:ident)) => {{
+        let place: Place = $place;
+        #[cfg(threaded)]
+        {
+            // SAFETY: the step is one of the plan's, and the host has the features that all rows of this module are compiled for.
+            unsafe {
+                let row = usize::from((*place.step).row);
+                (const { &All::<$L, $O, $C>::FUNCTIONS }[row])($registers, place.step, $walk, place.sums)
+            }
+        }
+        #[cfg(not(threaded))]
+        place
+    }};
+}
+
+/// Writes what a meaning handed back, and yields the exit.
+macro_rules! finish {
+    ($registers:ident $fields:ident, $result:expr, []) => {
+        $result
+    };
+    ($registers:ident $fields:ident, $result:expr, [$(($letter:ident $kind:ident))+]) => {{
+        let ($($letter,)+ exit) = $result;
+        $(put!($registers, $fields, $letter $kind);)+
+        exit
+    }};
+}
+
+/// One row. A straight row goes on with the next word; a control row begins the next run. Rows that are long, or that may keep something on the
+/// stack, go back to the loop.
+macro_rules! row {
+    ({ $features:tt $ray:ident pure RayRoom $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let now = unsafe { &*step };
+            let fields = &now.fields;
+            let exit: exit::$name::Exit = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
+            let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
+            walk.go_on(Place { step, sums })
+        }
+    };
+    ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let now = unsafe { &*step };
+            let fields = &now.fields;
+            const { assert!(exit::$name::Exit::EXITS == 1) };
+            let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
+            let _: exit::$name::Exit = finish!(registers fields, result, $written);
+            let next = walk.go_on(Place { step, sums });
+            if is_heavy(Op::$name) {
+                return next;
+            }
+            thread!(next, (registers walk L O C))
+        }
+    };
+    ({ $features:tt $ray:ident local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let now = unsafe { &*step };
+            let fields = &now.fields;
+            const { assert!(exit::$name::Exit::EXITS == 1) };
+            match $trait::$name(&mut *walk.buffer $(, read!(registers, fields, $letter $kind))*) {
+                Ok(result) => {
+                    let _: exit::$name::Exit = finish!(registers fields, result, $written);
+                }
+                Err(_) => return walk.stop_before(Stopped::Unusual, Place { step, sums }),
+            }
+            let next = walk.go_on(Place { step, sums });
+            thread!(next, (registers walk L O C))
+        }
+    };
+    ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let now = unsafe { &*step };
+            let fields = &now.fields;
+            const { assert!(exit::$name::Exit::EXITS == 1) };
+            if C::IS_ON {
+                walk.note(Place { step, sums });
+            }
+            let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
+            match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
+                Ok(result) => {
+                    let exit: exit::$name::Exit = finish!(registers fields, result, $written);
+                    let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
+                    walk.go_on(Place { step, sums })
+                }
+                Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
+                Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
+            }
+        }
+    };
+    ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let now = unsafe { &*step };
+            let fields = &now.fields;
+            const { assert!(exit::$name::Exit::EXITS <= 2) };
+            let pc = walk.word(step);
+            let mut flow = Flow::new(pc, pc + 1, walk.seat.core, walk.seat.cores);
+            let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
+            if let Some(End::Trap(_)) = flow.end {
+                return walk.stop_before(Stopped::Unusual, Place { step, sums });
+            }
+            let exit: exit::$name::Exit = finish!(registers fields, result, $written);
+            let has_target = const { false $(|| is_relative!($kind))* };
+            if let Some(End::Halt) = flow.end {
+                return walk.halt(Place { step, sums });
+            }
+            let way = walk.turn::<C, exit::$name::Exit>(has_target, now, step, flow, exit);
+            let after = sums.wrapping_add(way.toll);
+            if after & LOOK != 0 {
+                return walk.look::<C>(way, sums);
+            }
+            thread!(Place { step: way.step, sums: after }, (registers walk L O C))
+        }
+    };
+}
+
+/// Whether an operand says where a branch leads to.
+macro_rules! is_relative {
+    (Rel) => {
+        true
+    };
+    ($kind:ident) => {
+        false
+    };
+}
+
+/// The rows of the ray unit by their meanings.
+macro_rules! exact_ray {
+    ($name:ident $registers:ident $fields:ident $written:tt $(($operand:expr))*) => {{
+        let result = RayRoom::$name(&Nearest32 $(, $operand)*);
+        finish!($registers $fields, result, $written)
+    }};
+}
+
+/// The same, some of them in a way that suits the host.
+#[cfg(target_arch = "x86_64")]
+macro_rules! wide_ray {
+    (rtri $registers:ident $fields:ident $written:tt $($operand:tt)*) => {
+        super::super::super::doubles::rtri($registers, $fields)
+    };
+    (rstep $registers:ident $fields:ident $written:tt $($operand:tt)*) => {{
+        let result = super::super::super::planes::rstep($registers, $fields);
+        finish!($registers $fields, result, $written)
+    }};
+    ($name:ident $registers:ident $fields:ident $written:tt $($operand:tt)*) => {
+        exact_ray!($name $registers $fields $written $($operand)*)
+    };
+}
+
+/// The rows and the loop for one set of host features.
+macro_rules! stamp {
+    ($features:tt $module:ident $ray:ident
+        $($style:ident $room:ident $trait:ident $room_doc:literal {
+            $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
+        })*
+    ) => {
+        pub(super) mod $module {
+            use super::super::Wire;
+            use super::super::walk::{Place, Walk};
+            use crate::fast::group::Counting;
+            use crate::profile::RunObserver;
+            use crate::registers::Registers;
+
+            #[allow(non_snake_case, reason = "a row's function is spelt as its mnemonic")]
+            mod rows {
+                use isa::Op;
+                use isa::number::Nearest32;
+                use isa::table::{Ending, exit};
+
+                use super::super::super::fuse::LOOK;
+                use super::super::super::operands::put;
+                use super::super::super::walk::{Place, Walk};
+                use super::super::super::{Stopped, Wire};
+                use super::super::super::super::rows::is_heavy;
+                use super::super::RowFunction;
+                #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
+                use crate::exec::RayRoom;
+                use crate::exec::{
+                    BusRoom, ControlRoom, End, Flow, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
+                    split_operands,
+                };
+                use crate::fast::group::Counting;
+                use crate::fast::plan::{Step, padded};
+                use crate::profile::RunObserver;
+                use crate::registers::{Registers, read, write};
+                use crate::trap::Stop;
+
+                $($(split_operands! { row { $features $ray $style $trait $name } [] [] ($($operands)*) })*)*
+
+                /// What is no row of the table.
+                unsafe fn unusual<L: Wire, O: RunObserver>(_: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+                    walk.stop_before(Stopped::Unusual, Place { step, sums })
+                }
+
+                /// The rows by number.
+                pub struct All<L, O, C>(std::marker::PhantomData<(L, O, C)>);
+
+                impl<L: Wire, O: RunObserver, C: Counting> All<L, O, C> {
+                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O, C>,)*)* unusual::<L, O>]);
+                }
+            }
+
+            /// Walks from a step, of which the run has begun, until it stops.
+            # $features
+            pub fn run<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
+                while !place.step.is_null() {
+                    // SAFETY: rows yield a step of the plan, and the host has the features that this function is compiled for, as the
+                    // rows are. `crate::checked::run` is the safe twin.
+                    place = unsafe {
+                        let row = usize::from((*place.step).row);
+                        (const { &rows::All::<L, O, C>::FUNCTIONS }[row])(registers, place.step, walk, place.sums)
+                    };
+                }
+            }
+        }
+    };
+}
+
+macro_rules! stamp_baseline {
+    ($($rows:tt)*) => { stamp! { [cfg(all())] baseline exact_ray $($rows)* } };
+}
+
+isa::rows!(stamp_baseline);
+
+#[cfg(target_arch = "x86_64")]
+macro_rules! stamp_avx2 {
+    ($($rows:tt)*) => { stamp! { [target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")] avx2 wide_ray $($rows)* } };
+}
+
+#[cfg(target_arch = "x86_64")]
+isa::rows!(stamp_avx2);

@@ -90,7 +90,9 @@ fn all_ways_to_run_an_example_agree() {
         let frame = run(Engine::Fast, false);
         assert_eq!(frame.method.name(), "replayed");
         let stepped = run(Engine::Checked, true);
-        assert!(run(Engine::Checked, false) == frame, "{}: checked", folder.display());
+        for engine in Engine::ALL {
+            assert!(run(engine, false) == frame, "{}: {}", folder.display(), engine.name());
+        }
         assert!(Frame { method: frame.method, ..stepped } == frame, "{}: stepped", folder.display());
     }
 }

@@ -11,11 +11,18 @@ pub enum Numbers<'a> {
     Other(&'a dyn Arithmetic),
 }
 
+/// Keeps what other arithmetic takes out of loops over lanes, so that the default's are unrolled.
+#[cold]
+#[inline(never)]
+fn seldom<R>(compute: impl FnOnce() -> R) -> R {
+    compute()
+}
+
 macro_rules! forward {
     ($self:ident, $name:ident($($argument:ident),*)) => {
         match $self {
             Numbers::Nearest32 => Nearest32.$name($($argument),*),
-            Numbers::Other(arithmetic) => arithmetic.$name($($argument),*),
+            Numbers::Other(arithmetic) => seldom(|| arithmetic.$name($($argument),*)),
         }
     };
 }

@@ -48,7 +48,7 @@ impl State {
 
     /// The same core after another reset.
     pub fn begin(&mut self, code: &Code, initial: &Buffer) {
-        self.registers = Registers::default();
+        self.registers.reset();
         self.buffer.reset_to(initial);
         self.units.begin(code.isa);
         self.pc = code.program.entry;

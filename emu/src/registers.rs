@@ -20,58 +20,92 @@ struct Padded([i32; 4]);
 ///
 /// Behind those that programs can name come hidden ones (scalars and vectors 32 to 63, wide accumulators 8 to 15), in which bodies of
 /// extension instructions work. A body reads none that it has not written, so what one leaves there no other one sees.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// There is room for every number of eight bits, so that none has to be checked.
+#[derive(Clone, Debug)]
 pub struct Registers {
-    scalars: [i32; 64],
-    vectors: [Padded; 64],
-    wides: [i64; 16],
+    scalars: [i32; ROOM],
+    vectors: [Padded; ROOM],
+    wides: [i64; ROOM],
 }
+
+/// Numbers of eight bits.
+const ROOM: usize = 1 << 8;
+
+/// Scalars and vectors that are used at all, hidden ones included; of wide accumulators there are fewer.
+const USED: usize = 64;
 
 impl Default for Registers {
     fn default() -> Registers {
-        Registers { scalars: [0; 64], vectors: [Padded([0; 4]); 64], wides: [0; 16] }
+        Registers { scalars: [0; ROOM], vectors: [Padded([0; 4]); ROOM], wides: [0; ROOM] }
     }
 }
 
-/// Register numbers come from decoded fields, which the decoder has checked; the masks only tell that to the compiler.
+impl PartialEq for Registers {
+    fn eq(&self, other: &Registers) -> bool {
+        self.scalars[..USED] == other.scalars[..USED]
+            && self.vectors[..USED] == other.vectors[..USED]
+            && self.wides[..USED] == other.wides[..USED]
+    }
+}
+
+impl Eq for Registers {}
+
 impl Registers {
+    /// The scalar that takes what is written to `s0` where nobody reads it.
+    pub(crate) const NOWHERE: u8 = u8::MAX;
+
+    /// All zero, as after reset.
+    pub fn reset(&mut self) {
+        self.scalars[..USED].fill(0);
+        self.vectors[..USED].fill(Padded([0; 4]));
+        self.wides[..USED].fill(0);
+    }
+
+    /// Sets a scalar that is not `s0`.
+    #[inline]
+    pub(crate) fn set_other_scalar(&mut self, number: u8, value: i32) {
+        debug_assert!(number != 0);
+        self.scalars[usize::from(number)] = value;
+    }
+
     /// `s0` to `s31`; `s0` is zero.
     #[inline]
     pub fn scalar(&self, number: u8) -> i32 {
-        self.scalars[usize::from(number & 63)]
+        self.scalars[usize::from(number)]
     }
 
     /// Sets a scalar; `s0` stays zero.
     #[inline]
     pub fn set_scalar(&mut self, number: u8, value: i32) {
-        self.scalars[usize::from(number & 63)] = value;
+        self.scalars[usize::from(number)] = value;
         self.scalars[0] = 0;
     }
 
     /// `v0` to `v31`.
     #[inline]
     pub fn vector(&self, number: u8) -> Vector {
-        let [x, y, z, _] = self.vectors[usize::from(number & 63)].0;
+        let [x, y, z, _] = self.vectors[usize::from(number)].0;
         [x, y, z]
     }
 
     /// A vector with a fourth lane, which is 0.
     #[inline]
     pub(crate) fn padded(&self, number: u8) -> &[i32; 4] {
-        &self.vectors[usize::from(number & 63)].0
+        &self.vectors[usize::from(number)].0
     }
 
     /// The same to write; the fourth lane is to stay 0.
     #[inline]
     pub(crate) fn padded_mut(&mut self, number: u8) -> &mut [i32; 4] {
-        &mut self.vectors[usize::from(number & 63)].0
+        &mut self.vectors[usize::from(number)].0
     }
 
     /// Sets a vector.
     #[inline]
     pub fn set_vector(&mut self, number: u8, value: Vector) {
         let [x, y, z] = value;
-        self.vectors[usize::from(number & 63)] = Padded([x, y, z, 0]);
+        self.vectors[usize::from(number)] = Padded([x, y, z, 0]);
     }
 
     /// `N` consecutive vectors from `number` on.
@@ -91,13 +125,13 @@ impl Registers {
     /// `w0` to `w7`.
     #[inline]
     pub fn wide(&self, number: u8) -> i64 {
-        self.wides[usize::from(number & 15)]
+        self.wides[usize::from(number)]
     }
 
     /// Sets a wide accumulator.
     #[inline]
     pub fn set_wide(&mut self, number: u8, value: i64) {
-        self.wides[usize::from(number & 15)] = value;
+        self.wides[usize::from(number)] = value;
     }
 
     /// `N` consecutive wide accumulators from `number` on.

@@ -6,6 +6,7 @@ use isa::{Fields, Kind, Op, Row};
 
 use crate::code::{Code, Slot};
 use crate::independence::Mark;
+use crate::registers::Registers;
 
 /// Bits of a field of a [`Toll`].
 pub(super) const FIELD: u32 = 21;
@@ -208,9 +209,19 @@ impl<'a> Plan<'a> {
         let target = branch_target(code, pc as usize, slot).and_then(|target| u32::try_from(target).ok());
         let target = target.filter(|&target| target < code.words()).unwrap_or(u32::MAX);
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
+        // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter.
+        let (mut fields, mut is_odd) = (slot.fields, false);
+        let zeros = code.row(pc).into_iter().flat_map(|row| row.operands.iter());
+        for operand in zeros.filter(|operand| operand.kind == Kind::S && operand.is_written()) {
+            if slot.fields.get(operand.letter) == 0 {
+                is_odd |= operand.is_read();
+                fields.set(operand.letter, Registers::NOWHERE.into());
+            }
+        }
+        let number = op.filter(|_| !is_odd).map_or(Op::BUILT_IN.len(), Op::index);
         Step {
-            row: op.map_or(Op::BUILT_IN.len(), Op::index).min(Op::BUILT_IN.len()) as u8,
-            fields: slot.fields,
+            row: number.min(Op::BUILT_IN.len()) as u8,
+            fields,
             exit: slot.first_exit,
             is_uneven: extra.iter().any(|extra| *extra != Toll::default()),
             edges: [

@@ -96,14 +96,14 @@ pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
     if outside >> passed & 1 == 1 {
         const WAYS: [Way; 8] =
             [Way::Parallel, Way::OutsideU, Way::OutsideV, Way::OutsideW, Way::Behind, Way::Hit, Way::Hit, Way::Hit];
-        registers.set_scalar(fields.d, i32::MAX);
+        registers.set_other_scalar(fields.d, i32::MAX);
         set_vector(registers, fields.e, [0; 3]);
         return Exit { way: WAYS[passed as usize & 7], units: 0 };
     }
     if passed == 5
         && let Some((t, weights)) = hit(found, margin, whole, whole_margin, fields.i)
     {
-        registers.set_scalar(fields.d, t);
+        registers.set_other_scalar(fields.d, t);
         set_vector(registers, fields.e, weights);
         return Exit { way: Way::Hit, units: 0 };
     }
@@ -160,7 +160,7 @@ fn hit(found: __m256d, margin: __m256d, whole: f64, whole_margin: f64, shift: i3
 fn exactly(registers: &mut Registers, fields: &Fields) -> Exit {
     let (t, weights, exit) =
         RayRoom::rtri(&Nearest32, registers.vectors(fields.a), registers.vectors(fields.b), fields.i);
-    registers.set_scalar(fields.d, t);
+    registers.set_other_scalar(fields.d, t);
     set_vector(registers, fields.e, weights);
     exit
 }

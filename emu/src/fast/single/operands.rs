@@ -24,6 +24,9 @@ macro_rules! put {
     ($registers:expr, $fields:expr, $letter:ident V) => {
         $crate::fast::single::operands::set_vector($registers, $fields.$letter, $letter)
     };
+    ($registers:expr, $fields:expr, $letter:ident S) => {
+        $registers.set_other_scalar($fields.$letter, $letter)
+    };
     ($registers:expr, $fields:expr, $letter:ident V2) => {
         put!($registers, $fields, $letter vectors)
     };

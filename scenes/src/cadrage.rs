@@ -88,7 +88,7 @@ impl Formats {
     /// The formats for a scene on its grid.
     ///
     /// Directions, barycentrics and weights keep the most fraction bits that hold 1, which is word - 2. Distances have the grid's steps when
-    /// the diagonal of everything, and `margin` raw units on each side of it, is shorter than 2^(word-1) raw, else steps twice as long.
+    /// the diagonal of the grid's span, and `margin` raw units on each side of it, is shorter than 2^(word-1) raw, else steps twice as long.
     /// Colours keep the most fraction bits that hold [`brightest`], at most word - 3.
     ///
     /// # Errors
@@ -107,7 +107,7 @@ impl Formats {
             }
         };
         let diagonal = [0, 1, 2]
-            .map(|axis| f64::from(grid.reach.side(axis)) + 2.0 * f64::from(margin))
+            .map(|axis| f64::from(grid.span[axis]) + 2.0 * f64::from(margin))
             .iter()
             .map(|side| side * side)
             .sum::<f64>();

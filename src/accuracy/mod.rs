@@ -4,15 +4,18 @@
 mod chart;
 mod front;
 mod rays;
+mod similarity;
 
 use std::fmt;
 use std::time::Instant;
 
 use isa::number::Quantization;
 use kernels::Profile;
+use scenes::image;
 use scenes::layout::Layout;
-use scenes::metrics::PictureError;
-use scenes::model::{Scene, View};
+use scenes::metrics::{self, PictureError};
+use scenes::model::{Picture, Scene, View};
+use scenes::reference::{Method, Reference};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -143,6 +146,10 @@ pub struct Measured {
     pub formats: crate::result::Formats,
     /// The picture against double precision with five bounces and no cut-off.
     pub error: PictureError,
+    /// Structural similarity of both pictures as screens show them, 1 for equal ones.
+    pub ssim: Option<f64>,
+    /// The picture against double precision over the vertices as they are stored: the error without that of rounding the mesh.
+    pub stored_error: PictureError,
     /// Camera rays against exact integers.
     pub rays: RayErrors,
     /// Clocks of the frame, a pixel.
@@ -162,11 +169,17 @@ pub struct Measured {
     pub dominated_by: Option<String>,
 }
 
-/// Draws a scene in a variant and measures it.
+/// Draws a scene in a variant and measures it against a picture of the view in double precision.
 ///
 /// # Errors
 /// A scene that does not fit the formats, or a trap.
-pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -> Result<Measured, Failure> {
+pub fn measure(
+    scene: &Scene,
+    view: &View,
+    reference: &Picture,
+    variant: &Variant,
+    has_times: bool,
+) -> Result<Measured, Failure> {
     let mut job = Job::new(scene.clone());
     job.view = View { bounces: variant.bounces, ..view.clone() };
     job.kernels.profile = variant.profile;
@@ -180,8 +193,10 @@ pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -
     let start = Instant::now();
     let drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
     let host = start.elapsed();
-    let reference = scenes::reference::render(scene, view)?.picture;
-    let error = scenes::metrics::compare(&drawing.picture, &reference).expect("both have the view's size");
+    let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
+    let image = image::build(scene, &job.view, &job.memory)?;
+    let stored = image.stored_scene(scene).expect("an image that was built can be read");
+    let stored = Reference::framed(&stored, scene.bounds(), view, Method::Hierarchy)?.picture().picture;
     let rays = RayErrors::new(scene, &job.view, &job.memory, variant.profile, job.machine.arithmetic.modes())?;
     let result = Render::new(&job, &drawing);
     let pixels = f64::from(result.width) * f64::from(result.height);
@@ -196,7 +211,9 @@ pub fn measure(scene: &Scene, view: &View, variant: &Variant, has_times: bool) -
         bounces: variant.bounces,
         cutoff: variant.cutoff,
         interpolate: variant.interpolate,
-        error,
+        error: error(reference),
+        ssim: similarity::structural_similarity(&drawing.picture, reference),
+        stored_error: error(&stored),
         rays,
         clocks: each(result.clocks),
         operations: result.counts,

@@ -25,6 +25,14 @@ pub struct RayErrors {
     pub t_p99: Option<f64>,
     /// Largest error of the distance, ulp.
     pub t_max: Option<f64>,
+    /// Error of u that 99 of 100 hits stay below, ulp; null for kernels that decide by signs and never compute it.
+    pub u_p99: Option<f64>,
+    /// Largest error of u, ulp.
+    pub u_max: Option<f64>,
+    /// Error of v that 99 of 100 hits stay below, ulp; null as u.
+    pub v_p99: Option<f64>,
+    /// Largest error of v, ulp.
+    pub v_max: Option<f64>,
     /// Error of a component of the normal that 99 of 100 hits stay below, ulp.
     pub normal_p99: Option<f64>,
     /// Largest error of a component of the normal, ulp.
@@ -34,8 +42,8 @@ pub struct RayErrors {
 /// What came of a ray.
 struct Ended {
     is_right: bool,
-    /// Errors of t and of the normal, of a hit that both find.
-    errors: Option<[f64; 2]>,
+    /// Errors of t, u, v and of the normal, of a hit that both find; not a number where the kernels do not compute it.
+    errors: Option<[f64; 4]>,
 }
 
 impl RayErrors {
@@ -60,16 +68,21 @@ impl RayErrors {
             .collect();
         let wrong = ended.iter().filter(|ray| !ray.is_right).count();
         let errors = |which: usize| {
-            let mut errors: Vec<f64> = ended.iter().filter_map(|ray| ray.errors).map(|errors| errors[which]).collect();
+            let all = ended.iter().filter_map(|ray| ray.errors).map(|errors| errors[which]);
+            let mut errors: Vec<f64> = all.filter(|error| !error.is_nan()).collect();
             errors.sort_by(f64::total_cmp);
             errors
         };
-        let [t, normals] = [errors(0), errors(1)];
+        let [t, u, v, normals] = [0, 1, 2, 3].map(errors);
         let p99 = |errors: &[f64]| errors.get((errors.len() * 99 / 100).min(errors.len().saturating_sub(1))).copied();
         Ok(RayErrors {
             misclassified_per_million: wrong as f64 * 1e6 / ended.len().max(1) as f64,
             t_p99: p99(&t),
             t_max: t.last().copied(),
+            u_p99: p99(&u),
+            u_max: u.last().copied(),
+            v_p99: p99(&v),
+            v_max: v.last().copied(),
             normal_p99: p99(&normals),
             normal_max: normals.last().copied(),
         })
@@ -82,7 +95,8 @@ fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
     let expected = nearest(twin, ray);
     let errors = match (search.triangle, expected) {
         (Some(found), Some((t, index))) if found == index => {
-            Some([(f64::from(search.t) - t).abs(), normal_error(twin, ray.direction, index)])
+            let [u, v] = barycentric_errors(twin, ray, index);
+            Some([(f64::from(search.t) - t).abs(), u, v, normal_error(twin, ray.direction, index)])
         }
         _ => None,
     };
@@ -102,6 +116,20 @@ fn nearest(twin: &Twin<Modes>, ray: &Ray) -> Option<(f64, u32)> {
         (met.end == TriangleEnd::Hit).then(|| (met.t as f64 / met.determinant as f64 * scale, index))
     });
     hits.min_by(|a, b| (a.0 + 0.5).floor().total_cmp(&(b.0 + 0.5).floor()).then(a.1.cmp(&b.1)))
+}
+
+/// Errors of u and v of a hit, each not a number where the kernels do not compute it.
+fn barycentric_errors(twin: &Twin<Modes>, ray: &Ray, index: u32) -> [f64; 2] {
+    let vertices = &twin.stage.triangles[index as usize].vertices;
+    let met = exact::triangle(&exact::Ray { origin: ray.origin, direction: ray.direction }, vertices);
+    let bits = twin.constants.formats.barycentric;
+    let computed = match twin.profile {
+        Profile::Report => report::barycentric(&twin.arithmetic, &twin.constants, ray, vertices).map(f64::from),
+        Profile::Vector => [f64::NAN; 2],
+        Profile::Ray => [met.u, met.v].map(|x| f64::from(exact::ratio(&twin.arithmetic, x, met.determinant, bits))),
+    };
+    let expected = [met.u, met.v].map(|x| x as f64 / met.determinant as f64 * f64::from(bits).exp2());
+    [0, 1].map(|k| (computed[k] - expected[k]).abs())
 }
 
 /// The largest error of a component of a triangle's unit normal.

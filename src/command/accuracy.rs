@@ -161,9 +161,10 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
         let view = View { shift: SHIFT, ..View::new(arguments.size) };
+        let reference = scenes::reference::render(&loaded.scene, &view)?.picture;
         let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
         for variant in &variants {
-            match accuracy::measure(&loaded.scene, &view, variant, arguments.timing) {
+            match accuracy::measure(&loaded.scene, &view, &reference, variant, arguments.timing) {
                 Ok(one) => measured.push(one),
                 // A word that the scene does not fit, or in which a ray is stuck, is a result, not a mistake.
                 Err(Failure::Message { report, exit: Exit::Input | Exit::Trap }) => refused.push(Refused {
@@ -204,8 +205,21 @@ fn text(results: &Results) -> String {
             "{scene}, {} x {} pixels; clocks and octets a pixel, * on the front",
             results.width, results.height
         );
-        let mut rows =
-            vec![row(["variant", "clocks", "octets", "PSNR", "off", "wrong/M", "t p99", "N p99", "dominated by"])];
+        let mut rows = vec![row([
+            "variant",
+            "clocks",
+            "octets",
+            "PSNR",
+            "off",
+            "SSIM",
+            "stored",
+            "wrong/M",
+            "t p99",
+            "u p99",
+            "v p99",
+            "N p99",
+            "dominated by",
+        ])];
         for one in results.variants.iter().filter(|one| one.scene == scene) {
             let ulp = |error: Option<f64>| error.map_or_else(|| "-".into(), |error| format!("{error:.2}"));
             rows.push(vec![
@@ -214,8 +228,12 @@ fn text(results: &Results) -> String {
                 short(one.octets.round() as u64),
                 decibels(one.error.psnr_db),
                 one.error.off_pixels.to_string(),
+                one.ssim.map_or_else(|| "-".into(), |ssim| format!("{ssim:.4}")),
+                decibels(one.stored_error.psnr_db),
                 format!("{:.0}", one.rays.misclassified_per_million),
                 ulp(one.rays.t_p99),
+                ulp(one.rays.u_p99),
+                ulp(one.rays.v_p99),
                 ulp(one.rays.normal_p99),
                 one.dominated_by.clone().unwrap_or_default(),
             ]);
@@ -231,8 +249,8 @@ fn text(results: &Results) -> String {
 
 fn csv(measured: &[Measured]) -> String {
     let mut text = String::from(
-        "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,\
-         misclassified_per_million,t_p99,t_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
+        "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,ssim,stored_psnr_db,\
+         stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
     );
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
@@ -254,9 +272,16 @@ fn csv(measured: &[Measured]) -> String {
             number(one.error.psnr_db),
             one.error.max.to_string(),
             one.error.off_pixels.to_string(),
+            number(one.ssim),
+            number(one.stored_error.psnr_db),
+            one.stored_error.off_pixels.to_string(),
             one.rays.misclassified_per_million.to_string(),
             number(one.rays.t_p99),
             number(one.rays.t_max),
+            number(one.rays.u_p99),
+            number(one.rays.u_max),
+            number(one.rays.v_p99),
+            number(one.rays.v_max),
             number(one.rays.normal_p99),
             number(one.rays.normal_max),
             number(one.host_nanoseconds),

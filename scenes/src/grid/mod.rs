@@ -1,8 +1,9 @@
 //! The grid of a scene: where its origin lies, how fine its steps are, and how coordinates become raw integers. Which number of fraction
 //! bits other quantities have is decided in [`crate::cadrage`].
 //!
-//! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles, the
-//! lights and the eye within |x| <= 2^(word-2) - 4 raw. Everything is computed relative to the box and relative to the largest coordinate's
+//! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles and
+//! the eye within |x| <= 2^(word-2) - 4 raw, and the way from any of their points to a light within 2^(word-1) - 8 along each axis: no ray
+//! starts at a light, so a light may stand twice as far away. Everything is computed relative to the box and relative to the largest coordinate's
 //! power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
 //! gives the same raw integers.
 
@@ -23,8 +24,10 @@ pub struct Grid {
     pub word: u32,
     /// Raw units in a scene unit, as a power of two: raw = (x - centre) 2^position.
     pub position: i32,
-    /// Box of triangles, lights and eye, raw.
+    /// Box of triangles and eye, raw: where rays start and end.
     pub reach: Bounds,
+    /// Along each axis the longest way within that box, or from it to a light, raw.
+    pub span: [u32; 3],
     /// Box of the triangles in scene units; that of an empty scene is -1 to 1.
     corners: Corners,
     /// Coordinates are multiplied by 2^-unit before anything else, which makes the largest less than 1.
@@ -38,6 +41,12 @@ struct Point {
     name: &'static str,
     number: usize,
     at: Vec3,
+}
+
+impl Point {
+    fn is_light(&self) -> bool {
+        self.name == "light"
+    }
 }
 
 impl Grid {
@@ -109,22 +118,26 @@ impl Grid {
         Ok(chosen)
     }
 
-    /// The grid with 2^power steps in a unit, `None` when a point does not fit.
+    /// The grid with 2^power steps in a unit; `None` when a point does not fit.
     fn with(points: &[Point], corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
         let limit = ((1i64 << (word - 2)) - 4) as f64;
+        let farthest = ((1i64 << (word - 1)) - 8) as f64;
         let middle = AXES.map(|k| rounded_middle(points[0].at[k], points[1].at[k], power));
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for point in points {
-            for k in AXES {
-                let raw = nearest(shifted(point.at[k] - middle[k], power));
-                low[k] = raw.min(low[k]);
-                high[k] = raw.max(high[k]);
-            }
+        let raw = |point: &Point| AXES.map(|k| nearest(shifted(point.at[k] - middle[k], power)));
+        let (lights, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.is_light());
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for at in others.into_iter().map(raw) {
+            low = AXES.map(|k| low[k].min(at[k]));
+            high = AXES.map(|k| high[k].max(at[k]));
         }
-        let is_inside = AXES.iter().all(|&k| low[k] >= -limit && high[k] <= limit);
+        let mut span = AXES.map(|k| high[k] - low[k]);
+        for at in lights.into_iter().map(raw) {
+            span = AXES.map(|k| span[k].max(at[k] - low[k]).max(high[k] - at[k]));
+        }
+        let is_inside = AXES.iter().all(|&k| low[k] >= -limit && high[k] <= limit && span[k] <= farthest);
         let reach = Bounds { low: low.map(|x| x as i32), high: high.map(|x| x as i32) };
-        is_inside.then_some(Grid { word, position: power - unit, reach, corners, unit, middle })
+        let span = span.map(|x| x as u32);
+        is_inside.then_some(Grid { word, position: power - unit, reach, span, corners, unit, middle })
     }
 
     /// A point relative to the grid's origin in raw units, not rounded.
@@ -178,11 +191,11 @@ fn too_coarse(grid: &Grid, points: &[Point], side: u32, is_chosen: bool) -> Diag
         grid.word,
         1 << needed
     );
-    let distance = |p: &Point| largest(sub(p.at, grid.middle));
+    let distance = |p: &Point| largest(sub(p.at, grid.middle)) * if p.is_light() { 0.5 } else { 1.0 };
     let farthest = points.iter().rev().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let hint = match farthest {
         _ if is_chosen => "choose a larger pos, or leave it out".to_string(),
-        Some(p) if p.name == "light" => {
+        Some(p) if p.is_light() => {
             format!(
                 "light {} stands far away and sets the scale: move it nearer, or use a longer word with --word",
                 p.number

@@ -85,7 +85,18 @@ proptest! {
         let limit = (1i32 << (word - 2)) - 4;
         let most = |b: &Bounds| b.low.iter().chain(&b.high).map(|x| x.abs()).max().unwrap();
         prop_assert!(most(&grid.reach) <= limit);
-        prop_assert!(most(&grid.reach) >= limit / 2 - 1, "a finer grid fits: {:?}", grid.reach);
+        let longest = AXES.map(|k| grid.span[k]).into_iter().max().unwrap();
+        let farthest = (1u32 << (word - 1)) - 8;
+        prop_assert!(longest <= farthest);
+        let is_finest = most(&grid.reach) >= limit / 2 - 1 || longest >= farthest / 2 - 1;
+        prop_assert!(is_finest, "a finer grid fits: {:?}, {longest}", grid.reach);
+        let ways = scene.lights.iter().flat_map(|light| {
+            let light = grid.raw(light.position);
+            scene.triangles.iter().flat_map(|t| t.vertices).map(|v| grid.raw(scene.vertices[v as usize])).flat_map(move |v| {
+                AXES.map(|k| (i64::from(light[k]) - i64::from(v[k])).unsigned_abs())
+            }).collect::<Vec<_>>()
+        });
+        prop_assert!(ways.max().unwrap_or(0) <= longest.into());
         prop_assert!(Grid::new(&scene, &view, word, Some(grid.position + 1)).is_err());
         // The middle of the box is within one step of 0 on every axis, and the way back is within half a step.
         let bounds = grid.bounds();
@@ -155,14 +166,15 @@ fn what_sets_the_scale_is_named_when_too_little_is_left() {
     let far_light = scene(small.clone(), vec![[0.0, 1.0, 2.0], [0.0, 1e9, 0.0]]);
     let message = refusal(&far_light, &View::new((8, 8)), 32);
     assert!(
-        message.contains("the scene's box is 1 grid steps long") && message.contains("light 2 stands far away"),
+        message.contains("the scene's box is 2 grid steps long") && message.contains("light 2 stands far away"),
         "{message}"
     );
     let message = refusal(&scene(small.clone(), vec![]), &perspective(Some([0.0, 0.0, 1e6])), 24);
     assert!(message.contains("the eye stands far away"), "{message}");
-    assert!(Grid::new(&scene(small.clone(), vec![[0.0, 60.0, 0.0]]), &View::new((8, 8)), 16, None).is_ok());
+    assert!(Grid::new(&scene(small.clone(), vec![[0.0, 120.0, 0.0]]), &View::new((8, 8)), 16, None).is_ok());
     assert!(
-        refusal(&scene(small, vec![[0.0, 70.0, 0.0]]), &View::new((8, 8)), 16).contains("less than 8 bits (256 steps)")
+        refusal(&scene(small, vec![[0.0, 140.0, 0.0]]), &View::new((8, 8)), 16)
+            .contains("less than 8 bits (256 steps)")
     );
 }
 

@@ -3,6 +3,7 @@
 use super::{Image, Kind};
 use crate::kdtree::{Bounds, Content, KdTree, Node};
 use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
+use crate::model::{Scene, Triangle};
 
 /// A triangle as it is stored, its coordinates shifted back to positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +43,18 @@ impl Image {
                 .collect::<Option<_>>()?,
             lights: (0..self.counts.lights).map(|k| self.element(Kind::Lights, &LIGHT, k)).collect::<Option<_>>()?,
         })
+    }
+
+    /// The scene with its vertices where the image has them; each triangle has vertices of its own.
+    pub fn stored_scene(&self, scene: &Scene) -> Option<Scene> {
+        let stored: Vec<StoredTriangle> =
+            (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?;
+        let vertices = stored.iter().flat_map(|triangle| triangle.vertices).map(|raw| self.grid.scene(raw)).collect();
+        let triangles = (0..).step_by(3).zip(&scene.triangles);
+        let triangles = triangles
+            .map(|(first, &triangle)| Triangle { vertices: [0, 1, 2].map(|k| first + k), ..triangle })
+            .collect();
+        Some(Scene { vertices, triangles, ..scene.clone() })
     }
 
     /// A triangle by its index.

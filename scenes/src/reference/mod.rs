@@ -12,7 +12,7 @@ use isa::diagnostic::{Diagnostic, Report};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::camera::{self, Rays};
+use crate::camera::{self, Corners, Rays};
 use crate::model::{Picture, Scene, Vec3, View};
 use crate::vector::{exponent, largest, shifted, sub};
 use hierarchy::Hierarchy;
@@ -81,6 +81,14 @@ impl Reference {
     /// # Errors
     /// What [`Scene::check`], [`View::check`] and [`Rays::new`] refuse, and pictures of more than [`MOST_PIXELS`].
     pub fn new(scene: &Scene, view: &View, method: Method) -> Result<Reference, Report> {
+        Reference::framed(scene, scene.bounds(), view, method)
+    }
+
+    /// The same with a camera that looks at another box than the scene's own, as where its vertices were rounded; `None` is that from -1 to 1.
+    ///
+    /// # Errors
+    /// As [`Reference::new`].
+    pub fn framed(scene: &Scene, corners: Option<Corners>, view: &View, method: Method) -> Result<Reference, Report> {
         let mut report = scene.check();
         report.0.extend(view.check().0);
         let pixels = u64::from(view.size.0) * u64::from(view.size.1);
@@ -93,7 +101,7 @@ impl Reference {
         if report.has_errors() {
             return Err(report);
         }
-        let corners = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
+        let corners = corners.unwrap_or(([-1.0; 3], [1.0; 3]));
         let middle = camera::centre(corners);
         let halves = |p: Vec3| p.map(|x| x / 2.0);
         // Halves, because the distance of two representable points need not be representable.

@@ -9,5 +9,5 @@ mod walk;
 pub use crossing::{Exit, exit_face, first_packet};
 pub use scalar::dot;
 pub use surface::{Refraction, lit, normal, reflect, refract, sides, transmitted, unit};
-pub use triangle::triangle;
+pub use triangle::{barycentric, triangle};
 pub use walk::{descend, next_packet, own_packet};

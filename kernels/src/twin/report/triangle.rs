@@ -7,9 +7,30 @@ use crate::constants::Constants;
 use crate::twin::lanes::Lanes;
 use crate::twin::ray::Ray;
 
+/// What the formulas of 3.1.2 give.
+struct Solution {
+    determinant: i32,
+    t: i32,
+    u: i32,
+    v: i32,
+}
+
 /// Ray against triangle by the formulas of 3.1.2, or [`Constants::missed`]: no early out, inclusive comparisons, (1 / det) x three times.
 /// Edges and determinant are shifted into range, and quotients back.
 pub fn triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+    let Solution { determinant, t, u, v } = solve(arithmetic, constants, ray, vertices);
+    let one = 1 << constants.formats.barycentric;
+    let is_outside = u < 0 || u > one || v < 0 || v > one || arithmetic.plus(v, u) > one;
+    if determinant == 0 || is_outside || t <= 0 { constants.missed } else { t }
+}
+
+/// u and v by the same formulas, for a ray that hits.
+pub fn barycentric(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> [i32; 2] {
+    let Solution { u, v, .. } = solve(arithmetic, constants, ray, vertices);
+    [u, v]
+}
+
+fn solve(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> Solution {
     let formats = &constants.formats;
     let (word, bits, barycentric) = (formats.word, formats.direction, formats.barycentric);
     // Fraction bits of 1 / det beyond those of a determinant.
@@ -29,10 +50,7 @@ pub fn triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, verti
     let u = over(dot(arithmetic, p, start, word), shift1, barycentric as i32);
     let v = over(dot(arithmetic, q, ray.direction, bits), shift2, barycentric as i32);
     let t = over(dot(arithmetic, q, edge2, word), 0, word as i32 + formats.t - formats.position);
-
-    let one = 1 << barycentric;
-    let is_outside = u < 0 || u > one || v < 0 || v > one || arithmetic.plus(v, u) > one;
-    if determinant == 0 || is_outside || t <= 0 { constants.missed } else { t }
+    Solution { determinant, t, u, v }
 }
 
 /// The vector with its largest lane in [2^(word-3), 2^(word-2)], and by how much it was shifted right.

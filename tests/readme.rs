@@ -20,8 +20,8 @@ fn folder() -> tempfile::TempDir {
     for name in ["examples", "kernels/asm/report"] {
         let copy = folder.path().join(name);
         fs::create_dir_all(&copy).unwrap();
-        for file in fs::read_dir(repository().join(name)).unwrap() {
-            let file: PathBuf = file.unwrap().path();
+        let files = fs::read_dir(repository().join(name)).unwrap().map(|file| file.unwrap().path());
+        for file in files.filter(|path: &PathBuf| path.is_file()) {
             fs::copy(&file, copy.join(file.file_name().unwrap())).unwrap();
         }
     }

@@ -208,7 +208,7 @@ pub static CASES: &[Case] = &[
         (10_000_000, surfaces::critical_angle),
     )
     .seed(12)
-    .at_most(11.2),
+    .at_most(14.8),
     Case::new(
         "scales",
         "five scenes 2^-10 to 2^10 times as large",

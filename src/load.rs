@@ -7,6 +7,7 @@ use isa::Isa;
 use isa::diagnostic::Report;
 use kernels::annex::load;
 use kernels::build::Build;
+use scenes::cadrage::Formats;
 use scenes::image::{self, Image, Kind};
 
 use crate::failure::Failure;
@@ -29,6 +30,8 @@ pub struct Load {
     pub memory: Memory,
     /// Names for ranges of it.
     pub kinds: Vec<(std::ops::Range<u32>, String)>,
+    /// Formats of the picture; none of the report's estimate.
+    pub formats: Option<Formats>,
     /// What executes the programs.
     pub engine: Engine,
 }
@@ -52,7 +55,7 @@ impl Load {
         let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
         let kinds = image.regions.iter().map(|(kind, range)| (range.clone(), traffic(*kind).to_owned())).collect();
         let memory = Memory::new(std::mem::take(&mut image.bytes));
-        Ok((Load { isa, build, memory, kinds, engine: job.engine }, image))
+        Ok((Load { isa, build, memory, kinds, formats: Some(image.formats), engine: job.engine }, image))
     }
 
     /// The report's estimate of [`ANNEX_PIXELS`] pixels.
@@ -65,7 +68,7 @@ impl Load {
         let crop = kernels::build::Crop { column: 0, row: 0, width: ANNEX_PIXELS, height: 1 };
         let build = Build { cores, main, crop, warnings: Report::default() };
         let memory = Memory::new(vec![0; load::MEMORY]);
-        Ok(Load { isa, build, memory, kinds: Vec::new(), engine: Engine::default() })
+        Ok(Load { isa, build, memory, kinds: Vec::new(), formats: None, engine: Engine::default() })
     }
 
     /// The load on a machine.

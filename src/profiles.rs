@@ -10,14 +10,11 @@ use serde::Serialize;
 
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
-use crate::job::{Detail, Job, result_name};
-use crate::result::{ByClass, image_hash};
+use crate::job::{Detail, Job, SHIFT, result_name};
+use crate::result::{ByClass, Formats, image_hash};
 
 /// Version of [`Profiles`].
 pub const SCHEMA: &str = "lancer-profiles-1";
-
-/// Where in its pixel a ray passes, so that rays and edges along the axes do not tie.
-const SHIFT: [f64; 2] = [0.137, 0.071];
 
 /// Scenes in all profiles. All counts are those of the cores together.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -62,6 +59,8 @@ pub struct Spending {
     pub clocks: u64,
     /// Words of the cores' program.
     pub program_words: usize,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: Formats,
     /// Pixels that differ from the double-precision reference by 1/255 or more.
     pub off_pixels: u64,
     /// SHA-256 of the picture.
@@ -163,6 +162,7 @@ impl Spending {
             octets: cores.iter().map(|core| core.octets.0).sum(),
             clocks: frame.clocks.0,
             program_words: drawing.build.cores.words.len(),
+            formats: (&drawing.image.formats).into(),
             off_pixels: drawing.error.map_or(0, |error| error.off_pixels),
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),
         }

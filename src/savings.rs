@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
-use crate::result::{ByClass, image_hash};
+use crate::result::{ByClass, Formats, image_hash};
 
 /// Difference of a component up to which corners agree, where a job names none.
 pub const DIFFERENCE: f64 = 0.01;
@@ -36,6 +36,8 @@ pub struct Savings {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: Formats,
     /// First the picture without any skip, then each alone, then all together, then with interpolation, which changes the picture.
     pub rows: Vec<Saving>,
 }
@@ -119,6 +121,7 @@ fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<Savings, Failur
         layout: job.memory.layout.name(),
         width: plain.crop.width,
         height: plain.crop.height,
+        formats: (&plain.image.formats).into(),
         rows: drawings.iter().map(|(way, drawing)| Saving::new(way, drawing, plain)).collect(),
     })
 }

@@ -21,6 +21,7 @@ pub use chart::svg;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::load::Load;
+use crate::result::Formats;
 
 /// Who computes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -78,6 +79,8 @@ pub struct Measured {
     /// Who computed it: `fast`, `fast-uncounted`, `fast-clocks`, `lockstep`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: Formats,
     /// Host's nanoseconds a pixel, the median of the runs.
     pub nanoseconds: f64,
     /// Least of the runs.
@@ -157,6 +160,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 scene: job.scene.name.clone(),
                 profile: job.kernels.profile.name(),
                 runner,
+                formats: (&image.formats).into(),
                 nanoseconds: median * 1e9 / pixels as f64,
                 least: least * 1e9 / pixels as f64,
                 of_twin: median / twin,

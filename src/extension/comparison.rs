@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::drawing::{self, Comparison as Measure, Drawing};
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::result::{ByClass, Render};
+use crate::result::{ByClass, Formats, Render};
 use crate::table::{count, grouped, row, table};
 
 /// Version of [`Comparison`].
@@ -30,6 +30,8 @@ pub struct Variant {
     pub clocks: u64,
     /// Words of the cores' program and the main processor's.
     pub words: u64,
+    /// Bits of a word and fraction bits of each quantity.
+    pub formats: Formats,
     /// Difference from double precision.
     pub error: Option<PictureError>,
     /// SHA-256 of the picture.
@@ -80,6 +82,7 @@ impl Variant {
             octets: render.octets,
             clocks: render.clocks,
             words: size(&drawing.build.cores) + size(&drawing.build.main),
+            formats: render.formats,
             error: render.error,
             image_hash: render.image_hash,
             run_hash: render.run_hash,

@@ -14,6 +14,7 @@ use emu::machine::waits::Waits;
 use emu::profile::{Profile, RegionProfile};
 use isa::{Class, Counts};
 use kernels::Function;
+use scenes::cadrage;
 use scenes::metrics::PictureError;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::ser::SerializeMap;
@@ -249,6 +250,12 @@ impl Serialize for Kinds {
 #[derive(Clone, Debug, JsonSchema)]
 pub struct Formats(#[schemars(with = "BTreeMap<String, i32>")] pub Vec<(&'static str, i32)>);
 
+impl From<&cadrage::Formats> for Formats {
+    fn from(formats: &cadrage::Formats) -> Formats {
+        Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect())
+    }
+}
+
 impl Serialize for Formats {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().copied())
@@ -290,7 +297,6 @@ impl Render {
         let counts = frame.profile.as_ref().map(Profile::total).unwrap_or_default();
         let main_counts = frame.main_profile.as_ref().map(Profile::total).unwrap_or_default();
         let crop = [drawing.crop.column, drawing.crop.row, drawing.crop.width, drawing.crop.height];
-        let formats = &drawing.image.formats;
         let mut result = Render {
             schema: SCHEMA,
             scene: result_name(&job.scene),
@@ -339,7 +345,7 @@ impl Render {
                     filled: frame.cache.filled.0,
                 },
             },
-            formats: Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect()),
+            formats: (&drawing.image.formats).into(),
             flags: drawing.flags.clone(),
             error: drawing.error,
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),

@@ -15,6 +15,7 @@ pub use text::{csv, text};
 
 use crate::failure::Failure;
 use crate::load::Load;
+use crate::result::Formats;
 
 /// Version of [`Scaling`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
@@ -42,6 +43,8 @@ pub struct Curve {
     pub machine: String,
     /// Its arbiter.
     pub arbiter: String,
+    /// Bits of a word and fraction bits of each quantity; null for `annex`, whose pixels only take time.
+    pub formats: Option<Formats>,
     /// Clock rate in hertz.
     pub clock_hz: u64,
     /// What a pixel took with one core: of the core, and of the bus, messages and the main processor's share included.
@@ -127,7 +130,7 @@ pub fn measure(
     let frames = frames.into_iter().collect::<Result<Vec<Frame>, _>>()?;
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
         let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();
-        curve(name, config, &points)
+        Curve { formats: load.formats.as_ref().map(Formats::from), ..curve(name, config, &points) }
     });
     Ok(Scaling {
         schema: SCHEMA,
@@ -161,6 +164,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &Frame)]) -> Curve {
     Curve {
         machine: name.to_owned(),
         arbiter: config.bus.arbiter.name().to_owned(),
+        formats: None,
         clock_hz: config.clock_hz,
         demand,
         quotient: demand.quotient(),

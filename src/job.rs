@@ -17,6 +17,10 @@ use crate::failure::Failure;
 use crate::table::grouped;
 use crate::{files, input, machine};
 
+/// Where in its pixel a ray passes in pictures that are measured, in pixels to the right of the middle and above it: parallel rays through the
+/// middles would run along edges of axis-aligned scenes.
+pub const SHIFT: [f64; 2] = [0.137, 0.071];
+
 /// Pixels of the largest picture.
 const MOST_PIXELS: u64 = 1 << 24;
 

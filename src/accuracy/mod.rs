@@ -11,7 +11,6 @@ use std::time::Instant;
 
 use isa::number::Quantization;
 use kernels::Profile;
-use scenes::image;
 use scenes::layout::Layout;
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Picture, Scene, View};
@@ -191,13 +190,13 @@ pub fn measure(
     job.machine.arithmetic.quantization = variant.rounding;
     job.detail = Detail::Totals;
     let start = Instant::now();
-    let drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
+    let mut drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
     let host = start.elapsed();
     let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
-    let image = image::build(scene, &job.view, &job.memory)?;
-    let stored = image.stored_scene(scene).expect("an image that was built can be read");
+    drawing.image.bytes = drawing.frame.memory.octets().to_vec();
+    let stored = drawing.image.stored_scene(scene).expect("an image that was built can be read");
     let stored = Reference::framed(&stored, scene.bounds(), view, Method::Hierarchy)?.picture().picture;
-    let rays = RayErrors::new(scene, &job.view, &job.memory, variant.profile, job.machine.arithmetic.modes())?;
+    let rays = RayErrors::new(&drawing.image, &job, view.size);
     let result = Render::new(&job, &drawing);
     let pixels = f64::from(result.width) * f64::from(result.height);
     let each = |total: u64| total as f64 / pixels;

@@ -1,7 +1,6 @@
 //! Camera rays of a picture, searched by the kernels' functions and on exact integers over the same rounded scene: the error of the formats
 //! alone.
 
-use isa::diagnostic::Report;
 use isa::number::ray::{self as exact, TriangleEnd};
 use isa::number::{Modes, Vector};
 use kernels::Profile;
@@ -11,10 +10,11 @@ use kernels::twin::ray::{Ray, Search};
 use kernels::twin::surface::normal;
 use kernels::twin::{Twin, report};
 use rayon::prelude::*;
-use scenes::image::{self, Options};
-use scenes::model::{Scene, View};
+use scenes::image::Image;
 use schemars::JsonSchema;
 use serde::Serialize;
+
+use crate::job::Job;
 
 /// Errors of the camera rays' hits. Units in the last place (ulp) are those of the quantity's format; null where no ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
@@ -47,21 +47,11 @@ struct Ended {
 }
 
 impl RayErrors {
-    /// Measures the camera rays of a picture.
-    ///
-    /// # Errors
-    /// A scene that does not fit its formats.
-    pub fn new(
-        scene: &Scene,
-        view: &View,
-        memory: &Options,
-        profile: Profile,
-        modes: Modes,
-    ) -> Result<RayErrors, Report> {
-        let image = image::build(scene, view, memory)?;
-        let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
-        let twin = Twin::new(&image, &features, profile, modes).expect("an image that was built can be read");
-        let (width, height) = view.size;
+    /// Measures the camera rays of a job's picture on the image that was built for it.
+    pub fn new(image: &Image, job: &Job, (width, height): (u32, u32)) -> RayErrors {
+        let (profile, modes) = (job.kernels.profile, job.machine.arithmetic.modes());
+        let features = Features::new(&job.scene, &job.view, &image.formats, &kernels::Options::default());
+        let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");
         let ended: Vec<Ended> = (0..width * height)
             .into_par_iter()
             .map(|pixel| end(&twin, &twin.camera_ray(pixel % width, pixel / width)))
@@ -75,7 +65,7 @@ impl RayErrors {
         };
         let [t, u, v, normals] = [0, 1, 2, 3].map(errors);
         let p99 = |errors: &[f64]| errors.get((errors.len() * 99 / 100).min(errors.len().saturating_sub(1))).copied();
-        Ok(RayErrors {
+        RayErrors {
             misclassified_per_million: wrong as f64 * 1e6 / ended.len().max(1) as f64,
             t_p99: p99(&t),
             t_max: t.last().copied(),
@@ -85,7 +75,7 @@ impl RayErrors {
             v_max: v.last().copied(),
             normal_p99: p99(&normals),
             normal_max: normals.last().copied(),
-        })
+        }
     }
 }
 

@@ -6,11 +6,8 @@ use kernels::annex::rows;
 use scenes::image::Options;
 
 use crate::drawing::Drawing;
-use crate::job::{Job, result_name};
+use crate::job::{Job, SHIFT, result_name};
 use scenes::model::Scene;
-
-/// Shift of the samples: parallel rays through pixel centres would run along edges of axis-aligned scenes.
-const SHIFT: [f64; 2] = [0.137, 0.071];
 
 /// The rows' regions on a scene, and what a pixel took.
 #[derive(Clone, Debug)]

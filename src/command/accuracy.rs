@@ -16,6 +16,7 @@ use serde::Serialize;
 use crate::accuracy::{self, Choice, Measured};
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
+use crate::job::SHIFT;
 use crate::table::{row, short, table};
 use crate::terminal::Terminal;
 use crate::{files, input, result};
@@ -137,9 +138,6 @@ struct Refused {
     /// Why there is no picture.
     reason: String,
 }
-
-/// Where in a pixel its ray passes, so that rays and edges along the axes do not tie.
-const SHIFT: [f64; 2] = [0.137, 0.071];
 
 /// Draws and prints.
 pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {

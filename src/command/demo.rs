@@ -12,7 +12,7 @@ use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::files::map::LEAST_ERROR;
 use crate::files::picture::Format;
-use crate::job::Job;
+use crate::job::{Job, SHIFT};
 use crate::result::Render;
 use crate::terminal::Terminal;
 use crate::{annex, files, summary};
@@ -42,8 +42,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     let measured = annex::measure()?;
     terminal.print(&annex::text::demo(&measured))?;
     let mut job = Job::new(generate::scene("cornell", &generate::Options { size, ..generate::Options::default() })?);
-    // Parallel rays through pixel centres would run along edges of the axis-aligned room.
-    job.view.shift = [0.137, 0.071];
+    job.view.shift = SHIFT;
     let drawing = draw(&job, Comparison::Reference, terminal)?;
     let result = Render::new(&job, &drawing);
     let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));

@@ -34,7 +34,7 @@ fn coarse(number: u64, size: (u32, u32)) -> Scene {
 
 /// A view whose rays pass between the vertices.
 fn shifted(scene: &Scene) -> View {
-    View { shift: [0.137, 0.071], ..View::new(scene.size) }
+    View { shift: crate::job::SHIFT, ..View::new(scene.size) }
 }
 
 /// The pixels that the kernels of the profile `ray` draw, by their native twin.

@@ -123,15 +123,7 @@ fn measure(criterion: &mut Criterion) {
             let program = program.unwrap_or_else(|report| panic!("{report}")).program;
             let once = || {
                 let registers = registers.clone();
-                let single = Single {
-                    config: &config,
-                    isa,
-                    program: &program,
-                    registers,
-                    step_limit: u64::MAX,
-                    has_profile: false,
-                    has_losses: false,
-                };
+                let single = Single { registers, step_limit: u64::MAX, ..Single::new(&config, isa, &program) };
                 let run = run_with(&single, Memory::new(Vec::new()), None);
                 run.expect("the machine is the default one").state.registers
             };

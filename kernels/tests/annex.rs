@@ -8,7 +8,6 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::{Buffer, Memory};
 use emu::profile::{Observer, Profile};
-use emu::registers::Registers;
 use emu::tally::Tally;
 use emu::trap::Stop;
 use isa::number::Nearest32;
@@ -39,16 +38,7 @@ fn searched(row: &Row, isa: &Isa) -> (Program, Vec<u8>) {
 /// What the machine's profile says of a row's region.
 fn profiled(row: &Row, program: &Program, memory: &[u8], isa: &Isa) -> Calls {
     let config = Config::default();
-    let registers = Registers::default();
-    let single = Single {
-        config: &config,
-        isa,
-        program,
-        registers,
-        step_limit: 10_000_000,
-        has_profile: true,
-        has_losses: false,
-    };
+    let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, isa, program) };
     let run =
         single::run(&single, Memory::new(memory.to_vec())).unwrap_or_else(|report| panic!("{}", report.render(false)));
     assert!(run.trap.is_none(), "{}: {:?}", row.id, run.trap);

@@ -10,7 +10,6 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use emu::profile::{Profile, RegionProfile};
-use emu::registers::Registers;
 use isa::diagnostic::{Diagnostic, Report};
 use isa::{Class, Counts, Isa, Program};
 use kernels::annex::{Row, rows};
@@ -91,15 +90,7 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
 /// Runs a driver.
 fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure> {
     let config = Config::default();
-    let single = Single {
-        config: &config,
-        isa,
-        program,
-        registers: Registers::default(),
-        step_limit: config.step_limit,
-        has_profile: true,
-        has_losses: false,
-    };
+    let single = Single { has_profile: true, ..Single::new(&config, isa, program) };
     let run = single::run(&single, Memory::new(memory))?;
     match run.trap {
         Some(trap) => Err(emu::machine::Failure::from(trap).into()),

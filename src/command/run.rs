@@ -85,13 +85,11 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         value.set(&mut registers);
     }
     let single = Single {
-        config: &config,
-        isa: &isa,
-        program: &program,
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
         has_profile: true,
         has_losses: arguments.flags,
+        ..Single::new(&config, &isa, &program)
     };
     let features = (arguments.engine != "checked").then(Features::best);
     let run = single::run_with(&single, Memory::new(memory), features)?;

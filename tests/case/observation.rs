@@ -5,7 +5,6 @@ use emu::fast::Features;
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
-use emu::registers::Registers;
 use isa::diagnostic::{Report, Severity, Source};
 use isa::{Counts, Isa, Program};
 
@@ -226,11 +225,7 @@ fn run(
     memory: usize,
     step_limit: u64,
 ) -> Result<SingleRun, Report> {
-    let registers = Registers::default();
-    engine(
-        &Single { config, isa, program, registers, step_limit, has_profile: false, has_losses: false },
-        Memory::new(vec![0; memory]),
-    )
+    engine(&Single { step_limit, ..Single::new(config, isa, program) }, Memory::new(vec![0; memory]))
 }
 
 /// The formats that a source defines.

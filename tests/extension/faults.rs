@@ -102,16 +102,7 @@ fn more_bodies_than_fit_are_refused() {
     let (isa, _) = isa_of(&text);
     let program = program(".rept 300\n    long s1\n.endr\n    halt", &isa);
     let config = emu::machine::Config::default();
-    let registers = Registers::default();
-    let single = emu::machine::single::Single {
-        config: &config,
-        isa: &isa,
-        program: &program,
-        registers,
-        step_limit: 1,
-        has_profile: false,
-        has_losses: false,
-    };
+    let single = emu::machine::single::Single::new(&config, &isa, &program);
     let report = emu::machine::single::run(&single, emu::octets::Memory::new(vec![0; 16])).expect_err("too many");
     assert!(report.to_string().contains("more than 262144 instructions"), "{report}");
 }

@@ -34,6 +34,6 @@ pub fn program(text: &str, isa: &Isa) -> Program {
 /// A run on one core of the default machine.
 pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> SingleRun {
     let config = Config::default();
-    let single = Single { config: &config, isa, program, registers, step_limit, has_profile: true, has_losses: false };
+    let single = Single { registers, step_limit, has_profile: true, ..Single::new(&config, isa, program) };
     run(&single, Memory::new((0..=255).collect())).expect("the machine is the default one")
 }

@@ -167,8 +167,7 @@ fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (Si
     let arithmetic = ArithmeticConfig { word, quantization, overflow, trap_division_by_zero: false };
     let config = Config { arithmetic, ..Config::default() };
     let registers = registers.clone();
-    let single =
-        Single { config: &config, isa, program, registers, step_limit: 10_000, has_profile: false, has_losses: false };
+    let single = Single { registers, step_limit: 10_000, ..Single::new(&config, isa, program) };
     let run = single::run(&single, Memory::default()).unwrap();
     if let Some(trap) = &run.trap {
         panic!("{trap}");

@@ -107,16 +107,8 @@ impl<'a> Bench<'a> {
         }
         // Where the next case would begin.
         memory.resize(memory.len() + 1024, 0);
-        let config = self.subject.machine();
-        let single = Single {
-            config: &config,
-            isa: &Isa::base(),
-            program: &self.program,
-            registers: emu::registers::Registers::default(),
-            step_limit: 1_000_000_000,
-            has_profile: false,
-            has_losses: false,
-        };
+        let (isa, config) = (Isa::base(), self.subject.machine());
+        let single = Single { step_limit: 1_000_000_000, ..Single::new(&config, &isa, &self.program) };
         let run = run(&single, Memory::new(memory)).unwrap_or_else(|report| panic!("{}", report.render(false)));
         if let Some(trap) = run.trap {
             panic!("{trap}");

@@ -37,6 +37,21 @@ pub struct Single<'a> {
     pub has_losses: bool,
 }
 
+impl<'a> Single<'a> {
+    /// A program from reset, with the machine's step limit; neither calls nor losses are measured.
+    pub fn new(config: &'a Config, isa: &'a Isa, program: &'a Program) -> Single<'a> {
+        Single {
+            config,
+            isa,
+            program,
+            registers: Registers::default(),
+            step_limit: config.step_limit,
+            has_profile: false,
+            has_losses: false,
+        }
+    }
+}
+
 /// How a program left the core, whether it halted or trapped.
 #[derive(Clone, Debug)]
 pub struct SingleRun {

@@ -195,13 +195,9 @@ impl Case {
 
     fn run(&self, isa: &Isa, trial: &Trial) -> SingleRun {
         let single = Single {
-            config: &trial.config,
-            isa,
-            program: &self.program,
             registers: self.registers.clone(),
             step_limit: 1 << 20,
-            has_profile: false,
-            has_losses: false,
+            ..Single::new(&trial.config, isa, &self.program)
         };
         run(&single, self.memory.clone()).expect("the machine holds the case")
     }

@@ -15,8 +15,7 @@ use super::builder::{Builder, program};
 
 fn run_with(config: &Config, program: &Program, registers: Registers) -> SingleRun {
     let isa = Isa::base();
-    let single =
-        Single { config, isa: &isa, program, registers, step_limit: 500, has_profile: true, has_losses: false };
+    let single = Single { registers, step_limit: 500, has_profile: true, ..Single::new(config, &isa, program) };
     single::run(&single, Memory::new((0..=255).collect())).expect("the setup is right")
 }
 
@@ -45,9 +44,7 @@ fn what_results_lose_is_counted_word_by_word() {
     });
     let (isa, config) = (Isa::base(), Config::default());
     let losses = |config: &Config, has_losses| {
-        let registers = Registers::default();
-        let single =
-            Single { config, isa: &isa, program: &program, registers, step_limit: 500, has_profile: false, has_losses };
+        let single = Single { step_limit: 500, has_losses, ..Single::new(config, &isa, &program) };
         let run = single::run(&single, Memory::default()).expect("the setup is right");
         let code = Code::new(&program, &isa, config.timing());
         let losses = (0..).zip(run.tally.losses(&code)).filter(|(_, losses)| *losses != Losses::default());

@@ -4,7 +4,6 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use emu::profile::{Profile, RegionProfile};
-use emu::registers::Registers;
 use isa::program::Line;
 use isa::{Class, Counts, Isa, Op, Program};
 
@@ -13,16 +12,7 @@ use super::builder::program;
 /// Runs a program to its end, and gives what its regions and the whole of it cost.
 pub fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
-    let registers = Registers::default();
-    let single = Single {
-        config: &config,
-        isa: &isa,
-        program,
-        registers,
-        step_limit: 10_000_000,
-        has_profile: true,
-        has_losses: false,
-    };
+    let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, &isa, program) };
     let run = single::run(&single, Memory::default()).expect("the setup is right");
     let checked = single::run_with(&single, Memory::default(), None).expect("the setup is right");
     assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));

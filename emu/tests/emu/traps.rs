@@ -3,7 +3,6 @@
 use emu::machine::single::{self, Single, SingleRun};
 use emu::machine::{Config, Failure, Options, Setup};
 use emu::octets::Memory;
-use emu::registers::Registers;
 use emu::trap::{Fault, Trap};
 use isa::{Isa, Op, Program};
 
@@ -12,9 +11,7 @@ use super::builder::{Builder, program};
 /// Runs a program on one core with 100 octets of memory and a limit of 1000 instructions.
 fn run_with(config: &Config, program: &Program) -> SingleRun {
     let isa = Isa::base();
-    let registers = Registers::default();
-    let single =
-        Single { config, isa: &isa, program, registers, step_limit: 1000, has_profile: false, has_losses: false };
+    let single = Single { step_limit: 1000, ..Single::new(config, &isa, program) };
     single::run(&single, Memory::new(vec![0; 100])).expect("the setup is right")
 }
 
@@ -214,16 +211,7 @@ fn data_that_do_not_fit_the_buffer_are_refused() {
     let isa = Isa::base();
     let config = Config { buffer_octets: 3, ..Config::default() };
     let program = Program { words: vec![0], buffer: vec![1; 4], ..Program::default() };
-    let registers = Registers::default();
-    let single = Single {
-        config: &config,
-        isa: &isa,
-        program: &program,
-        registers,
-        step_limit: 1,
-        has_profile: false,
-        has_losses: false,
-    };
+    let single = Single::new(&config, &isa, &program);
     let report = single::run(&single, Memory::default()).expect_err("it does not fit").render(false);
     assert!(report.contains("the program's data take 4 octets, but the buffer of a core has 3"), "{report}");
 }

@@ -1,13 +1,14 @@
 //! What an extension instruction costs the host, as a body, as a meaning in Rust, and written out as instructions of the table:
-//! `cargo bench --bench extension`. All three do the same; the interpreter runs them in a loop, also what the fast engine could.
+//! `cargo bench --bench extension`. All three do the same in a loop, on the fast engine and on the interpreter.
 
 use std::hint::black_box;
 
 use asm::extension;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use emu::exec::{ScalarRoom, VectorRoom, WideRoom};
-use emu::machine::Config;
+use emu::fast::Features;
 use emu::machine::single::{Single, run_with};
+use emu::machine::{Config, Engine};
 use emu::meaning::{Call, Ending, Meaning, Numbers, Operands, attach};
 use emu::octets::Memory;
 use emu::registers::Registers;
@@ -17,7 +18,7 @@ use isa::diagnostic::Source;
 use isa::number::{Arithmetic, Nearest32, Vector};
 
 /// Times that the loop executes each of its eight instructions.
-const PASSES: u32 = 1000;
+const PASSES: u32 = 10_000;
 
 const ROWS: &str = "\
 .extension measured
@@ -110,11 +111,18 @@ fn measure(criterion: &mut Criterion) {
     registers.set_vector(1, [300_000_000, -200_000_000, 100_000_000]);
     registers.set_vector(3, [5, 6, 7]);
     let config = Config::default();
-    for (name, instruction, written_out) in MEASURED {
-        let mut group = criterion.benchmark_group(name);
+    let engines = [(Engine::Fast, Some(Features::best())), (Engine::Checked, None)];
+    for ((name, instruction, written_out), (engine, features)) in
+        MEASURED.iter().flat_map(|each| engines.map(|e| (each, e)))
+    {
+        let name = format!("{name} {}", engine.name());
+        let mut group = criterion.benchmark_group(&name);
         group.throughput(Throughput::Elements(u64::from(PASSES) * 8));
-        let ways =
-            [("written out", written_out, &bodies), ("body", instruction, &bodies), ("rust", instruction, &meanings)];
+        let ways = [
+            ("written out", *written_out, &bodies),
+            ("body", *instruction, &bodies),
+            ("rust", *instruction, &meanings),
+        ];
         let mut results = Vec::new();
         for (way, line, isa) in ways {
             let lines = format!(" {line}\n").repeat(8);
@@ -124,7 +132,7 @@ fn measure(criterion: &mut Criterion) {
             let once = || {
                 let registers = registers.clone();
                 let single = Single { registers, step_limit: u64::MAX, ..Single::new(&config, isa, &program) };
-                let run = run_with(&single, Memory::new(Vec::new()), None);
+                let run = run_with(&single, Memory::new(Vec::new()), features);
                 run.expect("the machine is the default one").state.registers
             };
             let after = once();

@@ -195,7 +195,8 @@ pub fn run<T: Watch, O: Observer>(
                         };
                         // A division by zero is known only when the registers are written.
                         let before = T::IS_WATCHING.then(|| registers.clone());
-                        match unit.execute(fields, registers, buffer, link, &numbers) {
+                        let mut read = |address, words: &mut [i32]| link.read(address, words);
+                        match unit.execute(fields, registers, buffer, &mut read, &numbers) {
                             Ok(ending) => {
                                 if let Some(before) = before
                                     && arithmetic.take_division_by_zero()

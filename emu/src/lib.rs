@@ -8,6 +8,7 @@ mod independence;
 pub mod machine;
 pub mod meaning;
 pub mod octets;
+mod order;
 pub mod profile;
 pub mod quantity;
 pub mod registers;

@@ -10,8 +10,9 @@ mod refusals;
 mod study;
 
 use asm::extension::{Loaded, load};
+use emu::fast::Features;
 use emu::machine::Config;
-use emu::machine::single::{Single, SingleRun, run};
+use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use isa::diagnostic::Source;
@@ -31,9 +32,24 @@ pub fn program(text: &str, isa: &Isa) -> Program {
     assembled.unwrap_or_else(|report| panic!("{report}\n{text}")).program
 }
 
-/// A run on one core of the default machine.
+/// A run on one core of the default machine, the same on the fast engine and on the interpreter.
 pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> SingleRun {
     let config = Config::default();
-    let single = Single { registers, step_limit, has_profile: true, ..Single::new(&config, isa, program) };
-    run(&single, Memory::new((0..=255).collect())).expect("the machine is the default one")
+    let run = |has_profile, features| {
+        let single =
+            Single { registers: registers.clone(), step_limit, has_profile, ..Single::new(&config, isa, program) };
+        single::run_with(&single, Memory::new((0..=255).collect()), features).expect("the machine is the default one")
+    };
+    let checked = run(true, None);
+    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
+        for has_profile in [true, false] {
+            let fast = run(has_profile, Some(features));
+            let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone());
+            assert!(parts(&fast) == parts(&checked), "{}\n{fast:#?}\n{checked:#?}", features.name());
+            assert_eq!(fast.trap, checked.trap, "{}", features.name());
+            assert_eq!(fast.profile, checked.profile.clone().filter(|_| has_profile), "{}", features.name());
+            assert!(fast.memory == checked.memory, "{}", features.name());
+        }
+    }
+    checked
 }

@@ -1,11 +1,9 @@
 //! What a group of work items counts: passes by block and by exit, and what each lane took so far.
 
 use super::lanes::{LANES, Mask};
-use super::plan::{Plan, Toll};
+use super::plan::Plan;
+use super::toll::Toll;
 use crate::tally::Tally;
-
-/// A field of a toll never passes this before it is emptied.
-const FULL: u32 = 1 << 20;
 
 /// What one lane took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +27,7 @@ pub struct Meter {
     kept_exits: Vec<(u64, u64)>,
     tolls: [u64; LANES],
     totals: [Total; LANES],
-    /// No field of a toll is larger.
+    /// Of what half a field of a toll holds, no lane has a larger share: see [`Toll::share`].
     filled: u32,
 }
 
@@ -56,10 +54,10 @@ impl Meter {
         self.filled = 0;
     }
 
-    /// Some lanes begin a block of a toll, with what its exits may add at most.
+    /// Some lanes begin a block of a toll, with the share that it takes at most.
     #[inline(always)]
     pub fn begin(&mut self, pc: u32, mask: Mask, toll: Toll, most: u32) {
-        if self.filled + most >= FULL {
+        if self.filled + most >= Toll::WHOLE {
             self.empty();
         }
         self.filled += most;

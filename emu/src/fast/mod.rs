@@ -10,6 +10,7 @@ mod plan;
 mod ray;
 mod rows;
 pub mod single;
+mod toll;
 
 pub use group::{Counted, Counting, Group, Moment, Uncounted, Unusual, Wires};
 pub use lanes::{LANES, Mask};

@@ -1,89 +1,67 @@
-//! A program cut into basic blocks: where each ends, and what it takes. What the instructions do is not known here.
+//! A program cut into basic blocks and runs: where each ends, and what it takes. What the instructions do is not known here. Words, and what
+//! bodies of extensions have beside them, stand in one [`Order`]; where there are no bodies, a place in it is a word.
 
 use std::ops::Range;
 
 use isa::{Fields, Kind, Op, Row};
 
-use crate::code::{Code, Slot};
+use super::toll::{FLAG, Toll};
+use crate::code::{Code, ExitCost, Slot};
 use crate::independence::Mark;
+use crate::order::{Order, Stage};
 use crate::registers::Registers;
 
-/// Bits of a field of a [`Toll`].
-pub(super) const FIELD: u32 = 21;
-
-/// Largest number of a field that one block may need, so that many fit before [`Toll`]s have to be emptied.
-const MOST: u64 = 1 << 16;
-
-/// Instructions, clocks and elementary operations in one number of three fields, so that a lane adds up all three at once.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Toll(pub u64);
-
-impl Toll {
-    /// The toll of an instruction; a number beyond [`MOST`] counts as that, and the plan is refused.
-    fn new(steps: u64, clocks: u64, elementary: u64) -> Toll {
-        Toll(steps | clocks.min(MOST) << FIELD | elementary.min(MOST) << (2 * FIELD))
-    }
-
-    /// Instructions.
-    #[inline(always)]
-    pub const fn steps(self) -> u64 {
-        self.0 & ((1 << FIELD) - 1)
-    }
-
-    /// Clocks.
-    #[inline(always)]
-    pub const fn clocks(self) -> u64 {
-        self.0 >> FIELD & ((1 << FIELD) - 1)
-    }
-
-    /// Elementary operations.
-    #[inline(always)]
-    pub const fn elementary(self) -> u64 {
-        self.0 >> (2 * FIELD)
-    }
-
-    /// The largest of the three.
-    fn largest(self) -> u64 {
-        self.steps().max(self.clocks()).max(self.elementary())
-    }
-}
-
-/// What the engine knows of a word beside its slot.
+/// What the engine knows of a place beside its slot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
-    /// End of the block that begins here: the word after its last one.
+    /// End of the block that begins here: the place behind its last one.
     pub end: u32,
-    /// Largest field of a toll that the block may add.
+    /// [`Toll::share`] of the most that the block may take.
     pub most: u32,
-    /// Tolls of the words up to here, without what depends on exits: differences are those of blocks.
+    /// Tolls of the places up to here, without what depends on exits: differences are those of blocks.
     pub before: Toll,
 }
 
-/// A decoded word, laid out for an engine that looks at one after the other.
+/// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Step {
-    /// Place of the row in the table; the number of rows for a word that is none of them, and behind the last word.
+    /// Place of the row in the table, [`Step::HOP`], [`Step::UNIT`], or [`Step::UNUSUAL`].
     pub row: u8,
-    /// Its operands.
-    pub fields: Fields,
-    /// Number of the pass through its first exit.
-    pub exit: u32,
+    /// Number of its exits.
+    pub exits: u8,
     /// Whether its exits take different times or numbers of operations.
     pub is_uneven: bool,
+    /// Its operands.
+    pub fields: Fields,
+    /// Number of its first exit: see [`Plan::pass`].
+    pub exit: u32,
+    /// Its slot; of a hop that to which it leads.
+    pub slot: u32,
     /// Of a control row: what the exit that falls through and the run behind it take, then the same of the other exit, where its target is
     /// known; what has to be looked at has the [`FLAG`].
     pub edges: [u64; 2],
-    /// Where a control row branches to; a word outside the program where that is not known or not there.
+    /// The place to which a control row branches; one behind the program where that is not known.
     pub target: u32,
+    /// Number of the instruction whose meaning is in Rust.
+    pub unit: u16,
 }
 
-/// The bit that no toll has: a run has to be looked at before it begins.
-pub const FLAG: u64 = 1 << 63;
+impl Step {
+    /// Row of the way to a place that does not stand behind.
+    pub const HOP: u8 = Op::BUILT_IN.len() as u8;
+    /// Row of instructions whose meaning is in Rust.
+    pub const UNIT: u8 = Step::HOP + 1;
+    /// Row of what is for the interpreter, and of what stands behind the program.
+    pub const UNUSUAL: u8 = Step::UNIT + 1;
+}
+
+/// What a pass is called that belongs to no exit of the program: that through a hop.
+const NO_PASS: u32 = u32::MAX;
 
 /// A table by [`Step::row`]: what stands last is for all numbers behind it as well.
 pub(super) const fn padded<T: Copy, const N: usize>(rows: [T; N]) -> [T; 256] {
-    const { assert!(N <= 256 && N == Op::BUILT_IN.len() + 1) };
+    const { assert!(N <= 256 && N > Op::BUILT_IN.len()) };
     let mut padded = [rows[N - 1]; 256];
     let mut row = 0;
     while row < N {
@@ -93,152 +71,200 @@ pub(super) const fn padded<T: Copy, const N: usize>(rows: [T; N]) -> [T; 256] {
     padded
 }
 
-/// A program as blocks. A block begins at any word and ends behind a control row, or before a word that a branch leads to.
+/// A program as blocks and runs. A block begins anywhere and ends behind a control row, or before a place that a branch leads to; a run ends
+/// behind a control row only.
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
     /// The program.
     pub code: &'a Code<'a>,
+    order: Order,
     places: Vec<Place>,
-    /// By exit: what it adds to the block's toll; 0 where all exits of the word take the same.
+    /// By exit: the pass of the program.
+    passes: Vec<u32>,
+    /// By exit: what it adds to the block's toll; 0 where all exits of the slot take the same.
     extra: Vec<Toll>,
     marks: Vec<Mark>,
     steps: Vec<Step>,
-    /// By word: the end of the run that begins there, behind the next control row or in front of the end of the program.
+    /// By place: the end of the run that begins there, behind the next control row or in front of the end of the program.
     run_ends: Vec<u32>,
-    /// How many words up to here ask for numbers of cores, or send.
+    /// How many places up to here ask for numbers of cores, or send.
     asking: Vec<u32>,
 }
 
 impl<'a> Plan<'a> {
-    /// Finds the blocks; `None` for programs with instructions of extensions, and for timings with which an instruction takes so long that tolls
-    /// do not fit.
+    /// Finds the blocks and runs; `None` for timings with which an instruction takes so long that tolls do not fit.
     pub fn new(code: &'a Code<'a>) -> Option<Plan<'a>> {
-        if (0..code.words()).any(|word| matches!(code.op(word), Some(Op::Ext(_)))) {
-            return None;
-        }
-        let slots = &code.slots()[..code.words() as usize];
-        let mut is_target = vec![false; slots.len() + 1];
-        for (pc, slot) in slots.iter().enumerate() {
-            if ends_block(code.row(pc as u32)) {
-                is_target[pc + 1] = true;
+        let order = Order::new(code);
+        let stages = order.stages();
+        let mut passes = Vec::with_capacity(code.costs().len());
+        let mut firsts = Vec::with_capacity(stages.len());
+        let mut is_target = vec![false; stages.len() + 1];
+        for (place, &stage) in stages.iter().enumerate() {
+            firsts.push(passes.len());
+            match stage {
+                Stage::Slot(slot) => {
+                    let first = code.slots()[slot as usize].first_exit;
+                    passes.extend((first..).take(code.slot_row(slot).map_or(0, |row| row.exits.len())));
+                }
+                Stage::Hop(_) => passes.push(NO_PASS),
             }
-            if let Some(at) = branch_target(code, pc, slot).filter(|&at| at < slots.len()) {
-                is_target[at] = true;
+            is_target[place + 1] |= ends_run(code, stage);
+            if let Some(target) = target(code, &order, stage) {
+                is_target[target as usize] = true;
             }
         }
-        let mut places = vec![Place::default(); slots.len() + 1];
-        let mut extra = vec![Toll::default(); code.costs().len()];
+        firsts.push(passes.len());
+        let mut places = vec![Place::default(); stages.len() + 1];
+        let mut extra = vec![Toll::default(); passes.len()];
         let mut before = Toll::default();
-        let mut most = vec![0; slots.len()];
-        for (pc, slot) in slots.iter().enumerate() {
-            places[pc].before = before;
-            let exits = code.row(pc as u32).map_or(0, |row| row.exits.len());
-            let first = slot.first_exit as usize;
-            let costs = &code.costs()[first..first + exits];
-            let toll = |steps: u64, at: usize| Toll::new(steps, costs[at].clocks.into(), costs[at].elementary.into());
+        let mut most = vec![Toll::default(); stages.len()];
+        for (place, stage) in stages.iter().enumerate() {
+            places[place].before = before;
+            let exits = firsts[place]..firsts[place + 1];
+            if let Stage::Hop(_) = stage {
+                continue;
+            }
+            let costs: Vec<ExitCost> = passes[exits.clone()].iter().map(|&pass| code.costs()[pass as usize]).collect();
             let is_alike = costs.iter().all(|cost| cost == &costs[0] && !cost.has_busy_units);
-            let whole = if is_alike && exits != 0 { toll(1, 0) } else { Toll::new(1, 0, 0) };
-            most[pc] = whole.largest();
-            for at in 0..exits {
-                most[pc] = most[pc].max(toll(1, at).largest());
+            let bare = Toll::step(costs.first().is_some_and(|cost| cost.is_inner));
+            let whole = if is_alike { costs.first().map_or(bare, Toll::new) } else { bare };
+            most[place] = whole;
+            for (exit, cost) in exits.zip(&costs) {
+                most[place] = most[place].max(Toll::new(cost));
                 if !is_alike {
-                    extra[first + at] = toll(0, at);
+                    extra[exit] = Toll(Toll::new(cost).0 - bare.0);
                 }
             }
             // Differences of sums that wrap are still right.
             before = Toll(before.0.wrapping_add(whole.0));
         }
-        places[slots.len()].before = before;
-        let mut is_fit = true;
-        let mut run_ends = vec![slots.len() as u32; slots.len() + 1];
-        let mut longest = 0;
-        for pc in (0..slots.len()).rev() {
-            let is_last = is_target[pc + 1] || pc + 1 == slots.len();
-            let (end, after) = if is_last { (pc + 1, 0) } else { (places[pc + 1].end as usize, places[pc + 1].most) };
-            places[pc].end = end as u32;
-            let sum = most[pc] + u64::from(after);
-            is_fit &= sum < MOST;
-            places[pc].most = sum.min(MOST) as u32;
-            let ends_run = ends_block(code.row(pc as u32));
-            run_ends[pc] = if ends_run { pc as u32 + 1 } else { run_ends[pc + 1] };
-            longest = if ends_run { most[pc] } else { longest + most[pc] };
-            is_fit &= longest < MOST;
+        places[stages.len()].before = before;
+        let mut run_ends = vec![stages.len() as u32; stages.len() + 1];
+        let (mut of_block, mut of_run) = (Toll::default(), Toll::default());
+        for place in (0..stages.len()).rev() {
+            let is_last = is_target[place + 1] || place + 1 == stages.len();
+            places[place].end = if is_last { place as u32 + 1 } else { places[place + 1].end };
+            of_block = if is_last { most[place] } else { of_block.plus(most[place]) };
+            places[place].most = of_block.share();
+            let is_end = ends_run(code, stages[place]);
+            run_ends[place] = if is_end { place as u32 + 1 } else { run_ends[place + 1] };
+            of_run = if is_end { most[place] } else { of_run.plus(most[place]) };
+            if !of_run.is_small() || !of_block.is_small() {
+                return None;
+            }
         }
-        let marks: Vec<Mark> = (0..slots.len() as u32).map(|pc| Mark::new(code, pc)).collect();
+        let mark = |stage: &Stage| match stage {
+            Stage::Slot(slot) => Mark::new(code, *slot),
+            Stage::Hop(_) => Mark::default(),
+        };
+        let marks: Vec<Mark> = stages.iter().map(mark).collect();
         let mut asking = vec![0];
         for mark in &marks {
             asking.push(asking.last().copied().unwrap_or(0) + u32::from(mark.asks()));
         }
-        let mut plan = Plan { code, places, extra, marks, steps: Vec::new(), run_ends, asking };
-        plan.steps = (0..=code.words()).map(|pc| plan.new_step(pc)).collect();
-        is_fit.then_some(plan)
+        let mut plan = Plan { code, order, places, passes, extra, marks, steps: Vec::new(), run_ends, asking };
+        plan.lay_out(&firsts);
+        Some(plan)
     }
 
     /// The same for those who do not ask what depends on the number of cores.
     pub fn regardless_of_cores(mut self) -> Plan<'a> {
         self.asking.fill(0);
-        self.steps = (0..=self.code.words()).map(|pc| self.new_step(pc)).collect();
+        let firsts: Vec<usize> = self.steps.iter().map(|step| step.exit as usize).collect();
+        self.lay_out(&firsts);
         self
     }
 
+    fn lay_out(&mut self, firsts: &[usize]) {
+        self.steps = (0..).zip(firsts).map(|(place, &first)| self.new_step(place, first)).collect();
+    }
+
+    /// Whether bodies stand in the places of words.
+    #[inline]
+    pub fn has_bodies(&self) -> bool {
+        self.end() != self.code.words()
+    }
+
+    /// Whether all instructions are rows of the table.
+    pub fn is_plain(&self) -> bool {
+        !self.has_bodies() && self.steps.iter().all(|step| step.row != Step::UNIT)
+    }
+
     /// What a run takes, with the [`FLAG`] where it has to be looked at.
-    pub fn flagged_toll(&self, pc: u32) -> u64 {
-        match pc <= self.code.words() {
-            true if self.asks(&(pc..self.run_end(pc))) => FLAG | self.run_toll(pc).0,
-            true => self.run_toll(pc).0,
+    pub fn flagged_toll(&self, place: u32) -> u64 {
+        match place <= self.end() {
+            true if self.asks(&(place..self.run_end(place))) => FLAG | self.run_toll(place).0,
+            true => self.run_toll(place).0,
             false => FLAG,
         }
     }
 
-    fn new_step(&self, pc: u32) -> Step {
+    fn new_step(&self, place: u32, first: usize) -> Step {
         let code = self.code;
-        let Some((slot, op)) = code.slots().get(pc as usize).filter(|_| pc < code.words()).map(|slot| (slot, slot.op))
-        else {
-            let row = Op::BUILT_IN.len() as u8;
-            return Step {
-                row,
-                fields: Fields::default(),
-                exit: 0,
-                is_uneven: false,
-                edges: [FLAG; 2],
-                target: u32::MAX,
-            };
+        let slot = self.order.slot(place);
+        let mut step = Step {
+            row: Step::UNUSUAL,
+            exits: 0,
+            is_uneven: false,
+            fields: Fields::default(),
+            exit: first as u32,
+            slot,
+            edges: [FLAG; 2],
+            target: self.end() + 1,
+            unit: 0,
         };
-        let exits = code.row(pc).map_or(0, |row| row.exits.len());
-        let extra = &self.extra[slot.first_exit as usize..slot.first_exit as usize + exits];
-        let target = branch_target(code, pc as usize, slot).and_then(|target| u32::try_from(target).ok());
-        let target = target.filter(|&target| target < code.words()).unwrap_or(u32::MAX);
+        let Some(&stage) = self.order.stages().get(place as usize) else { return step };
+        let target = target(code, &self.order, stage);
+        step.target = target.unwrap_or(self.end() + 1);
+        if let Stage::Hop(_) = stage {
+            step.edges[1] = self.flagged_toll(step.target);
+            return Step { row: Step::HOP, exits: 1, ..step };
+        }
+        let Some((op, row)) = code.slots()[slot as usize].op.zip(code.slot_row(slot)) else { return step };
+        step.exits = row.exits.len() as u8;
+        let extra = &self.extra[first..first + row.exits.len()];
+        step.is_uneven = extra.iter().any(|extra| *extra != Toll::default());
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
-        // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter.
-        let (mut fields, mut is_odd) = (slot.fields, false);
-        let zeros = code.row(pc).into_iter().flat_map(|row| row.operands.iter());
-        for operand in zeros.filter(|operand| operand.kind == Kind::S && operand.is_written()) {
-            if slot.fields.get(operand.letter) == 0 {
+        step.edges = [
+            self.flagged_toll(place + 1) + extra_of(0),
+            self.flagged_toll(step.target) + extra_of(row.exits.len().saturating_sub(1)),
+        ];
+        // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
+        step.fields = code.slots()[slot as usize].fields;
+        let mut is_odd = target.is_none() && branches(row);
+        for operand in row.operands.iter().filter(|operand| operand.kind == Kind::S && operand.is_written()) {
+            if step.fields.get(operand.letter) == 0 {
                 is_odd |= operand.is_read();
-                fields.set(operand.letter, Registers::NOWHERE.into());
+                step.fields.set(operand.letter, Registers::NOWHERE.into());
             }
         }
-        let number = op.filter(|_| !is_odd).map_or(Op::BUILT_IN.len(), Op::index);
-        Step {
-            row: number.min(Op::BUILT_IN.len()) as u8,
-            fields,
-            exit: slot.first_exit,
-            is_uneven: extra.iter().any(|extra| *extra != Toll::default()),
-            edges: [
-                self.flagged_toll(pc + 1) + extra_of(0),
-                self.flagged_toll(target) + extra_of(exits.saturating_sub(1)),
-            ],
-            target,
-        }
+        (step.row, step.unit) = match op {
+            _ if is_odd => (Step::UNUSUAL, 0),
+            Op::Ext(number) => (Step::UNIT, number),
+            _ => (op.index() as u8, 0),
+        };
+        step
     }
 
-    /// What is known of a word; `None` outside the program.
+    /// The place behind the program.
     #[inline(always)]
-    pub fn place(&self, pc: u32) -> Option<&Place> {
-        self.places[..self.code.words() as usize].get(pc as usize)
+    pub fn end(&self) -> u32 {
+        self.places.len() as u32 - 1
     }
 
-    /// Toll of the words from one to before another one of the same block, without what depends on exits.
+    /// The place of a slot; that behind the program for what is none.
+    #[inline(always)]
+    pub fn place_of(&self, slot: u32) -> u32 {
+        self.order.place(slot)
+    }
+
+    /// What is known of a place; `None` outside the program.
+    #[inline(always)]
+    pub fn place(&self, place: u32) -> Option<&Place> {
+        self.places[..self.end() as usize].get(place as usize)
+    }
+
+    /// Toll of the places from one to before another one of the same block or run, without what depends on exits.
     #[inline(always)]
     pub fn toll(&self, from: u32, to: u32) -> Toll {
         Toll(self.places[to as usize].before.0.wrapping_sub(self.places[from as usize].before.0))
@@ -250,33 +276,55 @@ impl<'a> Plan<'a> {
         self.extra[exit]
     }
 
-    /// Whether one of some words asks for numbers of cores, or sends.
+    /// The pass of the program that an exit is; the exits of words and hops are numbered in their order.
     #[inline(always)]
-    pub fn asks(&self, words: &Range<u32>) -> bool {
-        self.asking[words.start as usize] != self.asking[words.end as usize]
+    pub fn pass(&self, exit: usize) -> Option<usize> {
+        self.passes.get(exit).filter(|&&pass| pass != NO_PASS).map(|&pass| pass as usize)
     }
 
-    /// What a word does with numbers of cores.
-    pub fn mark(&self, pc: u32) -> Mark {
-        self.marks[pc as usize]
+    /// How many exits there are.
+    pub fn exits(&self) -> usize {
+        self.passes.len()
     }
 
-    /// The decoded words and one behind them.
+    /// Whether one of some places asks for numbers of cores, or sends.
+    #[inline(always)]
+    pub fn asks(&self, places: &Range<u32>) -> bool {
+        self.asking[places.start as usize] != self.asking[places.end as usize]
+    }
+
+    /// What a place does with numbers of cores.
+    pub fn mark(&self, place: u32) -> Mark {
+        self.marks[place as usize]
+    }
+
+    /// The steps by their places, and one behind them.
     #[inline(always)]
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// End of the run that begins at a word, or at the end of the program.
+    /// Whether a run ends behind a place.
+    pub fn is_run_end(&self, place: u32) -> bool {
+        self.run_end(place) == place + 1
+    }
+
+    /// Whether control that leaves a run by the first exit of its last step goes on behind that, with no other sign of it.
+    pub fn falls_through(&self, place: u32) -> bool {
+        let step = &self.steps[place as usize];
+        step.row != Step::UNIT && step.exits > 1
+    }
+
+    /// End of the run that begins at a place, or at the end of the program.
     #[inline(always)]
-    pub fn run_end(&self, pc: u32) -> u32 {
-        self.run_ends[pc as usize]
+    pub fn run_end(&self, place: u32) -> u32 {
+        self.run_ends[place as usize]
     }
 
     /// What a run takes, without what depends on exits.
     #[inline(always)]
-    pub fn run_toll(&self, pc: u32) -> Toll {
-        self.toll(pc, self.run_end(pc))
+    pub fn run_toll(&self, place: u32) -> Toll {
+        self.toll(place, self.run_end(place))
     }
 
     /// The decoded words.
@@ -286,13 +334,32 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Whether control may go elsewhere than to the next word.
-fn ends_block(row: Option<&Row>) -> bool {
-    row.is_none_or(|row| row.room == "control")
+/// Whether a row says how far away control may go.
+fn branches(row: &Row) -> bool {
+    row.operands.iter().any(|operand| operand.kind == Kind::Rel)
 }
 
-/// Where a branch leads to.
-fn branch_target(code: &Code, pc: usize, slot: &Slot) -> Option<usize> {
-    let relative = code.row(pc as u32)?.operands.iter().find(|operand| operand.kind == Kind::Rel)?;
-    usize::try_from(pc as i64 + slot.fields.get(relative.letter)).ok()
+/// Whether control may go elsewhere than to the next place.
+fn ends_run(code: &Code, stage: Stage) -> bool {
+    let Stage::Slot(slot) = stage else { return true };
+    let Some(row) = code.slot_row(slot) else { return true };
+    match code.slots()[slot as usize].op {
+        Some(Op::Ext(_)) => branches(row),
+        _ => row.room == "control",
+    }
+}
+
+/// The place to which a branch or a hop leads; `None` for what is neither, and outside the program.
+fn target(code: &Code, order: &Order, stage: Stage) -> Option<u32> {
+    let slot = match stage {
+        Stage::Hop(slot) => return Some(order.place(slot)),
+        Stage::Slot(slot) => slot,
+    };
+    let (row, decoded) = (code.slot_row(slot)?, code.slots()[slot as usize]);
+    let distance = row.operands.iter().find(|operand| operand.kind == Kind::Rel)?;
+    if let Some(Op::Ext(_)) = decoded.op {
+        return Some(order.place(code.distant(slot)));
+    }
+    let target = slot.wrapping_add_signed(decoded.fields.get(distance.letter) as i32);
+    (!code.is_outside(slot, target)).then(|| order.place(target))
 }

@@ -99,9 +99,13 @@ impl Setup<'_> {
     /// program or what is recorded.
     pub fn engine(&self) -> Engine {
         let Options { engine, has_profile, has_losses, .. } = self.options;
-        let is_watched = watching(self.config, has_losses).is_some() || has_profile && engine == Engine::Lockstep;
         let code = Code::new(self.core, self.isa, self.config.timing());
-        if is_watched || Plan::new(&code).is_none() { Engine::Checked } else { engine }
+        match Plan::new(&code) {
+            None => Engine::Checked,
+            Some(_) if watching(self.config, has_losses).is_some() => Engine::Checked,
+            Some(plan) if engine == Engine::Lockstep && (has_profile || !plan.is_plain()) => Engine::Fast,
+            Some(_) => engine,
+        }
     }
 }
 

@@ -155,12 +155,12 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let config = setup.config;
         let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
-        // Who watches each instruction has to see them one after the other.
         let (engine, features) = (setup.options.engine, setup.options.features.unwrap_or_else(Features::best));
-        let is_lockstep = engine == Engine::Lockstep && !O::IS_ACTIVE && !T::IS_WATCHING;
-        let is_single = engine == Engine::Fast && !T::IS_WATCHING;
-        let single = is_single.then(|| Plan::new(code)).flatten();
-        let lockstep = is_lockstep.then(|| Plan::new(code)).flatten().map(|plan| Lockstep {
+        let plan = (engine != Engine::Checked && !T::IS_WATCHING).then(|| Plan::new(code)).flatten();
+        // Who watches each instruction has to see them one after the other.
+        let suits = |plan: &Plan| engine == Engine::Lockstep && !O::IS_ACTIVE && plan.is_plain();
+        let (lockstep, single) = if plan.as_ref().is_some_and(suits) { (plan, None) } else { (None, plan) };
+        let lockstep = lockstep.map(|plan| Lockstep {
             group: Box::new(Group::new(&plan, seat, &initial)),
             plan,
             features,

@@ -8,7 +8,6 @@ use isa::{Fields, Isa, Kind, Row};
 
 use super::call::{Call, Operands, WRITTEN, place};
 use super::{Ending, MOST_OCTETS, Meaning, Numbers, attached};
-use crate::exec::Link;
 use crate::octets::Buffer;
 use crate::registers::Registers;
 use crate::trap::{Fault, Stop};
@@ -38,6 +37,9 @@ impl Shape {
     }
 }
 
+/// How a unit reads words of global memory from an address on.
+pub(crate) type Read<'a> = &'a mut dyn FnMut(u32, &mut [i32]) -> Result<(), Stop>;
+
 /// What executes an instruction, whatever the type of its meaning.
 pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
     /// Executes the instruction; where that goes wrong, no register has changed.
@@ -46,7 +48,7 @@ pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
         fields: &Fields,
         registers: &mut Registers,
         buffer: &mut Buffer,
-        link: &mut dyn Link,
+        read: Read,
         arithmetic: &Numbers,
     ) -> Result<Ending, Stop>;
 
@@ -90,6 +92,16 @@ impl<M> Runner<M> {
     #[inline]
     fn write(&self, fields: &Fields, registers: &mut Registers) {
         let results = &self.results;
+        // Most have one, which is seldom left out.
+        match self.destinations[..] {
+            [(place, b'd', Kind::S)] if results.written != 0 => {
+                return registers.set_scalar(fields.d, results.scalars[place & 3]);
+            }
+            [(place, b'd', Kind::V)] if results.written != 0 => {
+                return registers.set_vector(fields.d, results.vectors[place & 3][0]);
+            }
+            _ => {}
+        }
         for &(place, letter, kind) in &self.destinations {
             let is_set = results.written >> place & 1 == 1;
             // What is read too stays as it was.
@@ -124,7 +136,7 @@ impl<M: Meaning + Clone> Unit for Runner<M> {
         fields: &Fields,
         registers: &mut Registers,
         buffer: &mut Buffer,
-        link: &mut dyn Link,
+        read: Read,
         arithmetic: &Numbers,
     ) -> Result<Ending, Stop> {
         let operands = Operands { registers, fields, shape: &self.shape };
@@ -135,7 +147,7 @@ impl<M: Meaning + Clone> Unit for Runner<M> {
             }
             self.words.clear();
             self.words.resize(octets.div_ceil(4) as usize, 0);
-            link.read(range.start, &mut self.words)?;
+            read(range.start, &mut self.words)?;
         } else {
             self.words.clear();
         }

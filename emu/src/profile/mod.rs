@@ -36,17 +36,17 @@ pub trait Observer {
 
 /// An observer for engines that count several words at once, too: they call these instead of [`Observer::step`].
 pub trait RunObserver: Observer {
-    /// Some words ended, one behind the other. Those with several exits, and units, are told by
-    /// [`RunObserver::pass`].
-    fn walked(&mut self, words: Range<u32>);
+    /// What stands at some places of the order of slots ended, one behind the other. What has several exits, and units, are told
+    /// by [`RunObserver::pass`].
+    fn walked(&mut self, places: Range<u32>);
 
     /// A pass through an exit: of a word with several, or with units of one that `is_only`.
     fn pass(&mut self, exit: usize, is_only: bool, units: u32);
 
-    /// Whether the word behind this one belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
-    fn is_border(&self, pc: u32) -> bool;
+    /// Whether what stands behind a place belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
+    fn is_border(&self, place: u32) -> bool;
 
-    /// Control goes from one word to another; what ended before was told.
+    /// Control goes from one slot to another; what ended before was told.
     fn go(&mut self, pc: u32, next: u32, motion: Motion);
 }
 

@@ -8,6 +8,7 @@ use isa::Counts;
 use super::{Observer, Profile, RegionProfile, RunObserver};
 use crate::code::Code;
 use crate::exec::Motion;
+use crate::order::{Order, Stage};
 use crate::tally::Tally;
 
 /// Most regions and calls that are open at once; what deeper calls cost counts for what is open already.
@@ -35,9 +36,11 @@ enum Open {
 pub struct Profiler {
     /// Cost of each exit of the program, and what a unit of it adds.
     costs: Vec<(Counts, Counts)>,
-    /// What the words up to each one cost together, those with several exits left out.
+    /// Where the slots stand.
+    order: Order,
+    /// What stands up to each place of the order costs together, what has several exits left out.
     before: Vec<Counts>,
-    /// The innermost region of each word.
+    /// The innermost region of each slot.
     region_of: Vec<Option<u16>>,
     /// Regions from the outermost to a region itself.
     chains: Vec<Vec<u16>>,
@@ -137,14 +140,20 @@ impl Observer for Profiler {
             chain.reverse();
             chain
         };
+        let order = Order::new(code);
         let mut before = vec![Counts::ZERO];
-        for pc in 0..code.words() {
-            let passes = code.passes_of(pc);
-            let cost = if passes.len() == 1 { code.pass_cost(passes.start).0 } else { Counts::ZERO };
-            before.push(before[pc as usize] + cost);
+        let mut sum = Counts::ZERO;
+        for &stage in order.stages() {
+            if let Stage::Slot(slot) = stage
+                && code.slot_row(slot).is_some_and(|row| row.exits.len() == 1)
+            {
+                sum += code.pass_cost(code.slots()[slot as usize].first_exit as usize).0;
+            }
+            before.push(sum);
         }
         Profiler {
             costs,
+            order,
             before,
             region_of: (0..code.slots().len() as u32).map(region).collect(),
             chains: (0..regions.len()).map(chain).collect(),
@@ -191,9 +200,9 @@ impl Observer for Profiler {
 }
 
 impl RunObserver for Profiler {
-    fn walked(&mut self, words: Range<u32>) {
-        let at = |pc: u32| self.before[pc as usize];
-        let (from, to) = (at(words.start), at(words.end));
+    fn walked(&mut self, places: Range<u32>) {
+        let at = |place: u32| self.before[place as usize];
+        let (from, to) = (at(places.start), at(places.end));
         for (total, (to, from)) in self.total.0.iter_mut().zip(to.0.iter().zip(from.0)) {
             *total += to - from;
         }
@@ -209,8 +218,8 @@ impl RunObserver for Profiler {
         }
     }
 
-    fn is_border(&self, pc: u32) -> bool {
-        self.chain(pc) != self.chain(pc + 1)
+    fn is_border(&self, place: u32) -> bool {
+        self.chain(self.order.slot(place)) != self.chain(self.order.slot(place + 1))
     }
 
     #[inline]

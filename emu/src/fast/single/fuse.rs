@@ -1,25 +1,24 @@
-//! What an item took so far, and when it is to be looked at: three sums in one number of 64 bits, which are emptied before one of them is full
+//! What an item took so far, and when it is to be looked at: four sums in one number of 64 bits, which are emptied before one of them is full
 //! or the step limit is reached.
 
 use crate::checked::{Seat, State};
-use crate::fast::plan::{FIELD, FLAG, Plan, Toll};
+use crate::fast::plan::Plan;
+use crate::fast::toll::{FLAG, HALVES, Toll};
 use crate::independence::Origin;
 
-/// A sum that has come so far is emptied.
-const FULL: u64 = 1 << (FIELD - 1);
-
-/// The bits which say that something is to be looked at before a run begins: a sum is full, or the run is flagged.
-pub(super) const LOOK: u64 = FULL | FULL << FIELD | FULL << (2 * FIELD) | FLAG;
+/// The bits which say that something is to be looked at before a run begins: a sum has come to half of its room, or the run is flagged.
+pub(super) const LOOK: u64 = HALVES | FLAG;
 
 /// What an item took before its sums were emptied.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fuse {
     steps: u64,
+    inner_steps: u64,
     clocks: u64,
     elementary: u64,
     limit: u64,
-    /// Where the sum of the steps began, so that it is full when the limit is reached, or at once while numbers of cores are followed.
-    bias: u64,
+    /// Where the sums of the steps began, so that one is full before both come to the limit, or at once while numbers of cores are followed.
+    bias: Toll,
     is_following: bool,
     /// What it knows of the cores.
     origin: Origin,
@@ -33,50 +32,61 @@ impl Fuse {
     /// At the state of an item.
     pub(super) fn new(state: &State, seat: Seat, origin: Origin, is_following: bool) -> Fuse {
         let State { steps, inner_steps, clocks, elementary, pc, .. } = *state;
-        let limit = seat.step_limit.saturating_sub(inner_steps);
-        Fuse { steps, clocks, elementary, limit, bias: 0, is_following, origin, before: origin, followed: (pc, 0) }
+        let (limit, bias, followed) = (seat.step_limit, Toll::default(), (pc, 0));
+        Fuse { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
+    }
+
+    fn all_steps(&self) -> u64 {
+        self.steps + self.inner_steps
     }
 
     /// The sums at the beginning.
-    pub(super) fn begin(&mut self) -> u64 {
-        let room = if self.origin.tainted != 0 { 0 } else { self.limit.saturating_sub(self.steps) };
-        self.bias = FULL - FULL.min(room);
-        self.bias
+    pub(super) fn begin(&mut self, plan: &Plan) -> u64 {
+        const FULL: u64 = Toll::WHOLE as u64;
+        let room = if self.origin.tainted != 0 { 0 } else { self.limit.saturating_sub(self.all_steps()) };
+        // Where there are bodies, each of the two sums may come to half of what is left.
+        self.bias = match plan.has_bodies() {
+            false => Toll::of_steps(FULL - FULL.min(room), 0),
+            true => Toll::of_steps(FULL - FULL.min(room / 2), FULL - FULL.min(room / 2)),
+        };
+        self.bias.0
     }
 
-    /// Looks at what is to be looked at before the run at a word begins. `toll` is what it takes, and the exit that led there. Yields the sums,
-    /// and whether the run begins; else they are those before it.
+    /// Looks at what is to be looked at before the run at a place begins. `toll` is what it takes, and the exit that led there. Yields the
+    /// sums, and whether the run begins; else they are those before it.
     #[cold]
     #[inline(never)]
-    pub(super) fn look(&mut self, plan: &Plan, pc: u32, sums: u64, toll: u64) -> (u64, bool) {
-        let run = if pc <= plan.code.words() { plan.run_toll(pc) } else { Toll::default() };
-        let sums = self.empty(sums + ((toll & !FLAG) - run.0));
-        if pc > plan.code.words() || self.steps + run.steps() > self.limit {
+    pub(super) fn look(&mut self, plan: &Plan, place: u32, sums: u64, toll: u64) -> (u64, bool) {
+        let run = plan.run_toll(place);
+        let sums = self.empty(plan, sums + ((toll & !FLAG) - run.0));
+        let after = self.all_steps() + run.steps() + run.inner_steps();
+        if after > self.limit {
             return (sums, false);
         }
-        let end = plan.run_end(pc);
-        if self.is_following && (self.origin.tainted != 0 || plan.asks(&(pc..end))) {
-            (self.before, self.followed) = (self.origin, (pc, self.steps + run.steps()));
-            for word in pc..end {
-                self.origin.step(plan.mark(word));
+        let end = plan.run_end(place);
+        if self.is_following && (self.origin.tainted != 0 || plan.asks(&(place..end))) {
+            (self.before, self.followed) = (self.origin, (place, after));
+            for place in place..end {
+                self.origin.step(plan.mark(place));
             }
-            return (self.begin() + run.0, true);
+            return (self.begin(plan) + run.0, true);
         }
         (sums + run.0, true)
     }
 
-    fn empty(&mut self, sums: u64) -> u64 {
-        let toll = Toll(sums);
-        self.steps += toll.steps() - self.bias;
+    fn empty(&mut self, plan: &Plan, sums: u64) -> u64 {
+        let toll = Toll(sums - self.bias.0);
+        self.steps += toll.steps();
+        self.inner_steps += toll.inner_steps();
         self.clocks += toll.clocks();
         self.elementary += toll.elementary();
-        self.begin()
+        self.begin(plan)
     }
 
-    /// What units of an exit take beside the sums.
-    pub(super) fn add_units(&mut self, plan: &Plan, exit: usize, units: u32) {
-        if plan.code.costs()[exit].has_busy_units {
-            let (clocks, elementary) = plan.code.unit_cost(exit, units);
+    /// What units of a pass take beside the sums.
+    pub(super) fn add_units(&mut self, plan: &Plan, pass: usize, units: u32) {
+        if plan.code.costs()[pass].has_busy_units {
+            let (clocks, elementary) = plan.code.unit_cost(pass, units);
             self.clocks += clocks.0;
             self.elementary += elementary;
         }
@@ -88,21 +98,31 @@ impl Fuse {
         self.clocks + Toll(sums.wrapping_sub(rest.0)).clocks()
     }
 
-    /// Brings the state up to date at a word; `rest` is what of the run was not executed.
-    pub(super) fn settle(mut self, plan: &Plan, state: &mut State, sums: u64, pc: u32, rest: Option<Toll>) -> Origin {
-        self.empty(sums);
+    /// Brings the state up to date at a place; `rest` is what of the run was not executed.
+    pub(super) fn settle(
+        mut self,
+        plan: &Plan,
+        state: &mut State,
+        sums: u64,
+        place: u32,
+        rest: Option<Toll>,
+    ) -> Origin {
+        self.empty(plan, sums);
         if let Some(rest) = rest {
-            if self.followed.1 == self.steps {
+            if self.followed.1 == self.all_steps() {
                 self.origin = self.before;
-                for word in self.followed.0..pc {
-                    self.origin.step(plan.mark(word));
+                for place in self.followed.0..place {
+                    self.origin.step(plan.mark(place));
                 }
             }
             self.steps -= rest.steps();
+            self.inner_steps -= rest.inner_steps();
             self.clocks -= rest.clocks();
             self.elementary -= rest.elementary();
         }
-        (state.pc, state.steps, state.clocks, state.elementary) = (pc, self.steps, self.clocks, self.elementary);
+        state.pc = plan.steps()[place as usize].slot;
+        (state.steps, state.inner_steps) = (self.steps, self.inner_steps);
+        (state.clocks, state.elementary) = (self.clocks, self.elementary);
         self.origin
     }
 }

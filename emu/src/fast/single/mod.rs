@@ -89,23 +89,26 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     run: impl FnOnce(&mut Registers, Place, &mut Walk<L, O>),
 ) -> Stopped {
     let fuse = Fuse::new(state, seat, count.origin, count.is_following);
-    let from = state.pc;
-    let State { registers, buffer, .. } = &mut *state;
-    let stop = Ended { stopped: Stopped::Unusual, pc: from, sums: 0, is_cut: false };
-    let mut walk = Walk { plan, seat, buffer, link, count, observer, fuse, from, stop };
-    let sums = walk.fuse.begin();
+    if state.pc as usize >= plan.slots().len() {
+        return Stopped::Unusual;
+    }
+    let from = plan.place_of(state.pc);
+    let State { registers, buffer, units, .. } = &mut *state;
+    let stop = Ended { stopped: Stopped::Unusual, place: from, sums: 0, is_cut: false };
+    let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuse, from, stop };
+    let sums = walk.fuse.begin(plan);
     let first = walk.begin::<C>(from, sums);
     run(registers, first, &mut walk);
-    let Ended { stopped, pc, sums, is_cut } = walk.stop;
-    let rest = is_cut.then(|| plan.run_toll(pc));
+    let Ended { stopped, place, sums, is_cut } = walk.stop;
+    let rest = is_cut.then(|| plan.run_toll(place));
     if is_cut {
-        walk.count.runs[pc as usize].cut += u64::from(C::IS_ON);
+        walk.count.runs[place as usize].cut += u64::from(C::IS_ON);
         if O::IS_ACTIVE {
-            walk.observer.walked(walk.from..pc);
+            walk.observer.walked(walk.from..place);
         }
     }
     let fuse = walk.fuse;
-    count.origin = fuse.settle(plan, state, sums, pc, rest);
+    count.origin = fuse.settle(plan, state, sums, place, rest);
     stopped
 }
 

@@ -26,6 +26,18 @@ macro_rules! thread {
     }};
 }
 
+/// On to another run.
+macro_rules! turn {
+    ($way:expr, $sums:ident, ($registers:ident $walk:ident $L:ident $O:ident $C:ident)) => {{
+        let way: Way = $way;
+        let after = $sums.wrapping_add(way.toll);
+        if after & LOOK != 0 {
+            return $walk.look::<$C>(way, $sums);
+        }
+        thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O $C))
+    }};
+}
+
 /// Writes what a meaning handed back, and yields the exit.
 macro_rules! finish {
     ($registers:ident $fields:ident, $result:expr, []) => {
@@ -38,28 +50,39 @@ macro_rules! finish {
     }};
 }
 
+/// The function of a row, and the names of what it has.
+macro_rules! function {
+    ($features:tt $name:ident
+        ($registers:ident $step:ident $walk:ident $sums:ident $now:ident $fields:ident $L:ident $O:ident $C:ident) $body:block
+    ) => {
+        # $features
+        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
+        unsafe fn $name<$L: Wire, $O: RunObserver, $C: Counting>(
+            $registers: &mut Registers,
+            $step: *const Step,
+            $walk: &mut Walk<$L, $O>,
+            $sums: u64,
+        ) -> Place {
+            // SAFETY: it points to a step of the plan, which nobody changes.
+            let $now = unsafe { &*$step };
+            let $fields = &$now.fields;
+            $body
+        }
+    };
+}
+
 /// One row. A straight row goes on with the next word; a control row begins the next run. Rows that are long, or that may keep something on the
 /// stack, go back to the loop.
 macro_rules! row {
     ({ $features:tt $ray:ident pure RayRoom $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        # $features
-        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
-            // SAFETY: it points to a step of the plan, which nobody changes.
-            let now = unsafe { &*step };
-            let fields = &now.fields;
+        function! { $features $name (registers step walk sums now fields L O C) {
             let exit: exit::$name::Exit = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
             let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
             walk.go_on(Place { step, sums })
-        }
+        }}
     };
     ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        # $features
-        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
-            // SAFETY: it points to a step of the plan, which nobody changes.
-            let now = unsafe { &*step };
-            let fields = &now.fields;
+        function! { $features $name (registers step walk sums now fields L O C) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
             let _: exit::$name::Exit = finish!(registers fields, result, $written);
@@ -68,15 +91,10 @@ macro_rules! row {
                 return next;
             }
             thread!(next, (registers walk L O C))
-        }
+        }}
     };
     ({ $features:tt $ray:ident local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        # $features
-        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
-            // SAFETY: it points to a step of the plan, which nobody changes.
-            let now = unsafe { &*step };
-            let fields = &now.fields;
+        function! { $features $name (registers step walk sums now fields L O C) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             match $trait::$name(&mut *walk.buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
@@ -86,15 +104,10 @@ macro_rules! row {
             }
             let next = walk.go_on(Place { step, sums });
             thread!(next, (registers walk L O C))
-        }
+        }}
     };
     ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        # $features
-        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
-            // SAFETY: it points to a step of the plan, which nobody changes.
-            let now = unsafe { &*step };
-            let fields = &now.fields;
+        function! { $features $name (registers step walk sums now fields L O C) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             if C::IS_ON {
                 walk.note(Place { step, sums });
@@ -109,34 +122,23 @@ macro_rules! row {
                 Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
                 Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
             }
-        }
+        }}
     };
     ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        # $features
-        #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
-            // SAFETY: it points to a step of the plan, which nobody changes.
-            let now = unsafe { &*step };
-            let fields = &now.fields;
+        function! { $features $name (registers step walk sums now fields L O C) {
             const { assert!(exit::$name::Exit::EXITS <= 2) };
-            let pc = walk.word(step);
-            let mut flow = Flow::new(pc, pc + 1, walk.seat.core, walk.seat.cores);
+            let mut flow = Flow::new(now.slot, now.slot + 1, walk.seat.core, walk.seat.cores);
             let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
-            if let Some(End::Trap(_)) = flow.end {
+            let has_target = const { false $(|| is_relative!($kind))* };
+            if matches!(flow.end, Some(End::Trap(_))) || !has_target && flow.next >= walk.plan.code.words() {
                 return walk.stop_before(Stopped::Unusual, Place { step, sums });
             }
             let exit: exit::$name::Exit = finish!(registers fields, result, $written);
-            let has_target = const { false $(|| is_relative!($kind))* };
             if let Some(End::Halt) = flow.end {
                 return walk.halt(Place { step, sums });
             }
-            let way = walk.turn::<C, exit::$name::Exit>(has_target, now, step, flow, exit);
-            let after = sums.wrapping_add(way.toll);
-            if after & LOOK != 0 {
-                return walk.look::<C>(way, sums);
-            }
-            thread!(Place { step: way.step, sums: after }, (registers walk L O C))
-        }
+            turn!(walk.turn::<C, exit::$name::Exit>(has_target, now, step, flow, exit), sums, (registers walk L O C))
+        }}
     };
 }
 
@@ -195,7 +197,7 @@ macro_rules! stamp {
 
                 use super::super::super::fuse::LOOK;
                 use super::super::super::operands::put;
-                use super::super::super::walk::{Place, Walk};
+                use super::super::super::walk::{Place, Walk, Way};
                 use super::super::super::{Stopped, Wire};
                 use super::super::super::super::rows::is_heavy;
                 use super::super::RowFunction;
@@ -213,16 +215,24 @@ macro_rules! stamp {
 
                 $($(split_operands! { row { $features $ray $style $trait $name } [] [] ($($operands)*) })*)*
 
-                /// What is no row of the table.
-                unsafe fn unusual<L: Wire, O: RunObserver>(_: &mut Registers, step: *const Step, walk: &mut Walk<L, O>, sums: u64) -> Place {
+                function! { $features hop (registers step walk sums now fields L O C) {
+                    turn!(walk.hop::<C>(now, step), sums, (registers walk L O C))
+                }}
+
+                function! { $features unit (registers step walk sums now fields L O C) {
+                    walk.unit::<C>(registers, step, sums, now)
+                }}
+
+                function! { $features unusual (registers step walk sums now fields L O C) {
                     walk.stop_before(Stopped::Unusual, Place { step, sums })
-                }
+                }}
 
                 /// The rows by number.
                 pub struct All<L, O, C>(std::marker::PhantomData<(L, O, C)>);
 
                 impl<L: Wire, O: RunObserver, C: Counting> All<L, O, C> {
-                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O, C>,)*)* unusual::<L, O>]);
+                    /// In the order of the numbers of [`Step`].
+                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O, C>,)*)* hop::<L, O, C>, unit::<L, O, C>, unusual::<L, O, C>]);
                 }
             }
 

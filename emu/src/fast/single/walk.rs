@@ -8,9 +8,13 @@ use super::{Stopped, Wire};
 use crate::checked::Seat;
 use crate::exec::{Flow, Motion};
 use crate::fast::group::{Counting, Moment};
-use crate::fast::plan::{FLAG, Plan, Step};
+use crate::fast::plan::{Plan, Step};
+use crate::fast::toll::FLAG;
+use crate::meaning::{Numbers, Units};
 use crate::octets::Buffer;
 use crate::profile::RunObserver;
+use crate::registers::Registers;
+use crate::trap::{Fault, Stop};
 
 /// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuse was looked at.
 #[derive(Clone, Copy)]
@@ -22,7 +26,7 @@ pub(super) struct Place {
 /// Where control goes from one run to the next, and what that and the next run take.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
-    pub pc: u32,
+    pub place: u32,
     pub step: *const Step,
     pub toll: u64,
 }
@@ -31,7 +35,7 @@ pub(super) struct Way {
 #[derive(Clone, Copy)]
 pub(super) struct Ended {
     pub stopped: Stopped,
-    pub pc: u32,
+    pub place: u32,
     pub sums: u64,
     /// Whether the rest of the current run is left.
     pub is_cut: bool,
@@ -42,11 +46,12 @@ pub(super) struct Walk<'a, L, O> {
     pub plan: &'a Plan<'a>,
     pub seat: Seat,
     pub buffer: &'a mut Buffer,
+    pub units: &'a mut Units,
     pub link: &'a mut L,
     pub count: &'a mut Count,
     pub observer: &'a mut O,
     pub fuse: Fuse,
-    /// Where what the observer has not been told of begins.
+    /// The place from which on the observer was told of nothing.
     pub from: u32,
     pub stop: Ended,
 }
@@ -58,55 +63,61 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         Place { step: std::ptr::null(), sums: 0 }
     }
 
-    /// Stops before a word of the current run.
+    /// Stops before a step of the current run.
     #[cold]
     #[inline(never)]
-    pub fn stop_before(&mut self, stopped: Stopped, place: Place) -> Place {
-        self.stop(Ended { stopped, pc: self.word(place.step), sums: place.sums, is_cut: true })
+    pub fn stop_before(&mut self, stopped: Stopped, at: Place) -> Place {
+        self.stop(Ended { stopped, place: self.place(at.step), sums: at.sums, is_cut: true })
     }
 
-    /// The word of a step.
+    /// The place of a step in the plan.
     #[inline(always)]
-    pub fn word(&self, step: *const Step) -> u32 {
+    pub fn place(&self, step: *const Step) -> u32 {
         ((step as usize - self.plan.steps().as_ptr() as usize) / size_of::<Step>()) as u32
     }
 
     #[inline(always)]
-    fn step(&self, pc: u32) -> *const Step {
-        self.plan.steps().as_ptr().wrapping_add(pc as usize)
+    fn step(&self, place: u32) -> *const Step {
+        self.plan.steps().as_ptr().wrapping_add(place as usize)
+    }
+
+    /// Tells the observer of everything up to a step, after which control goes to another one.
+    fn tell(&mut self, last: u32, next: u32, motion: Motion) {
+        self.observer.walked(self.from..last + 1);
+        let slot = |place: u32| self.plan.steps()[place as usize].slot;
+        self.observer.go(slot(last), slot(next), motion);
+        self.from = next;
     }
 
     /// On to the next step of the run.
     #[inline(always)]
-    pub fn go_on(&mut self, place: Place) -> Place {
+    pub fn go_on(&mut self, at: Place) -> Place {
         if O::IS_ACTIVE {
-            let pc = self.word(place.step);
-            if self.observer.is_border(pc) {
-                self.observer.walked(self.from..pc + 1);
-                self.observer.go(pc, pc + 1, Motion::Jump);
-                self.from = pc + 1;
+            let place = self.place(at.step);
+            if self.observer.is_border(place) {
+                self.tell(place, place + 1, Motion::Jump);
             }
         }
-        Place { step: place.step.wrapping_add(1), sums: place.sums }
+        Place { step: at.step.wrapping_add(1), sums: at.sums }
     }
 
-    /// The way to a word to which no exit leads whose target is known.
+    /// The way to a place to which no exit leads whose target is known.
     #[inline(always)]
-    pub fn way_to<C: Counting>(&mut self, pc: u32) -> Way {
-        let toll = match self.count.runs.get_mut(pc as usize) {
+    pub fn way_to<C: Counting>(&mut self, place: u32) -> Way {
+        let toll = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
                 run.begun += u64::from(C::IS_ON);
                 run.toll
             }
             None => FLAG,
         };
-        Way { pc, step: self.step(pc), toll }
+        Way { place, step: self.step(place), toll }
     }
 
-    /// Begins at a word.
-    pub fn begin<C: Counting>(&mut self, pc: u32, sums: u64) -> Place {
-        self.from = pc;
-        let way = self.way_to::<C>(pc);
+    /// Begins at a place.
+    pub fn begin<C: Counting>(&mut self, place: u32, sums: u64) -> Place {
+        self.from = place;
+        let way = self.way_to::<C>(place);
         self.look::<C>(way, sums)
     }
 
@@ -114,27 +125,24 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     #[cold]
     #[inline(never)]
     pub fn look<C: Counting>(&mut self, way: Way, sums: u64) -> Place {
-        let Way { pc, toll, .. } = way;
-        let (sums, begins) = self.fuse.look(self.plan, pc, sums, toll);
+        let Way { place, toll, .. } = way;
+        let (sums, begins) = self.fuse.look(self.plan, place, sums, toll);
         if begins {
-            return Place { step: self.step(pc), sums };
+            return Place { step: self.step(place), sums };
         }
-        if let Some(run) = self.count.runs.get_mut(pc as usize) {
-            run.cut += u64::from(C::IS_ON);
-        }
-        self.stop(Ended { stopped: Stopped::Unusual, pc, sums, is_cut: false })
+        self.count.runs[place as usize].cut += u64::from(C::IS_ON);
+        self.stop(Ended { stopped: Stopped::Unusual, place, sums, is_cut: false })
     }
 
     /// Stops behind the program's end.
     #[cold]
     #[inline(never)]
-    pub fn halt(&mut self, place: Place) -> Place {
-        let pc = self.word(place.step);
+    pub fn halt(&mut self, at: Place) -> Place {
+        let place = self.place(at.step);
         if O::IS_ACTIVE {
-            self.observer.walked(self.from..pc + 1);
-            self.observer.go(pc, pc, Motion::Jump);
+            self.tell(place, place, Motion::Jump);
         }
-        self.stop(Ended { stopped: Stopped::Halt, pc, sums: place.sums, is_cut: false })
+        self.stop(Ended { stopped: Stopped::Halt, place, sums: at.sums, is_cut: false })
     }
 
     /// The way on from a control row: one that its step knows, or to any word.
@@ -148,40 +156,111 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         exit: E,
     ) -> Way {
         let number = now.exit as usize + exit.index();
+        let is_falling = E::EXITS > 1 && exit.index() == 0;
         if O::IS_ACTIVE {
             if E::EXITS > 1 {
-                self.observer.pass(number, false, 0);
+                self.pass_seen(number, false, 0);
             }
-            self.observer.walked(self.from..flow.pc + 1);
-            self.observer.go(flow.pc, flow.next, flow.motion);
-            self.from = flow.next;
+            let place = self.place(step);
+            let next = match (is_falling, has_target) {
+                (true, _) => place + 1,
+                (false, true) => now.target,
+                (false, false) => self.plan.place_of(flow.next),
+            };
+            self.tell(place, next, flow.motion);
         }
-        if E::EXITS > 1 && exit.index() == 0 {
-            return Way { pc: flow.pc + 1, step: step.wrapping_add(1), toll: now.edges[0] };
+        if is_falling {
+            return Way { place: self.place(step) + 1, step: step.wrapping_add(1), toll: now.edges[0] };
         }
         if has_target {
             if C::IS_ON {
                 self.count.take_exit(number);
             }
-            return Way { pc: flow.next, step: self.step(now.target), toll: now.edges[1] };
+            return Way { place: now.target, step: self.step(now.target), toll: now.edges[1] };
         }
-        self.way_to::<C>(flow.next)
+        self.way_to::<C>(self.plan.place_of(flow.next))
+    }
+
+    /// The way on from a hop.
+    #[inline(always)]
+    pub fn hop<C: Counting>(&mut self, now: &Step, step: *const Step) -> Way {
+        if O::IS_ACTIVE {
+            let place = self.place(step);
+            self.observer.walked(self.from..place);
+            self.observer.go(self.plan.steps()[place as usize - 1].slot, now.slot, Motion::Jump);
+            self.from = now.target;
+        }
+        if C::IS_ON {
+            self.count.take_exit(now.exit as usize);
+        }
+        Way { place: now.target, step: self.step(now.target), toll: now.edges[1] }
+    }
+
+    /// Executes an instruction with a meaning in Rust.
+    pub fn unit<C: Counting>(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
+        let at = Place { step, sums };
+        let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Unusual, at) };
+        let (plan, fuse, link) = (self.plan, &self.fuse, &mut *self.link);
+        let mut read = |address, words: &mut [i32]| {
+            if C::IS_ON {
+                note(plan, fuse, link, plan.place_of(now.slot), sums);
+            }
+            link.read(address, words)
+        };
+        let ending = match unit.execute(&now.fields, registers, self.buffer, &mut read, &Numbers::Nearest32) {
+            Ok(ending) => ending,
+            Err(Stop::Wait) => return self.stop_before(Stopped::Wait, at),
+            Err(Stop::Fault(fault)) => return self.stop_before(Stopped::Fault(fault), at),
+        };
+        let exit = now.exit as usize + usize::from(ending.exit);
+        let sums = self.pass_any::<C>(now, sums, exit, ending.units, now.exits > 1);
+        // Only what may lead elsewhere ends a run, and knows where.
+        if now.target > self.plan.end() {
+            return self.go_on(Place { step, sums });
+        }
+        let place = self.place(step);
+        let next = if ending.is_taken { now.target } else { place + 1 };
+        if O::IS_ACTIVE {
+            self.tell(place, next, Motion::Jump);
+        }
+        if ending.is_taken && next == self.plan.end() {
+            let fault = Fault::OutsideProgram { words: self.plan.code.words() };
+            return self.stop(Ended { stopped: Stopped::Fault(fault), place: next, sums, is_cut: false });
+        }
+        let way = self.way_to::<C>(next);
+        self.look::<C>(way, sums)
     }
 
     /// Tells the link when it is asked.
     #[inline(always)]
-    pub fn note(&mut self, place: Place) {
-        let pc = self.word(place.step);
-        let is_asked = self.link.keeps_time();
-        let clocks = if is_asked { self.fuse.clocks_before(place.sums, self.plan.run_toll(pc)) } else { 0 };
-        self.link.note(Moment { pc, clocks });
+    pub fn note(&mut self, at: Place) {
+        note(self.plan, &self.fuse, self.link, self.place(at.step), at.sums);
+    }
+
+    fn pass_seen(&mut self, exit: usize, is_only: bool, units: u32) {
+        if let Some(pass) = self.plan.pass(exit) {
+            self.observer.pass(pass, is_only, units);
+        }
     }
 
     /// Counts what a straight row took, where that is not known beforehand, and yields the sums.
     #[inline(always)]
-    pub fn pass<C: Counting, E: Ending>(&mut self, now: &Step, mut sums: u64, exit: E) -> u64 {
+    pub fn pass<C: Counting, E: Ending>(&mut self, now: &Step, sums: u64, exit: E) -> u64 {
         let (number, units) = (now.exit as usize + exit.index(), exit.units());
-        if E::EXITS > 1 {
+        self.pass_any::<C>(now, sums, number, units, E::EXITS > 1)
+    }
+
+    /// The same, whatever the row.
+    #[inline(always)]
+    fn pass_any<C: Counting>(
+        &mut self,
+        now: &Step,
+        mut sums: u64,
+        number: usize,
+        units: u32,
+        has_several: bool,
+    ) -> u64 {
+        if has_several {
             if C::IS_ON {
                 self.count.take_exit(number);
             }
@@ -189,7 +268,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
                 sums += self.plan.extra(number).0;
             }
             if O::IS_ACTIVE {
-                self.observer.pass(number, false, 0);
+                self.pass_seen(number, false, 0);
             }
         }
         if C::IS_ON && units != 0 {
@@ -200,9 +279,18 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     fn count_units(&mut self, exit: usize, units: u32) {
         self.count.add_units(exit, units);
-        self.fuse.add_units(self.plan, exit, units);
+        if let Some(pass) = self.plan.pass(exit) {
+            self.fuse.add_units(self.plan, pass, units);
+        }
         if O::IS_ACTIVE {
-            self.observer.pass(exit, true, units);
+            self.pass_seen(exit, true, units);
         }
     }
+}
+
+/// Tells a link when it is asked by the step at a place.
+#[inline(always)]
+fn note(plan: &Plan, fuse: &Fuse, link: &mut impl Wire, place: u32, sums: u64) {
+    let clocks = if link.keeps_time() { fuse.clocks_before(sums, plan.run_toll(place)) } else { 0 };
+    link.note(Moment { pc: plan.steps()[place as usize].slot, clocks });
 }

@@ -1,0 +1,95 @@
+//! What runs and blocks take: four numbers that are added up as one.
+
+use crate::code::ExitCost;
+
+/// The numbers of a [`Toll`]: where each begins, and its bits. The sign of all is the [`FLAG`].
+const STEPS: (u32, u32) = (0, 15);
+const INNER: (u32, u32) = (15, 15);
+const CLOCKS: (u32, u32) = (30, 17);
+const ELEMENTARY: (u32, u32) = (47, 16);
+const FIELDS: [(u32, u32); 4] = [STEPS, INNER, CLOCKS, ELEMENTARY];
+
+/// The bits which say that one of the numbers has come to half of what there is room for. No run takes as much as that.
+pub(super) const HALVES: u64 = half(STEPS) | half(INNER) | half(CLOCKS) | half(ELEMENTARY);
+
+const fn half((start, bits): (u32, u32)) -> u64 {
+    1 << (start + bits - 1)
+}
+
+/// Instructions, steps of bodies beside them, clocks and elementary operations in one number, so that all are added up at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Toll(pub u64);
+
+impl Toll {
+    /// What fills [`Toll::share`].
+    pub const WHOLE: u32 = 1 << 14;
+
+    /// The toll of a step through an exit that costs as much; of a number that is too large, what makes the plan be refused.
+    pub(super) fn new(cost: &ExitCost) -> Toll {
+        let fit = |number: u32, (start, bits): (u32, u32)| u64::from(number.min(1 << (bits - 1))) << start;
+        Toll::step(cost.is_inner).plus(Toll(fit(cost.clocks, CLOCKS) | fit(cost.elementary, ELEMENTARY)))
+    }
+
+    /// An instruction or a step of a body, whatever else it takes.
+    pub(super) fn step(is_inner: bool) -> Toll {
+        Toll(1 << if is_inner { INNER.0 } else { STEPS.0 })
+    }
+
+    /// So many instructions and steps of bodies, which must fit.
+    pub(super) fn of_steps(steps: u64, inner: u64) -> Toll {
+        Toll(steps << STEPS.0 | inner << INNER.0)
+    }
+
+    pub(super) fn plus(self, more: Toll) -> Toll {
+        Toll(self.0 + more.0)
+    }
+
+    /// The larger one of each number.
+    pub(super) fn max(self, other: Toll) -> Toll {
+        Toll(FIELDS.iter().map(|&field| self.part(field).max(other.part(field)) << field.0).sum())
+    }
+
+    /// Whether none of the numbers has come to half of the room for it.
+    pub(super) fn is_small(self) -> bool {
+        self.0 & HALVES == 0
+    }
+
+    #[inline(always)]
+    const fn part(self, (start, bits): (u32, u32)) -> u64 {
+        self.0 >> start & ((1 << bits) - 1)
+    }
+
+    /// Instructions.
+    #[inline(always)]
+    pub const fn steps(self) -> u64 {
+        self.part(STEPS)
+    }
+
+    /// Steps of bodies that go on.
+    #[inline(always)]
+    pub const fn inner_steps(self) -> u64 {
+        self.part(INNER)
+    }
+
+    /// Clocks.
+    #[inline(always)]
+    pub const fn clocks(self) -> u64 {
+        self.part(CLOCKS)
+    }
+
+    /// Elementary operations.
+    #[inline(always)]
+    pub const fn elementary(self) -> u64 {
+        self.part(ELEMENTARY)
+    }
+
+    /// Of what half a field holds, the share that the largest number takes, in parts of [`Toll::WHOLE`], rounded up.
+    pub(super) fn share(self) -> u32 {
+        let share =
+            |(start, bits): (u32, u32)| (self.part((start, bits)) * u64::from(Toll::WHOLE)).div_ceil(1 << (bits - 1));
+        FIELDS.into_iter().map(share).max().unwrap_or(0) as u32
+    }
+}
+
+/// The bit that no toll has: a run has to be looked at before it begins.
+pub const FLAG: u64 = 1 << 63;

@@ -1,5 +1,5 @@
 //! How many recorded transfers a second a machine replays on one host thread: `cargo bench --bench replay`. The time is
-//! the least of many runs, so that other work on the host disturbs it little.
+//! the least of many runs, so that other work on the host disturbs it little. Words behind `--` choose: `cornell report`.
 
 use std::time::{Duration, Instant};
 
@@ -10,10 +10,10 @@ use lancer::job::Job;
 use lancer::load::Load;
 use scenes::generate;
 
-const RUNS: u32 = 60;
+const RUNS: u32 = 40;
 
 fn main() {
-    let scene = generate::scene("cornell", &generate::Options { size: (40, 30), ..Default::default() });
+    let scene = generate::scene("cornell", &generate::Options { size: (96, 72), ..Default::default() });
     let picture = Load::picture(&Job::new(scene.expect("it is generated"))).expect("it fits").0;
     let annex = Load::annex().expect("it assembles");
     println!(
@@ -33,6 +33,10 @@ fn main() {
 }
 
 fn measure(name: &str, load: &Load, machine: &str, config: &Config, cores: &[u32]) {
+    let mut asked = std::env::args().skip(1).filter(|asked| !asked.starts_with('-'));
+    if !asked.all(|asked| [name, machine, config.bus.arbiter.name()].contains(&&*asked)) {
+        return;
+    }
     let mut config = config.clone();
     config.main.traffic = name != "annex";
     let options = Options::default();

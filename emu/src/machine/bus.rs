@@ -1,7 +1,8 @@
 //! The shared bus: one burst at a time, to its end. Who comes next is the arbiter's choice.
 
-use super::arbiter::{Arbiter, Claims, NEVER, Verdict};
+use super::arbiter::{Arbiter, Claims, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
+use super::reel::Reel;
 use super::waits::Waits;
 use crate::quantity::{Clocks, Octets};
 
@@ -18,6 +19,17 @@ pub struct BusUse {
     pub bursts: u64,
     /// Longest time from asking for a burst to its grant.
     pub longest_wait: Clocks,
+}
+
+impl BusUse {
+    #[inline(always)]
+    fn add(&mut self, grant: &Grant) {
+        self.busy += grant.end - grant.start;
+        self.moved += grant.octets;
+        self.transfers += u64::from(grant.is_last);
+        self.bursts += 1;
+        self.longest_wait = self.longest_wait.max(grant.waited);
+    }
 }
 
 /// A burst that was granted.
@@ -37,45 +49,80 @@ pub struct Grant {
     pub is_last: bool,
 }
 
-/// What a master's transfer that has not ended moves.
-#[derive(Clone, Copy, Debug, Default)]
-struct Pending {
-    /// Octets of the burst that it asks for.
-    burst: Octets,
+/// A burst of a transfer that has not ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Burst {
+    octets: Octets,
     /// Octets after that.
     rest: Octets,
+    length: Clocks,
+}
+
+/// How long bursts are.
+#[derive(Clone, Copy, Debug)]
+pub struct Lengths {
+    longest_burst: Octets,
+    octets_per_beat: u64,
+    /// Binary logarithm of the octets of a beat, where it is whole.
+    beat_shift: Option<u32>,
+    setup: Clocks,
+    clocks_per_beat: u64,
+}
+
+impl Lengths {
+    fn new(config: &BusConfig) -> Lengths {
+        Lengths {
+            longest_burst: config.longest_burst(),
+            octets_per_beat: config.octets_per_beat,
+            beat_shift: config.octets_per_beat.is_power_of_two().then(|| config.octets_per_beat.trailing_zeros()),
+            setup: Clocks(config.setup_clocks),
+            clocks_per_beat: config.clocks_per_beat,
+        }
+    }
+
+    /// The first burst of a transfer.
+    #[inline(always)]
+    pub fn burst(&self, transfer: Octets) -> Burst {
+        let octets = transfer.min(self.longest_burst);
+        // Dividing takes longer than all the rest.
+        let beats = match self.beat_shift {
+            Some(shift) => (octets.0 + self.octets_per_beat - 1) >> shift,
+            None => octets.0.div_ceil(self.octets_per_beat),
+        };
+        Burst { octets, rest: transfer - octets, length: self.setup + Clocks(beats * self.clocks_per_beat) }
+    }
 }
 
 /// A bus with its arbiter and the requests that wait for it. It knows nothing of what is transferred, so it serves the
 /// stepped machine and a replay of recorded transfers alike.
 pub struct Bus {
-    config: BusConfig,
-    longest_burst: Octets,
-    /// Binary logarithm of the octets of a beat, where it is whole.
-    beat_shift: Option<u32>,
+    /// How long bursts are.
+    pub lengths: Lengths,
     arbiter: Box<dyn Arbiter>,
     free_at: Clocks,
     not_before: Clocks,
     claims: Claims,
-    pending: Vec<Pending>,
+    /// The burst that each master asks for.
+    bursts: Vec<Burst>,
     used: BusUse,
     waits: Vec<Waits>,
+    /// The masters twice round the circle, and more: from each one on, the ranks of all.
+    circle: Vec<u64>,
 }
 
 impl Bus {
     /// An idle bus for that many masters.
     pub fn new(config: &BusConfig, masters: u32) -> Bus {
         Bus {
+            lengths: Lengths::new(config),
             arbiter: config.arbiter.build(config, masters),
-            longest_burst: config.longest_burst(),
-            beat_shift: config.octets_per_beat.is_power_of_two().then(|| config.octets_per_beat.trailing_zeros()),
-            config: config.clone(),
             free_at: Clocks(0),
             not_before: Clocks(0),
             claims: Claims::new(masters),
-            pending: vec![Pending::default(); masters as usize],
+            bursts: vec![Burst::default(); masters as usize],
             used: BusUse::default(),
             waits: vec![Waits::default(); masters as usize],
+            circle: (0..u64::from(masters)).cycle().take(4 * masters as usize).collect(),
         }
     }
 
@@ -84,20 +131,13 @@ impl Bus {
     pub fn request(&mut self, master: u32, arrival: Clocks, octets: Octets) {
         debug_assert_eq!(self.claims.arrival(master), NEVER, "one transfer a master");
         self.not_before = self.not_before.min(arrival);
-        self.ask(master, arrival, octets);
+        self.ask(master, arrival, self.lengths.burst(octets));
     }
 
     #[inline]
-    fn ask(&mut self, master: u32, arrival: Clocks, octets: Octets) {
-        let burst = octets.min(self.longest_burst);
-        // Dividing takes longer than all the rest.
-        let beats = match self.beat_shift {
-            Some(shift) => (burst.0 + self.config.octets_per_beat - 1) >> shift,
-            None => burst.0.div_ceil(self.config.octets_per_beat),
-        };
-        let length = Clocks(self.config.setup_clocks + beats * self.config.clocks_per_beat);
-        self.claims.ask(master, arrival, length);
-        self.pending[master as usize] = Pending { burst, rest: octets - burst };
+    fn ask(&mut self, master: u32, arrival: Clocks, burst: Burst) {
+        self.claims.ask(master, arrival, burst.length);
+        self.bursts[master as usize] = burst;
     }
 
     /// When the arbiter has something to decide, if nobody else begins to ask before.
@@ -118,23 +158,122 @@ impl Bus {
                 return None;
             }
         };
-        let (waited, length) = (clock - self.claims.arrival(master), self.claims.length(master));
-        let Pending { burst, rest } = self.pending[master as usize];
+        let waited = clock - self.claims.arrival(master);
+        let Burst { octets, rest, length } = self.bursts[master as usize];
         let (end, is_last) = (clock + length, rest == Octets(0));
         self.free_at = end;
         self.not_before = Clocks(0);
         if is_last {
             self.claims.withdraw(master);
-            self.used.transfers += 1;
         } else {
-            self.ask(master, end, rest);
+            self.ask(master, end, self.lengths.burst(rest));
         }
-        self.used.busy += length;
-        self.used.moved += burst;
-        self.used.bursts += 1;
-        self.used.longest_wait = self.used.longest_wait.max(waited);
+        let grant = Grant { master, start: clock, end, waited, octets, is_last };
+        self.used.add(&grant);
         self.waits[master as usize].add(waited);
-        Some(Grant { master, start: clock, end, waited, octets: burst, is_last })
+        Some(grant)
+    }
+
+    /// Decides as long as that is before a clock and concerns nobody but the bus and reels, and yields the grant that ends a transfer of a master
+    /// who has something else to do then.
+    pub fn serve(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+        match (self.arbiter.ranking().is_some(), self.claims.masters()) {
+            (true, 0..=2) => self.serve_ranked::<2>(reels, until),
+            (true, 3) => self.serve_ranked::<3>(reels, until),
+            (true, 4..=5) => self.serve_ranked::<5>(reels, until),
+            (true, 6..=9) => self.serve_ranked::<9>(reels, until),
+            (true, 10..=17) => self.serve_ranked::<17>(reels, until),
+            _ => self.serve_by_choice(reels, until),
+        }
+    }
+
+    /// The same with any arbiter.
+    fn serve_by_choice(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+        while let Some(clock) = self.next_decision().filter(|&clock| clock < until) {
+            let Some(grant) = self.decide(clock) else { continue };
+            let reel = &mut reels[grant.master as usize];
+            reel.note_wait(grant.waited);
+            if grant.is_last {
+                let Some((computing, burst)) = reel.roll_on(&self.lengths) else { return Some(grant) };
+                self.ask(grant.master, grant.end + computing, burst);
+            }
+        }
+        None
+    }
+
+    /// The same for an arbiter that ranks its masters, of which there are at most `SIZE`. Who comes next is found without branches, since nobody
+    /// could foresee them: the smallest number of a clock and, in its last bits, a rank.
+    fn serve_ranked<const SIZE: usize>(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+        const RANK: u32 = 6;
+        let masters = self.claims.masters() as usize;
+        let (lengths, bursts, waits) = (self.lengths, &mut self.bursts[..masters], &mut self.waits[..masters]);
+        let (reels, all) = (&mut reels[..masters], &mut self.claims.arrivals[..masters]);
+        let mut arrivals = [NEVER.0; SIZE];
+        for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
+            *arrival = *known;
+        }
+        let ranking = self.arbiter.ranking();
+        let mut first = match &ranking {
+            Some(Ranking::Circle(turn)) => **turn as usize,
+            _ => 0,
+        };
+        // What decides among those that wait, their rank or since when they do; and whether the rank depends on who came last.
+        let by_rank = if ranking == Some(Ranking::Arrival) { 0 } else { u64::MAX };
+        let in_turn = if let Some(Ranking::Circle(_)) = ranking { usize::MAX } else { 0 };
+        let (mut free, mut used) = (self.free_at, self.used);
+        // Where nobody asks, the smallest number is beyond every clock.
+        let until = until.min(Clocks(NEVER.0 >> RANK));
+        let granted = loop {
+            let floor = free.0 & by_rank;
+            let ranks = &self.circle[masters - first..][..SIZE];
+            let mut keys: [u64; SIZE] = std::array::from_fn(|at| arrivals[at].max(floor) << RANK | ranks[at]);
+            let mut left = SIZE;
+            while left > 1 {
+                let half = left / 2;
+                for at in 0..half {
+                    keys[at] = keys[at].min(keys[left - 1 - at]);
+                }
+                left -= half;
+            }
+            let start = Clocks((keys[0] >> RANK).max(free.0));
+            if start >= until {
+                break None;
+            }
+            let master = (keys[0] & ((1 << RANK) - 1)) as usize + first;
+            let master = if master >= masters { master - masters } else { master };
+            first = if master + 1 == masters { 0 } else { master + 1 } & in_turn;
+            let (burst, reel) = (&mut bursts[master], &mut reels[master]);
+            let (waited, end) = (start - Clocks(arrivals[master]), start + burst.length);
+            let Burst { octets, rest, .. } = *burst;
+            let is_last = rest == Octets(0);
+            let grant = Grant { master: master as u32, start, end, waited, octets, is_last };
+            free = end;
+            used.add(&grant);
+            waits[master].add(waited);
+            reel.note_wait(waited);
+            let (computing, next) = if is_last {
+                let Some(ahead) = reel.roll_on(&lengths) else {
+                    arrivals[master] = NEVER.0;
+                    break Some(grant);
+                };
+                ahead
+            } else {
+                (Clocks(0), lengths.burst(rest))
+            };
+            arrivals[master] = (end + computing).0;
+            *burst = next;
+        };
+        for (arrival, known) in arrivals.iter().zip(all) {
+            *known = Clocks(*arrival);
+        }
+        for (length, burst) in self.claims.lengths.iter_mut().zip(bursts) {
+            *length = burst.length;
+        }
+        if let Some(Ranking::Circle(turn)) = ranking {
+            *turn = first as u32;
+        }
+        (self.free_at, self.used, self.not_before) = (free, used, Clocks(0));
+        granted
     }
 
     /// What has happened so far.

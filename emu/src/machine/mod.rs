@@ -17,6 +17,7 @@ mod processor;
 mod recorded;
 mod recorder;
 mod recording;
+mod reel;
 mod replay;
 mod room;
 mod schedule;

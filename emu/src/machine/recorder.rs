@@ -1,7 +1,7 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
 use super::kinds::Kinds;
-use super::recording::{Reason, Recording, Segment};
+use super::recording::{Reason, Recording, Segment, reads};
 use super::room::Room;
 use super::station::{Access, Request};
 use super::strands::{Keeping, Strand, StrandLink, Strands};
@@ -252,6 +252,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             let total = group.total(lane);
             Recording {
                 message,
+                reads: reads(&strand.segments),
                 segments: strand.segments,
                 octets: strand.octets,
                 sent: strand.sent,
@@ -358,6 +359,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
         Ok(Recording {
             message,
+            reads: reads(&segments),
             segments,
             octets,
             sent: wire.sent,

@@ -74,6 +74,12 @@ impl Segment {
     }
 }
 
+/// From the first to the last octet of global memory that segments read.
+pub fn reads(segments: &[Segment]) -> Range<u64> {
+    let ranges = segments.iter().filter(|segment| segment.is_read()).map(Segment::range);
+    ranges.reduce(|all, range| all.start.min(range.start)..all.end.max(range.end)).unwrap_or_default()
+}
+
 /// A work item from its first message to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recording {
@@ -81,6 +87,8 @@ pub struct Recording {
     pub message: Message,
     /// What it did after that.
     pub segments: Vec<Segment>,
+    /// From the first to the last octet of global memory that it read.
+    pub reads: Range<u64>,
     /// Octets of all of those.
     pub octets: Octets,
     /// The messages that it sent to the main processor.

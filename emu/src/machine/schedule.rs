@@ -1,6 +1,9 @@
 //! Steps all processors in the order of their clocks. Between two things that concern others a processor runs ahead by
 //! itself; whatever concerns others happens in clock order, at equal clocks in a fixed one.
 
+use std::ops::Range;
+
+use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
 use super::ending::Ending;
@@ -8,6 +11,7 @@ use super::frame::{Frame, Item};
 use super::kinds::Kinds;
 use super::library::Library;
 use super::processor::{Act, Processor, Standing, Work};
+use super::reel::Reel;
 use super::station::{Access, Request, Shared};
 use super::tape::Tape;
 use super::trace::{BusWatch, Spans};
@@ -68,8 +72,11 @@ pub(super) struct Machine<'a, T, O> {
     pub meeting: usize,
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
-    /// Whether a recorded transfer is nothing but a transfer: no cache, no overlap, nobody who watches.
-    is_plain: bool,
+    /// What the masters of the bus play by themselves, where a recorded transfer is nothing but a transfer: no cache, no overlap, nobody who
+    /// watches.
+    reels: Option<Vec<Reel>>,
+    /// Octets that were written when the reels were looked at.
+    written: Range<u64>,
     progress: &'a mut dyn FnMut(u64),
 }
 
@@ -85,9 +92,11 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         let config = setup.config;
         let cores = config.cores;
         let mut processors = Vec::with_capacity(cores as usize + 1);
+        // Who replays executes nothing.
+        let features = setup.options.features().filter(|_| shared.library.is_none());
         for core in 0..cores {
             let seat = Seat { core, cores, step_limit: config.step_limit };
-            let mut processor = Processor::new(core_code, seat, config.buffer_octets, setup.options.features());
+            let mut processor = Processor::new(core_code, seat, config.buffer_octets, features);
             processor.tape = shared.library.is_some().then(Tape::default);
             processor.cache = Cache::new(&config.cache, &setup.kinds);
             processors.push(processor);
@@ -113,7 +122,9 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            is_plain: config.cache.octets == 0 && !config.bus.overlap && window.is_none(),
+            reels: (config.cache.octets == 0 && !config.bus.overlap && window.is_none())
+                .then(|| (0..=cores).map(|_| Reel::default()).collect()),
+            written: 0..0,
             progress,
         }
     }
@@ -133,7 +144,9 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
     /// Starts every processor at clock 0.
     fn begin(&mut self) {
         for number in 0..self.processors.len() {
-            let receives = self.processors[number].probe(&mut self.shared, self.arithmetic);
+            // What was recorded begins with a message.
+            let processor = &self.processors[number];
+            let receives = processor.tape.is_some() || processor.probe(&mut self.shared, self.arithmetic);
             self.processors[number].begins_by_receiving = receives && number != self.main();
             self.start(number);
         }
@@ -255,6 +268,9 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             watch.ask(number as u32, processor.request);
         }
         self.bus.request(number as u32, processor.clock, octets);
+        if let Some(reels) = &mut self.reels {
+            processor.wind(&mut reels[number], &self.shared, &self.bus.lengths);
+        }
         if is_ahead {
             self.account(number);
             self.run_on(number, true, true);
@@ -282,9 +298,16 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         });
         let act = acts.min();
         // Nothing but decisions of the arbiter comes before the next act, as long as those wake nobody.
-        while let Some(clock) = self.bus.next_decision().filter(|&clock| act.is_none_or(|(at, ..)| clock < at)) {
-            if self.decide(clock) {
+        let until = act.map_or(NEVER, |(at, ..)| at);
+        if self.reels.is_some() {
+            if self.play(until) {
                 return Ok(true);
+            }
+        } else {
+            while let Some(clock) = self.bus.next_decision().filter(|&clock| clock < until) {
+                if self.decide(clock) {
+                    return Ok(true);
+                }
             }
         }
         let Some((at, act, number)) = act else { return Ok(false) };
@@ -292,8 +315,23 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         Ok(true)
     }
 
-    /// Lets the arbiter choose, and the chosen one do what it waits for; true when anyone but the arbiter may have
-    /// something to do now.
+    /// Lets the arbiter choose before a clock, and the chosen ones do what they wait for; true when anyone but the arbiter may have something to
+    /// do now.
+    fn play(&mut self, until: Clocks) -> bool {
+        let Some(reels) = &mut self.reels else { return false };
+        if self.written != self.shared.written {
+            self.written = self.shared.written.clone();
+            reels.iter_mut().for_each(|reel| reel.stop_at(&self.written));
+        }
+        let Some(grant) = self.bus.serve(reels, until) else { return false };
+        self.now = grant.start;
+        let number = grant.master as usize;
+        self.processors[number].unwind(&mut reels[number], grant.end);
+        self.end_transfer(number, grant.end);
+        true
+    }
+
+    /// Lets the arbiter choose at a clock, and the chosen one do what it waits for; true when anyone but the arbiter may have something to do now.
     fn decide(&mut self, clock: Clocks) -> bool {
         self.now = clock;
         let Some(grant) = self.bus.decide(clock) else { return false };
@@ -303,16 +341,16 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         let number = grant.master as usize;
         let processor = &mut self.processors[number];
         processor.used.longest_wait = processor.used.longest_wait.max(grant.waited);
-        if !grant.is_last {
-            return false;
+        if grant.is_last {
+            self.end_transfer(number, grant.end);
         }
-        processor.wait_until(grant.end);
-        if self.is_plain
-            && let Some(octets) = processor.roll_on(&self.shared)
-        {
-            self.bus.request(grant.master, processor.clock, octets);
-            return false;
-        }
+        grant.is_last
+    }
+
+    /// A processor's transfer ends at a clock, and it does what it waits for.
+    fn end_transfer(&mut self, number: usize, end: Clocks) {
+        let processor = &mut self.processors[number];
+        processor.wait_until(end);
         match processor.held.take() {
             Some(pause) => self.settle(number, pause),
             None => {
@@ -320,7 +358,6 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
                 self.advance(number, true);
             }
         }
-        true
     }
 
     fn act(&mut self, number: usize, at: Clocks, act: Act) -> Result<(), Failure> {

@@ -1,13 +1,14 @@
 //! A core that replays what a work item was recorded to do, in the place of an engine that does it.
 
-use std::ops::Range;
 use std::sync::Arc;
 
+use super::bus::Lengths;
 use super::processor::{Advance, Processor};
-use super::recording::Recording;
+use super::recording::{Recording, Segment};
+use super::reel::{Reel, overlap};
 use super::station::{Access, Request, Shared};
 use crate::checked::Pause;
-use crate::quantity::Octets;
+use crate::quantity::{Clocks, Octets};
 use crate::trap::Fault;
 
 /// How far a replayed work item has come.
@@ -20,36 +21,38 @@ pub struct Tape {
 }
 
 impl Tape {
-    /// What the last segment asked for. Where a core has rolled on, that is noted nowhere else.
+    /// What the last segment asked for. Where a reel has rolled on, that is noted nowhere else.
     fn asked(&self, main: u32) -> Option<Request> {
         Some(self.recording.as_ref()?.segments.get(self.next.checked_sub(1)?)?.request(main))
     }
 }
 
-/// Whether two ranges have an octet in common.
-fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
-    one.start < other.end && other.start < one.end
-}
-
 impl<O> Processor<'_, O> {
-    /// Goes on from one transfer that has ended to the next one, in a recorded work item in which nothing else comes
-    /// between them, and gives the octets of that; otherwise nothing has happened. It does what [`Processor::advance`]
-    /// and a request for the bus would do, in a fraction of the time.
-    #[inline]
-    pub(super) fn roll_on(&mut self, shared: &Shared) -> Option<Octets> {
-        let tape = self.tape.as_mut()?;
-        let [done, next] = tape.recording.as_ref()?.segments.get(tape.next.checked_sub(1)?..=tape.next)? else {
-            return None;
+    /// Hands its recorded work item over to a reel when it begins to ask for a transfer, where nothing but the bus is needed for what comes next.
+    pub(super) fn wind(&mut self, reel: &mut Reel, shared: &Shared, lengths: &Lengths) {
+        let Some(tape) = self.tape.as_mut() else { return };
+        let is_safe = |recording: &Recording| {
+            let asked = tape.next.checked_sub(1).and_then(|last| recording.segments.get(last));
+            asked.is_some_and(Segment::is_read) && !overlap(&recording.reads, &shared.written)
         };
-        let is_safe = done.is_read() && next.is_read() && !overlap(&done.range(), &shared.written);
-        if !is_safe {
-            return None;
+        if tape.recording.as_deref().is_some_and(is_safe)
+            && let Some(recording) = tape.recording.take()
+        {
+            reel.wind(recording, tape.next, self.clock, lengths);
         }
-        let (clocks, octets) = (next.clocks, next.octets());
-        tape.next += 1;
-        self.state.pc = next.pc;
-        self.spend(clocks.into(), 0, true);
-        Some(octets)
+    }
+
+    /// Takes its work item back when the last transfer that a reel played has ended. What was done is what [`Processor::advance`] and requests
+    /// for the bus would have done.
+    pub(super) fn unwind(&mut self, reel: &mut Reel, end: Clocks) {
+        self.used.longest_wait = self.used.longest_wait.max(reel.take_longest_wait());
+        if let (Some(played), Some(tape)) = (reel.unwind(end), self.tape.as_mut()) {
+            (tape.recording, tape.next) = (Some(played.recording), played.next);
+            self.used.busy += played.busy;
+            self.used.waiting += played.waiting;
+            self.clock = end;
+            self.work.has_acted = true;
+        }
     }
 
     /// Goes on up to the next thing that concerns others, as an engine would: see [`Processor::advance`].

@@ -1,6 +1,6 @@
 //! By number: the lowest master first, so the main processor last. A busy low master can make others wait for ever.
 
-use super::{Arbiter, Claims, Verdict, grant};
+use super::{Arbiter, Claims, Ranking, Verdict, grant};
 use crate::quantity::Clocks;
 
 /// Fixed priority.
@@ -10,6 +10,10 @@ pub struct FixedPriority;
 impl Arbiter for FixedPriority {
     fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
         grant(claims.first_from(0, clock), clock)
+    }
+
+    fn ranking(&mut self) -> Option<Ranking<'_>> {
+        Some(Ranking::Number)
     }
 }
 

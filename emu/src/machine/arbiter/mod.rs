@@ -19,13 +19,11 @@ use crate::quantity::Clocks;
 
 /// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
 #[derive(Clone, Debug)]
-pub struct Claims(Vec<Claim>);
-
-/// A master's burst.
-#[derive(Clone, Copy, Debug)]
-struct Claim {
-    arrival: Clocks,
-    length: Clocks,
+pub struct Claims {
+    /// When each begins to ask.
+    pub(super) arrivals: Vec<Clocks>,
+    /// How long its burst holds the bus.
+    pub(super) lengths: Vec<Clocks>,
 }
 
 /// When a master begins to ask that does not ask.
@@ -34,59 +32,55 @@ pub const NEVER: Clocks = Clocks(u64::MAX);
 impl Claims {
     /// Nobody asks.
     pub fn new(masters: u32) -> Claims {
-        Claims(vec![Claim { arrival: NEVER, length: Clocks(0) }; masters as usize])
+        Claims { arrivals: vec![NEVER; masters as usize], lengths: vec![Clocks(0); masters as usize] }
     }
 
     /// A master asks, from a clock on, for a burst that holds the bus for that long.
     #[inline]
     pub fn ask(&mut self, master: u32, arrival: Clocks, length: Clocks) {
-        self.0[master as usize] = Claim { arrival, length };
+        (self.arrivals[master as usize], self.lengths[master as usize]) = (arrival, length);
     }
 
     /// A master asks no more.
     #[inline]
     pub fn withdraw(&mut self, master: u32) {
-        self.0[master as usize].arrival = NEVER;
+        self.arrivals[master as usize] = NEVER;
     }
 
     /// Number of masters, whether they ask or not.
     #[inline]
     pub fn masters(&self) -> u32 {
-        self.0.len() as u32
+        self.arrivals.len() as u32
     }
 
     /// When a master began, or begins, to ask for its burst; beyond every clock for one that does not.
     #[inline]
     pub fn arrival(&self, master: u32) -> Clocks {
-        self.0[master as usize].arrival
+        self.arrivals[master as usize]
     }
 
     /// How long a master's burst will hold the bus.
     #[inline]
     pub fn length(&self, master: u32) -> Clocks {
-        self.0[master as usize].length
+        self.lengths[master as usize]
     }
 
     /// The first clock, not before `floor`, at which anybody asks; `None` when nobody ever does.
     #[inline]
     pub fn first_at(&self, floor: Clocks) -> Option<Clocks> {
-        // On a busy bus somebody waits already, mostly one of the first that are looked at.
-        if self.0.iter().any(|claim| claim.arrival <= floor) {
-            return Some(floor);
-        }
-        self.0.iter().map(|claim| claim.arrival).min().filter(|&arrival| arrival != NEVER)
+        self.arrivals.iter().copied().min().filter(|&arrival| arrival != NEVER).map(|arrival| arrival.max(floor))
     }
 
     /// Masters that ask at a clock, by number.
     pub fn asking(&self, clock: Clocks) -> impl Iterator<Item = u32> {
-        (0..).zip(&self.0).filter(move |(_, claim)| claim.arrival <= clock).map(|(master, _)| master)
+        (0..).zip(&self.arrivals).filter(move |(_, arrival)| **arrival <= clock).map(|(master, _)| master)
     }
 
     /// The first master from `turn` on, round the circle, that asks at a clock.
     #[inline]
     pub fn first_from(&self, turn: u32, clock: Clocks) -> Option<u32> {
-        let (before, after) = self.0.split_at(turn as usize);
-        let asks = |claim: &Claim| claim.arrival <= clock;
+        let (before, after) = self.arrivals.split_at(turn as usize);
+        let asks = |arrival: &Clocks| *arrival <= clock;
         match after.iter().position(asks) {
             Some(place) => Some(turn + place as u32),
             None => before.iter().position(asks).map(|place| place as u32),
@@ -107,6 +101,22 @@ pub enum Verdict {
 pub trait Arbiter: Send {
     /// Decides at `clock`, when the bus is free and at least one master asks.
     fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict;
+
+    /// The order of those that ask, where that says all; what it does not say is asked turn by turn.
+    fn ranking(&mut self) -> Option<Ranking<'_>> {
+        None
+    }
+}
+
+/// An order of masters which tells who of those that ask comes first.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Ranking<'a> {
+    /// From this master on, round the circle; who gets a burst makes the one behind it the first.
+    Circle(&'a mut u32),
+    /// By number.
+    Number,
+    /// By when they began to ask, then by number.
+    Arrival,
 }
 
 /// The verdict for a master, where one asks.

@@ -1,6 +1,6 @@
 //! By age: who has asked for its burst longest comes first, at equal age the lowest master.
 
-use super::{Arbiter, Claims, Verdict, grant};
+use super::{Arbiter, Claims, Ranking, Verdict, grant};
 use crate::quantity::Clocks;
 
 /// Oldest first.
@@ -10,6 +10,10 @@ pub struct OldestFirst;
 impl Arbiter for OldestFirst {
     fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
         grant(claims.asking(clock).min_by_key(|&master| (claims.arrival(master), master)), clock)
+    }
+
+    fn ranking(&mut self) -> Option<Ranking<'_>> {
+        Some(Ranking::Arrival)
     }
 }
 

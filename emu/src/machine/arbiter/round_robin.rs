@@ -1,7 +1,7 @@
 //! In turn: the master after the one that had the bus last comes first. Nobody waits for more than one burst of each
 //! other master.
 
-use super::{Arbiter, Claims, Verdict, grant};
+use super::{Arbiter, Claims, Ranking, Verdict, grant};
 use crate::quantity::Clocks;
 
 /// Round-robin; the first turn is master 0's.
@@ -23,6 +23,10 @@ impl Arbiter for RoundRobin {
         let next = chosen.map_or(self.turn, |master| master + 1);
         self.turn = if next == claims.masters() { 0 } else { next };
         grant(chosen, clock)
+    }
+
+    fn ranking(&mut self) -> Option<Ranking<'_>> {
+        Some(Ranking::Circle(&mut self.turn))
     }
 }
 

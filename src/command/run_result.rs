@@ -30,6 +30,8 @@ pub struct RunResult {
     pub program: String,
     /// Name of the machine.
     pub machine: String,
+    /// What executed it: fast, or checked where fast does not suit or was not to be used.
+    pub engine: &'static str,
     /// Instructions executed.
     pub instructions: u64,
     /// Operations by class.
@@ -124,6 +126,7 @@ impl RunResult {
             schema: SCHEMA,
             program,
             machine,
+            engine: run.engine.name(),
             instructions: run.state.steps,
             counts: ByClass(run.profile.as_ref().map(Profile::total).unwrap_or_default()),
             clocks: run.clocks.0,

@@ -228,3 +228,17 @@ fn files_of_other_kinds_are_refused() {
     session.write("a.bin", "");
     session.fail("disassemble a.bin -o a.bin", 2, "would be overwritten");
 }
+
+#[test]
+fn a_run_says_what_executed_it_and_gives_the_same_whatever_that_was() {
+    let session = Session::new();
+    session.write("p.s", "    li s1, 7\n    sqrt s2, s1, 0\n    halt\n");
+    let checked = session.json("run p.s --engine checked");
+    for (options, engine) in [("", "fast"), ("--engine fast", "fast"), ("--engine checked", "checked")] {
+        let mut run = session.json(&format!("run p.s {options}"));
+        assert_eq!(run["engine"], engine, "{options}");
+        run["engine"] = checked["engine"].clone();
+        assert_eq!(run, checked, "{options}");
+    }
+    assert_eq!(session.json("run p.s --flags")["engine"], "checked", "what is lost is counted there");
+}

@@ -157,6 +157,11 @@ impl<'a, O: RunObserver> Processor<'a, O> {
         }
     }
 
+    /// Whether the fast engine executes its program, on arithmetic that nobody watches.
+    pub fn is_quick(&self) -> bool {
+        self.driver.is_quick()
+    }
+
     /// Whether the program, from reset, comes to a receive before it does anything else outside itself. What runs for
     /// that is not counted.
     pub fn probe<T: Watch>(&self, shared: &mut Shared, arithmetic: &T) -> bool {

@@ -4,10 +4,10 @@ use isa::diagnostic::{Diagnostic, Report};
 use isa::number::{Modes, Nearest32};
 use isa::{Isa, Program};
 
-use super::check_buffer;
 use super::config::Config;
 use super::processor::Processor;
 use super::station::{Request, Shared};
+use super::{Engine, check_buffer};
 use crate::checked::{Pause, Seat, State};
 use crate::code::{Code, check_bodies};
 use crate::exec::{Watch, Watching};
@@ -55,6 +55,8 @@ impl<'a> Single<'a> {
 /// How a program left the core, whether it halted or trapped.
 #[derive(Clone, Debug)]
 pub struct SingleRun {
+    /// What executed it.
+    pub engine: Engine,
     /// Registers, buffer, program counter, instructions.
     pub state: State,
     /// Global memory.
@@ -145,7 +147,9 @@ fn run_observed<T: Watch, O: RunObserver>(
     processor.observer.end();
     let tally = processor.take_tally();
     let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, &code));
+    let is_quick = processor.is_quick() && !T::IS_WATCHING;
     SingleRun {
+        engine: if is_quick { Engine::Fast } else { Engine::Checked },
         profile: processor.observer.into_profile(&code, &tally),
         state: processor.state,
         memory: shared.memory,

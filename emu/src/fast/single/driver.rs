@@ -27,6 +27,11 @@ impl<'a> Driver<'a> {
         Driver { code, quick: plan.map(with_count), features: features.unwrap_or(Features::Baseline) }
     }
 
+    /// Whether anything is executed quickly.
+    pub fn is_quick(&self) -> bool {
+        self.quick.is_some()
+    }
+
     /// As [`checked::run`], but passes of words that were executed quickly come into the tally by [`Driver::fold`].
     pub fn run<T: Watch, O: RunObserver>(
         &mut self,

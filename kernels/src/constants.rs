@@ -3,7 +3,6 @@
 
 use scenes::cadrage::Formats;
 use scenes::image::Image;
-use scenes::kdtree::Content;
 
 /// Shifts and limits of a scene in a word length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +32,6 @@ impl Constants {
         let bits = difference_bits(image);
         let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
         let spare = |needed: u32| needed.saturating_sub(2 * formats.word);
-        let leaves = image.tree.nodes.iter().filter(|node| matches!(node.content, Content::Leaf { .. })).count();
         let largest = i32::MAX >> (32 - formats.word);
         let offset = if formats.t == formats.position { 2 } else { 3 };
         Constants {
@@ -44,7 +42,7 @@ impl Constants {
             literal_offset: offset.max(1 << (formats.word / 2 - 4)),
             never: largest - 1,
             missed: largest,
-            most_steps: leaves as u32 + 1,
+            most_steps: image.tree.leaves as u32 + 1,
         }
     }
 

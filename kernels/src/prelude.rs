@@ -8,7 +8,6 @@ use isa::Isa;
 use isa::diagnostic::{Report, Source};
 use scenes::camera::RawCamera;
 use scenes::image::{Image, Kind};
-use scenes::kdtree::Content;
 use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
@@ -87,15 +86,6 @@ fn is_local(image: &Image, kind: Kind) -> bool {
     image.region(kind).len() as u32 <= TABLES / 2
 }
 
-/// Triangles of the packet that has most.
-fn largest_packet(image: &Image) -> usize {
-    let triangles = |content: &Content| match content {
-        Content::Leaf { triangles } => triangles.len(),
-        Content::Inner { .. } => 0,
-    };
-    image.tree.nodes.iter().map(|node| triangles(&node.content)).max().unwrap_or(0)
-}
-
 fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
     let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
         Constants::new(image);
@@ -110,9 +100,9 @@ fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static s
         ("NEVER", never.into()),
         ("MISSED", missed.into()),
         ("MOST_STEPS", most_steps.into()),
-        ("LARGEST_PACKET", largest_packet(image) as i64),
+        ("LARGEST_PACKET", image.tree.most_triangles as i64),
         ("TRAP_STUCK", TRAP_STUCK.into()),
-        ("DEPTH", image.tree.statistics().depth.into()),
+        ("DEPTH", image.tree.depth.into()),
         ("ROOT", image.root.into()),
         ("FRAME", image.region(Kind::Frame).start.into()),
         ("MATERIALS_BUS", image.region(Kind::Materials).start.into()),

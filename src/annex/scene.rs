@@ -47,7 +47,7 @@ impl OnScene {
             let mut regions = profiles.iter().flat_map(|profile| &profile.regions);
             regions.find(|region| region.name == name && region.calls != 0).cloned()
         };
-        let tree = drawing.image.tree.statistics();
+        let tree = drawing.image.tree;
         OnScene {
             scene: result_name(&job.scene),
             regions: rows().iter().map(|row| find(&row.region)).collect(),

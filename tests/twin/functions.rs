@@ -264,8 +264,8 @@ pub(super) fn trees(modes: Modes) -> [Subject; 3] {
 
 /// A point whose coordinates are often in planes of the tree.
 pub(super) fn point_of_tree(subject: &Subject) -> impl Strategy<Value = [i32; 3]> + use<> {
-    let corners: Vec<[i32; 3]> =
-        subject.image.tree.nodes.iter().flat_map(|node| [node.bounds.low, node.bounds.high]).collect();
+    let tree = subject.image.decode().expect("the image is whole").tree;
+    let corners: Vec<[i32; 3]> = tree.nodes().flat_map(|node| [node.bounds.low, node.bounds.high]).collect();
     let Bounds { low, high } = subject.image.bounds;
     let lane = move |k: usize| {
         let planes: Vec<i32> = corners.iter().map(|corner| corner[k]).collect();

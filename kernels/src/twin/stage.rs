@@ -116,16 +116,16 @@ impl Stage {
 
 /// A tree as nodes and references: triangles by index, packet by packet.
 pub fn tree(tree: &KdTree) -> (Vec<Node>, Vec<u32>) {
-    let mut references = Vec::new();
-    let node = |content: &Content| match *content {
+    let mut references = Vec::with_capacity(tree.references());
+    let node = |number| match tree.content(number) {
         Content::Inner { axis, at, left } => Node::Inner { axis, at, left },
-        Content::Leaf { ref triangles } => {
+        Content::Leaf { triangles } => {
             let first = references.len() as u32;
             references.extend_from_slice(triangles);
             Node::Leaf(first..references.len() as u32)
         }
     };
-    let nodes = tree.nodes.iter().map(|node| &node.content).map(node).collect();
+    let nodes = (0..tree.count() as u32).map(node).collect();
     (nodes, references)
 }
 

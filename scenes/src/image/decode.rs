@@ -1,7 +1,7 @@
 //! An image read back: what its octets say, by the tables of [`crate::layout`] alone. Tests and the kernels' twins compare with it.
 
 use super::{Image, Kind};
-use crate::kdtree::{Bounds, Content, KdTree, Node};
+use crate::kdtree::{Bounds, Given, KdTree};
 use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
 use crate::model::{Scene, Triangle};
 
@@ -30,8 +30,7 @@ pub struct Contents {
 impl Image {
     /// Reads tree, triangles, materials and lights from the octets; `None` when an address leads out of its region or the tree is none.
     pub fn decode(&self) -> Option<Contents> {
-        let nodes =
-            (self.tree.nodes.len() as u32).min(self.region(Kind::Nodes).len() as u32 / self.layout.node().octets());
+        let nodes = (self.tree.nodes as u32).min(self.region(Kind::Nodes).len() as u32 / self.layout.node().octets());
         Some(Contents {
             tree: match self.layout {
                 Layout::Report => self.report_tree(nodes)?,
@@ -89,7 +88,9 @@ impl Image {
     fn report_tree(&self, count: u32) -> Option<KdTree> {
         let structure = self.layout.node();
         let number = |address: i64| self.number(Kind::Nodes, structure, address as u32);
-        let mut nodes = Vec::new();
+        let (mut nodes, mut places) = (Vec::new(), Vec::new());
+        // Children come in pairs, in the order of their parents.
+        let mut below = 1;
         for k in 0..count {
             let values = self.element(Kind::Nodes, structure, k)?;
             let &[left, right, next, first, count] = values.first_chunk()?;
@@ -101,19 +102,22 @@ impl Image {
                     return None;
                 }
             }
-            let content = if left == 0 {
-                Content::Leaf { triangles: self.list(first as u32, count as u32)? }
+            nodes.push(if left == 0 {
+                Given::Leaf(self.list(first as u32, count as u32)?)
             } else {
+                if (number(left)?, number(right)?) != (below, below + 1) {
+                    return None;
+                }
                 let axis = *values.last()? as usize;
-                let (left, right) = (number(left)?, number(right)?);
-                let below = self.element(Kind::Nodes, structure, left)?;
+                let child = self.element(Kind::Nodes, structure, below)?;
+                below += 2;
                 // x1, y1 or z1 of the left child lies on the plane; all three are its upper corner.
-                let at = self.loaded(*below.get(8 + axis)?);
-                (right == left + 1).then_some(Content::Inner { axis, at, left })?
-            };
-            nodes.push(Node { bounds, next: if next == 0 { None } else { Some(number(next)?) }, content });
+                Given::Inner { axis, at: self.loaded(*child.get(8 + axis)?) }
+            });
+            places.push((bounds, if next == 0 { None } else { Some(number(next)?) }));
         }
-        Some(KdTree { nodes })
+        let tree = KdTree::from_nodes(self.bounds, nodes.into_iter())?;
+        tree.nodes().map(|node| (node.bounds, node.next)).eq(places).then_some(tree)
     }
 
     /// The triangles of a linked list that is `count` long.
@@ -134,41 +138,23 @@ impl Image {
 
     fn wide_tree(&self, count: u32) -> Option<KdTree> {
         let structure = self.layout.node();
-        let mut nodes =
-            vec![Node { bounds: self.bounds, next: None, content: Content::Leaf { triangles: Vec::new() } }];
+        let mut nodes = Vec::new();
         let mut addresses = vec![self.root];
-        let mut level_end = 1;
-        let mut k = 0;
-        while k < nodes.len() {
-            let number = self.number(Kind::Nodes, structure, addresses[k])?;
+        while let Some(&address) = addresses.get(nodes.len()) {
+            let number = self.number(Kind::Nodes, structure, address)?;
             let &[plane, link] = self.element(Kind::Nodes, structure, number)?.first_chunk()?;
             let (tag, address) = (link as u32 & 3, link as u32 & !3);
-            if tag == WIDE_LEAF {
-                nodes[k].content = Content::Leaf { triangles: self.array(address, plane)? };
+            nodes.push(if tag == WIDE_LEAF {
+                Given::Leaf(self.array(address, plane)?)
             } else {
-                let (axis, at) = (tag as usize, i32::try_from(plane).ok()?);
-                nodes[k].content = Content::Inner { axis, at, left: nodes.len() as u32 };
-                for side in 0..2 {
-                    let mut bounds = nodes[k].bounds;
-                    if side == 0 {
-                        bounds.high[axis] = at
-                    } else {
-                        bounds.low[axis] = at
-                    }
-                    nodes.push(Node { bounds, next: None, content: Content::Leaf { triangles: Vec::new() } });
-                    addresses.push(address + side * structure.octets());
-                }
-                if nodes.len() > count as usize {
-                    return None;
-                }
-            }
-            k += 1;
-            nodes[k - 1].next = (k < level_end).then_some(k as u32);
-            if k == level_end {
-                level_end = nodes.len();
+                addresses.extend([address, address.checked_add(structure.octets())?]);
+                Given::Inner { axis: tag as usize, at: i32::try_from(plane).ok()? }
+            });
+            if addresses.len() > count as usize {
+                return None;
             }
         }
-        Some(KdTree { nodes })
+        KdTree::from_nodes(self.bounds, nodes.into_iter())
     }
 
     /// The triangles of an array of `count` references.

@@ -5,7 +5,7 @@ use isa::diagnostic::{Diagnostic, Report};
 use super::{HEADER, Kind, Regions, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};
 use crate::grid::Grid;
-use crate::kdtree::{Bounds, Content, KdTree};
+use crate::kdtree::{Bounds, Content, Grown, Node, Placed, Triangles};
 use crate::layout::{LIGHT, Layout, MATERIAL, PIXEL, Structure, WIDE_LEAF};
 use crate::model::Scene;
 
@@ -64,20 +64,19 @@ impl Tables {
 
 /// All octets, and which addresses hold what.
 pub(super) fn memory(
-    tree: &KdTree,
+    tree: &Grown,
     scene: &Scene,
-    triangles: &[[[i32; 3]; 3]],
+    triangles: &impl Triangles,
     tables: &Tables,
     layout: Layout,
     shift: u32,
     size: (u32, u32),
 ) -> Result<(Vec<u8>, Regions), Report> {
-    let references: u64 = tree.nodes.iter().map(|node| packet(&node.content).len() as u64).sum();
     let octets = [
         u64::from(HEADER),
-        tree.nodes.len() as u64 * u64::from(layout.node().octets()),
-        references * u64::from(layout.reference().octets()),
-        triangles.len() as u64 * u64::from(layout.triangle().octets()),
+        u64::from(tree.count()) * u64::from(layout.node().octets()),
+        u64::from(tree.references()) * u64::from(layout.reference().octets()),
+        triangles.count() as u64 * u64::from(layout.triangle().octets()),
         tables.materials.len() as u64 * u64::from(MATERIAL.octets()),
         tables.lights.len() as u64 * u64::from(LIGHT.octets()),
         (u64::from(size.0) * u64::from(size.1)).saturating_mul(u64::from(PIXEL.octets())),
@@ -99,9 +98,8 @@ pub(super) fn memory(
     let mut put = |address: u32, structure: &Structure, values: &mut dyn Iterator<Item = i64>| {
         structure.write(&mut bytes[address as usize..], values);
     };
-    let mut reference = 0;
-    for (number, node) in (0..).zip(&tree.nodes) {
-        let packet = packet(&node.content);
+    for Placed { number, first: reference, node } in tree.nodes() {
+        let packet = packet(node.content);
         let first = if packet.is_empty() { 0 } else { addresses.reference(reference) };
         let values = match layout {
             Layout::Report => {
@@ -113,21 +111,22 @@ pub(super) fn memory(
                     .hint("use --layout wide, or a deeper tree with --kd-depth")
                     .into());
                 }
-                addresses.report_node(node.next, &node.bounds, &node.content, first, shift)
+                addresses.report_node(&node, first, shift)
             }
-            Layout::Wide => addresses.wide_node(&node.content, first),
+            Layout::Wide => addresses.wide_node(node.content, first),
         };
         put(addresses.node(number), layout.node(), &mut values.into_iter());
-        for (k, &triangle) in packet.iter().enumerate() {
+        for (reference, &triangle) in (reference..).zip(packet) {
             let here = addresses.reference(reference);
-            reference += 1;
-            let next = if k + 1 < packet.len() { addresses.reference(reference) } else { 0 };
+            let is_last = packet.last() == Some(&triangle);
+            let next = if is_last { 0 } else { addresses.reference(reference + 1) };
             let values = [addresses.triangle(triangle), next].map(i64::from);
             put(here, layout.reference(), &mut values.into_iter().take(layout.reference().fields.len()));
         }
     }
-    for (number, (vertices, triangle)) in (0..).zip(triangles.iter().zip(&scene.triangles)) {
-        let Bounds { low, high } = Bounds::of_triangle(vertices);
+    for (number, triangle) in (0..).zip(&scene.triangles) {
+        let vertices = triangles.vertices(number as usize);
+        let Bounds { low, high } = Bounds::of_triangle(&vertices);
         let own: &[[i32; 3]] = match layout {
             Layout::Report => &[low, high],
             Layout::Wide => &[],
@@ -150,7 +149,7 @@ pub(super) fn memory(
 }
 
 /// The triangles of a leaf, none for an inner node.
-fn packet(content: &Content) -> &[u32] {
+fn packet(content: Content<'_>) -> &[u32] {
     match content {
         Content::Leaf { triangles } => triangles,
         Content::Inner { .. } => &[],
@@ -178,22 +177,22 @@ impl Addresses {
         self.triangles + number * self.layout.triangle().octets()
     }
 
-    fn report_node(&self, next: Option<u32>, bounds: &Bounds, content: &Content, first: u32, shift: u32) -> Vec<i64> {
-        let (left, right, axis) = match *content {
+    fn report_node(&self, node: &Node, first: u32, shift: u32) -> Vec<i64> {
+        let (left, right, axis) = match node.content {
             Content::Inner { axis, left, .. } => (self.node(left), self.node(left + 1), axis),
             Content::Leaf { .. } => (0, 0, 0),
         };
-        let next = next.map_or(0, |number| self.node(number));
-        let corners = [bounds.low, bounds.high].map(|corner| corner.map(|x| i64::from(stored(x, shift))));
+        let next = node.next.map_or(0, |number| self.node(number));
+        let corners = [node.bounds.low, node.bounds.high].map(|corner| corner.map(|x| i64::from(stored(x, shift))));
         let faces = (0..3).flat_map(|_| corners).flatten();
         let head = [left, right, next, first].map(i64::from).into_iter();
-        head.chain([packet(content).len() as i64]).chain(faces).chain([axis as i64]).collect()
+        head.chain([packet(node.content).len() as i64]).chain(faces).chain([axis as i64]).collect()
     }
 
-    fn wide_node(&self, content: &Content, first: u32) -> Vec<i64> {
-        match *content {
+    fn wide_node(&self, content: Content, first: u32) -> Vec<i64> {
+        match content {
             Content::Inner { axis, at, left } => vec![i64::from(at), i64::from(self.node(left) | axis as u32)],
-            Content::Leaf { ref triangles } => vec![triangles.len() as i64, i64::from(first | WIDE_LEAF)],
+            Content::Leaf { triangles } => vec![triangles.len() as i64, i64::from(first | WIDE_LEAF)],
         }
     }
 }

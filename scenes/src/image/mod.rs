@@ -13,9 +13,9 @@ use isa::diagnostic::{Diagnostic, Report};
 use crate::cadrage::{self, Formats, Overrides};
 use crate::camera::{self, RawCamera, Rays};
 use crate::grid::Grid;
-use crate::kdtree::{self, Bounds, KdTree};
+use crate::kdtree::{self, Bounds, Statistics, Triangles};
 use crate::layout::Layout;
-use crate::model::{Scene, Vec3, View};
+use crate::model::{Scene, Triangle, Vec3, View};
 pub use decode::{Contents, StoredTriangle};
 
 /// Octets from address 0 that are never used, so that 0 is no structure's address.
@@ -116,8 +116,8 @@ pub struct Image {
     pub background: [i32; 3],
     /// Numbers of triangles, materials and lights.
     pub counts: Counts,
-    /// The tree that is stored, on raw coordinates.
-    pub tree: KdTree,
+    /// Size and shape of the tree that is stored; the tree itself is in the octets alone ([`Image::decode`] reads it back).
+    pub tree: Statistics,
 }
 
 /// How many structures an image holds.
@@ -157,10 +157,10 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
     let shift = layout.coordinate_shift(options.word);
     let vertices: Vec<[i32; 3]> =
         scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
-    let triangles: Vec<[[i32; 3]; 3]> =
-        scene.triangles.iter().map(|t| t.vertices.map(|v| vertices[v as usize])).collect();
+    let mesh = Mesh { vertices: &vertices, triangles: &scene.triangles };
     let unit = 1 << shift;
-    let inner = triangles.iter().map(Bounds::of_triangle).reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
+    let boxes = (0..mesh.count()).map(|index| Bounds::of_triangle(&mesh.vertices(index)));
+    let inner = boxes.reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
         let Bounds { low, high } = grid.bounds();
         Bounds { low: low.map(|x| stored(x, shift) << shift), high: high.map(|x| stored(x, shift) << shift) }
     });
@@ -175,9 +175,9 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
     };
     let ambient = colour("the ambient intensity", view.ambient)?;
     let background = three(view.background, |x| colour("the background", x))?;
-    let tree = kdtree::build(&triangles, bounds, options.kd_depth, options.kd_method)?;
+    let tree = kdtree::grow(&mesh, bounds, options.kd_depth, options.kd_method)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
-    let (bytes, regions) = encode::memory(&tree, scene, &triangles, &tables, layout, shift, view.size)?;
+    let (bytes, regions) = encode::memory(&tree, scene, &mesh, &tables, layout, shift, view.size)?;
     let root = regions[1].1.start;
     let counts = Counts {
         triangles: scene.triangles.len() as u32,
@@ -197,8 +197,24 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
         ambient,
         background,
         counts,
-        tree,
+        tree: tree.statistics(),
     })
+}
+
+/// The triangles of a scene with their vertices on the grid.
+struct Mesh<'a> {
+    vertices: &'a [[i32; 3]],
+    triangles: &'a [Triangle],
+}
+
+impl Triangles for Mesh<'_> {
+    fn count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn vertices(&self, index: usize) -> [[i32; 3]; 3] {
+        self.triangles[index].vertices.map(|vertex| self.vertices[vertex as usize])
+    }
 }
 
 /// A raw coordinate as it is stored: shifted right, nearest, ties up, within 16 bits when it is shifted at all.

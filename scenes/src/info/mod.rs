@@ -142,7 +142,7 @@ impl SceneInfo {
             has_mirror: has(|material| material.reflection > 0.0),
             has_glass: has(|material| material.transmission > 0.0),
             materials,
-            tree: image.tree.statistics(),
+            tree: image.tree,
             memory: Memory {
                 layout: image.layout.name(),
                 octets: Named(image.regions.iter().map(|(kind, range)| (kind.name(), range.len() as u64)).collect()),

@@ -3,8 +3,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::grown::{Grown, Shoot, Sprout};
 use super::split::{Division, Side, Sweep};
-use super::{Bounds, Content, KdTree, MOST_REFERENCES, Node};
+use super::{Bounds, MOST_REFERENCES};
 
 /// Triangles of a packet from which its two sides are worth a thread each.
 const WORTH_A_THREAD: usize = 4096;
@@ -27,12 +28,6 @@ pub(super) trait Membership: Sync {
 /// There are more references than [`MOST_REFERENCES`].
 pub(super) struct TooMany;
 
-/// A node and what grew below it.
-enum Shoot {
-    Leaf(Vec<u32>),
-    Inner(Division, Box<[Shoot; 2]>),
-}
-
 /// Grows the tree of `packet` in the box `root`, at most `depth` levels high.
 ///
 /// # Errors
@@ -42,10 +37,9 @@ pub(super) fn grow<M: Membership>(
     packet: Vec<M::Member>,
     root: Bounds,
     depth: u32,
-) -> Result<KdTree, TooMany> {
+) -> Result<Grown, TooMany> {
     let growth = Growth { membership, references: AtomicUsize::new(packet.len()) };
-    let shoot = growth.node(packet, root, depth, &mut Sweep::default())?;
-    Ok(by_levels(shoot, root))
+    Ok(Grown::new(root, growth.large(packet, root, depth, &mut Sweep::default())?))
 }
 
 struct Growth<'a, M> {
@@ -54,13 +48,80 @@ struct Growth<'a, M> {
     references: AtomicUsize,
 }
 
+/// What becomes of a node.
+enum Fate<T> {
+    Leaf(Vec<T>),
+    /// The plane, and what is on either side of it.
+    Inner(Sprout, [(Vec<T>, Bounds); 2]),
+}
+
 impl<M: Membership> Growth<'_, M> {
-    fn node(&self, packet: Vec<M::Member>, node: Bounds, levels: u32, sweep: &mut Sweep) -> Result<Shoot, TooMany> {
+    /// A node of which both sides may be worth a thread each.
+    fn large(
+        &self,
+        packet: Vec<M::Member>,
+        node: Bounds,
+        levels: u32,
+        sweep: &mut Sweep,
+    ) -> Result<Vec<Shoot>, TooMany> {
+        let mut shoot = Shoot::default();
+        if packet.len() < WORTH_A_THREAD {
+            self.small(packet, node, levels, sweep, &mut shoot)?;
+            shoot.nodes.shrink_to_fit();
+            shoot.triangles.shrink_to_fit();
+            return Ok(vec![shoot]);
+        }
+        match self.divide(packet, node, levels, sweep)? {
+            Fate::Leaf(packet) => {
+                self.leaf(&packet, &mut shoot);
+                Ok(vec![shoot])
+            }
+            Fate::Inner(sprout, [(below, lower), (above, upper)]) => {
+                shoot.nodes.push(sprout);
+                let (left, right) = rayon::join(
+                    || self.large(below, lower, levels - 1, sweep),
+                    || self.large(above, upper, levels - 1, &mut Sweep::default()),
+                );
+                Ok([vec![shoot], left?, right?].into_iter().flatten().collect())
+            }
+        }
+    }
+
+    /// A node that one thread grows, at the end of a shoot.
+    fn small(
+        &self,
+        packet: Vec<M::Member>,
+        node: Bounds,
+        levels: u32,
+        sweep: &mut Sweep,
+        shoot: &mut Shoot,
+    ) -> Result<(), TooMany> {
+        match self.divide(packet, node, levels, sweep)? {
+            Fate::Leaf(packet) => self.leaf(&packet, shoot),
+            Fate::Inner(sprout, [(below, lower), (above, upper)]) => {
+                shoot.nodes.push(sprout);
+                self.small(below, lower, levels - 1, sweep, shoot)?;
+                self.small(above, upper, levels - 1, sweep, shoot)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn leaf(&self, packet: &[M::Member], shoot: &mut Shoot) {
+        shoot.nodes.push(Sprout::Leaf { count: packet.len() as u32 });
+        shoot.triangles.extend(packet.iter().map(|member| self.membership.index(member)));
+    }
+
+    fn divide(
+        &self,
+        packet: Vec<M::Member>,
+        node: Bounds,
+        levels: u32,
+        sweep: &mut Sweep,
+    ) -> Result<Fate<M::Member>, TooMany> {
         let division = if levels == 0 { None } else { self.membership.best(&node, &packet, sweep) };
-        let Some(division) = division else {
-            return Ok(Shoot::Leaf(packet.iter().map(|member| self.membership.index(member)).collect()));
-        };
-        let (lower, upper) = division.children(&node);
+        let Some(division) = division else { return Ok(Fate::Leaf(packet)) };
+        let [lower, upper] = node.divided(division.axis, division.at);
         let passed = |side, child: Bounds| -> Vec<M::Member> {
             packet.iter().filter_map(|member| self.membership.passed(member, &division, side, &child)).collect()
         };
@@ -69,44 +130,7 @@ impl<M: Membership> Growth<'_, M> {
         if self.references.fetch_add(more, Ordering::Relaxed) + more > MOST_REFERENCES {
             return Err(TooMany);
         }
-        let is_large = packet.len() >= WORTH_A_THREAD;
-        drop(packet);
-        let children = if is_large {
-            let (left, right) = rayon::join(
-                || self.node(below, lower, levels - 1, sweep),
-                || self.node(above, upper, levels - 1, &mut Sweep::default()),
-            );
-            [left?, right?]
-        } else {
-            [self.node(below, lower, levels - 1, sweep)?, self.node(above, upper, levels - 1, sweep)?]
-        };
-        Ok(Shoot::Inner(division, Box::new(children)))
+        let sprout = Sprout::Inner { axis: division.axis as u8, at: division.at };
+        Ok(Fate::Inner(sprout, [(below, lower), (above, upper)]))
     }
-}
-
-/// The nodes level by level, each level from left to right.
-fn by_levels(root: Shoot, bounds: Bounds) -> KdTree {
-    let mut nodes = Vec::new();
-    let mut level = vec![(root, bounds)];
-    while !level.is_empty() {
-        let first = nodes.len() + level.len();
-        let last = first as u32 - 1;
-        let mut below = Vec::new();
-        for (shoot, bounds) in level {
-            let number = nodes.len() as u32;
-            let content = match shoot {
-                Shoot::Leaf(triangles) => Content::Leaf { triangles },
-                Shoot::Inner(division, children) => {
-                    let left = (first + below.len()) as u32;
-                    let (lower, upper) = division.children(&bounds);
-                    let [left_shoot, right_shoot] = *children;
-                    below.extend([(left_shoot, lower), (right_shoot, upper)]);
-                    Content::Inner { axis: division.axis, at: division.at, left }
-                }
-            };
-            nodes.push(Node { bounds, next: (number != last).then_some(number + 1), content });
-        }
-        level = below;
-    }
-    KdTree { nodes }
 }

@@ -1,9 +1,9 @@
 //! Two ways to say which triangles a node holds: by their boxes, as the report does, and by what of them really lies in the node.
 
-use super::Bounds;
 use super::clip::clipped;
 use super::growth::Membership;
 use super::split::{Division, Side, Sweep};
+use super::{Bounds, Triangles};
 
 /// The report's rule (5.3.2): a triangle is in a node when its box reaches into it; planes cross the longest axis.
 pub(super) struct ByBox<'a> {
@@ -29,9 +29,9 @@ impl Membership for ByBox<'_> {
 }
 
 /// A triangle is in a node when a part of it is; planes cross any axis, at the bounds of the parts (Havran and Bittner 2002).
-pub(super) struct ByPart<'a> {
-    /// Vertices of each triangle.
-    pub(super) triangles: &'a [[[i32; 3]; 3]],
+pub(super) struct ByPart<'a, T: ?Sized> {
+    /// The triangles.
+    pub(super) triangles: &'a T,
 }
 
 /// What of a triangle lies in a node.
@@ -41,17 +41,15 @@ pub(super) struct Part {
     bounds: Bounds,
 }
 
-impl ByPart<'_> {
+impl<T: Triangles + ?Sized> ByPart<'_, T> {
     /// The triangles as a node holds them that contains all of them.
     pub(super) fn whole(&self) -> Vec<Part> {
-        (0..)
-            .zip(self.triangles)
-            .map(|(index, vertices)| Part { index, bounds: Bounds::of_triangle(vertices) })
-            .collect()
+        let bounds = |index: u32| Bounds::of_triangle(&self.triangles.vertices(index as usize));
+        (0..self.triangles.count() as u32).map(|index| Part { index, bounds: bounds(index) }).collect()
     }
 }
 
-impl Membership for ByPart<'_> {
+impl<T: Triangles + ?Sized> Membership for ByPart<'_, T> {
     type Member = Part;
 
     fn index(&self, member: &Part) -> u32 {
@@ -72,7 +70,7 @@ impl Membership for ByPart<'_> {
         if is_whole {
             return Some(*part);
         }
-        let bounds = clipped(&self.triangles[part.index as usize], child)?;
+        let bounds = clipped(&self.triangles.vertices(part.index as usize), child)?;
         division.reaches(&bounds, side).then_some(Part { bounds, ..*part })
     }
 }

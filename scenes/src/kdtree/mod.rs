@@ -2,18 +2,23 @@
 //! comparisons; nothing here knows of memory layouts or of how rays walk through the tree.
 
 mod clip;
+mod grown;
 mod growth;
 mod membership;
 pub mod split;
 mod statistics;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 use isa::diagnostic::{Diagnostic, Report};
 
+pub(crate) use grown::{Grown, Placed};
 use growth::TooMany;
 use membership::{ByBox, ByPart};
 pub use statistics::Statistics;
+pub(crate) use tree::Given;
+pub use tree::{Content, KdTree, Node};
 
 /// Levels below the root that the report's tree has at most.
 pub const DEPTH: u32 = 16;
@@ -61,47 +66,18 @@ impl Bounds {
         self.high[axis].abs_diff(self.low[axis])
     }
 
+    /// The two boxes on either side of the plane `axis = at`, that of smaller coordinates first.
+    pub fn divided(&self, axis: usize, at: i32) -> [Bounds; 2] {
+        let (mut left, mut right) = (*self, *self);
+        left.high[axis] = at;
+        right.low[axis] = at;
+        [left, right]
+    }
+
     /// The axis along which the box is longest; of equal ones the first of x, y, z.
     pub fn longest_axis(&self) -> usize {
         (1..3).fold(0, |best, axis| if self.side(axis) > self.side(best) { axis } else { best })
     }
-}
-
-/// A node of the tree.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Node {
-    /// Its part of space.
-    pub bounds: Bounds,
-    /// Next node of the same level, from left to right; `None` for the last.
-    pub next: Option<u32>,
-    /// What it holds.
-    pub content: Content,
-}
-
-/// What a node holds.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Content {
-    /// A node divided at the plane `axis = at`; the right child's number is that of the left one plus 1.
-    Inner {
-        /// Axis of the plane, 0 to 2.
-        axis: usize,
-        /// Coordinate of the plane, raw.
-        at: i32,
-        /// Number of the left child, the side of smaller coordinates.
-        left: u32,
-    },
-    /// A packet of triangles, by index, ascending.
-    Leaf {
-        /// Indices of the triangles that reach into the node.
-        triangles: Vec<u32>,
-    },
-}
-
-/// The tree: nodes level by level, each level from left to right; node 0 is the root.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KdTree {
-    /// All nodes.
-    pub nodes: Vec<Node>,
 }
 
 /// How high a tree may be.
@@ -154,7 +130,29 @@ impl Method {
     }
 }
 
-/// Builds the tree of `triangles`, given by their vertices, in the box `root`.
+/// Triangles by number: a list of them, or a mesh of which they share the vertices.
+pub trait Triangles: Sync {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// The vertices of one, raw.
+    ///
+    /// # Panics
+    /// When there is no such triangle.
+    fn vertices(&self, index: usize) -> [[i32; 3]; 3];
+}
+
+impl<T: AsRef<[[[i32; 3]; 3]]> + Sync + ?Sized> Triangles for T {
+    fn count(&self) -> usize {
+        self.as_ref().len()
+    }
+
+    fn vertices(&self, index: usize) -> [[i32; 3]; 3] {
+        self.as_ref()[index]
+    }
+}
+
+/// Builds the tree of `triangles` in the box `root`.
 ///
 /// `root` has to contain the triangles. A node is divided at the plane of the lowest cost, as [`split::best`] has it, until no plane pays.
 /// Sorting is by digits, so a level takes time linear in its references; both sides of a large node are built at the same time, on all
@@ -162,25 +160,37 @@ impl Method {
 ///
 /// # Errors
 /// When the leaves would hold more than [`MOST_REFERENCES`] triangles together.
-pub fn build(triangles: &[[[i32; 3]; 3]], root: Bounds, depth: Depth, method: Method) -> Result<KdTree, Report> {
-    let levels = depth.levels(triangles.len());
-    let tree = match method {
+pub fn build(
+    triangles: &(impl Triangles + ?Sized),
+    root: Bounds,
+    depth: Depth,
+    method: Method,
+) -> Result<KdTree, Report> {
+    grow(triangles, root, depth, method).map(|grown| grown.by_levels())
+}
+
+/// The same tree, as the memory image is written from it.
+pub(crate) fn grow(
+    triangles: &(impl Triangles + ?Sized),
+    root: Bounds,
+    depth: Depth,
+    method: Method,
+) -> Result<Grown, Report> {
+    let count = triangles.count();
+    let levels = depth.levels(count);
+    let grown = match method {
         Method::Report => {
-            let boxes: Vec<Bounds> = triangles.iter().map(Bounds::of_triangle).collect();
-            let all = (0..boxes.len() as u32).collect();
-            growth::grow(&ByBox { triangles: &boxes }, all, root, levels)
+            let boxes: Vec<Bounds> = (0..count).map(|index| Bounds::of_triangle(&triangles.vertices(index))).collect();
+            growth::grow(&ByBox { triangles: &boxes }, (0..count as u32).collect(), root, levels)
         }
         Method::Exact => {
             let membership = ByPart { triangles };
             growth::grow(&membership, membership.whole(), root, levels)
         }
     };
-    tree.map_err(|TooMany| {
-        Diagnostic::error(format!(
-            "the kd tree would hold more than {MOST_REFERENCES} references to {} triangles",
-            triangles.len()
-        ))
-        .hint("ask for a lower tree with --kd-depth")
-        .into()
+    grown.map_err(|TooMany| {
+        Diagnostic::error(format!("the kd tree would hold more than {MOST_REFERENCES} references to {count} triangles"))
+            .hint("ask for a lower tree with --kd-depth")
+            .into()
     })
 }

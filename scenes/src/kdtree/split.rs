@@ -37,14 +37,6 @@ pub struct Division {
 }
 
 impl Division {
-    /// Boxes of the left and of the right child of a node.
-    pub fn children(&self, node: &Bounds) -> (Bounds, Bounds) {
-        let (mut left, mut right) = (*node, *node);
-        left.high[self.axis] = self.at;
-        right.low[self.axis] = self.at;
-        (left, right)
-    }
-
     /// Whether a triangle belongs to the child `side`: it does when it reaches beyond the plane on that side, or lies in the plane and
     /// flat triangles go there.
     pub fn reaches(&self, triangle: &Bounds, side: Side) -> bool {

@@ -28,40 +28,46 @@ pub struct Statistics {
     pub expected_cost: f64,
 }
 
+impl Statistics {
+    /// The figures of a tree with these nodes, in any order.
+    pub(super) fn new<'a>(nodes: impl Iterator<Item = Node<'a>>) -> Statistics {
+        let (mut count, mut leaves, mut empty_leaves, mut references, mut most_triangles) = (0, 0, 0, 0, 0);
+        let (mut levels, mut root, mut sum) = (0, 0, 0u128);
+        for node in nodes {
+            count += 1;
+            // The last node of a level is the one without a next.
+            levels += u32::from(node.next.is_none());
+            let surface = half_surface(&node.bounds);
+            root = surface.max(root);
+            let cost = match node.content {
+                Content::Inner { .. } => 1,
+                Content::Leaf { triangles } => {
+                    leaves += 1;
+                    empty_leaves += usize::from(triangles.is_empty());
+                    references += triangles.len();
+                    most_triangles = most_triangles.max(triangles.len());
+                    triangles.len()
+                }
+            };
+            // Below 2^66 times 2^27 references.
+            sum += surface * cost as u128;
+        }
+        Statistics {
+            nodes: count,
+            leaves,
+            empty_leaves,
+            references,
+            depth: levels - 1,
+            mean_triangles: references as f64 / leaves as f64,
+            most_triangles,
+            expected_cost: if root == 0 { 0.0 } else { sum as f64 / root as f64 },
+        }
+    }
+}
+
 impl KdTree {
     /// Counts nodes, leaves and references.
     pub fn statistics(&self) -> Statistics {
-        let packets = || {
-            self.nodes.iter().filter_map(|node| match &node.content {
-                Content::Leaf { triangles } => Some(triangles.len()),
-                Content::Inner { .. } => None,
-            })
-        };
-        let leaves = packets().count();
-        let references = packets().sum();
-        // The last node of a level is the one without a next.
-        let levels = self.nodes.iter().filter(|node| node.next.is_none()).count();
-        Statistics {
-            nodes: self.nodes.len(),
-            leaves,
-            empty_leaves: packets().filter(|&count| count == 0).count(),
-            references,
-            depth: levels as u32 - 1,
-            mean_triangles: references as f64 / leaves as f64,
-            most_triangles: packets().max().unwrap_or(0),
-            expected_cost: self.expected_cost(),
-        }
-    }
-
-    fn expected_cost(&self) -> f64 {
-        let root = half_surface(&self.nodes[0].bounds) as f64;
-        if root == 0.0 {
-            return 0.0;
-        }
-        let cost = |node: &Node| match &node.content {
-            Content::Inner { .. } => 1.0,
-            Content::Leaf { triangles } => triangles.len() as f64,
-        };
-        self.nodes.iter().map(|node| half_surface(&node.bounds) as f64 / root * cost(node)).sum()
+        Statistics::new(self.nodes())
     }
 }

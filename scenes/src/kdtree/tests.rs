@@ -58,10 +58,10 @@ fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> M
 }
 
 fn as_model(tree: &KdTree, number: u32) -> Model {
-    let node = &tree.nodes[number as usize];
-    match &node.content {
-        Content::Leaf { triangles } => Model::Leaf(node.bounds, triangles.clone()),
-        &Content::Inner { axis, at, left } => {
+    let node = tree.nodes().nth(number as usize).unwrap();
+    match node.content {
+        Content::Leaf { triangles } => Model::Leaf(node.bounds, triangles.to_vec()),
+        Content::Inner { axis, at, left } => {
             Model::Inner(node.bounds, axis, at, Box::new((as_model(tree, left), as_model(tree, left + 1))))
         }
     }
@@ -73,7 +73,7 @@ fn levels(tree: &KdTree) -> Vec<Vec<u32>> {
     loop {
         let below: Vec<u32> = levels[levels.len() - 1]
             .iter()
-            .filter_map(|&number| match tree.nodes[number as usize].content {
+            .filter_map(|&number| match tree.content(number) {
                 Content::Inner { left, .. } => Some([left, left + 1]),
                 Content::Leaf { .. } => None,
             })
@@ -100,15 +100,16 @@ fn check(triangles: &[Bounds], unit: i32, depth: u32) -> KdTree {
         .grown(unit);
     let tree = build(&with_boxes(triangles), root, Depth::Levels(depth), Method::Report).unwrap();
     assert_eq!(as_model(&tree, 0), model((0..triangles.len() as u32).collect(), triangles, root, depth));
+    let nexts: Vec<Option<u32>> = tree.nodes().map(|node| node.next).collect();
     let mut expected = 0;
     for level in levels(&tree) {
         for (place, &number) in level.iter().enumerate() {
             assert_eq!(number, expected, "nodes are stored level by level");
             expected += 1;
-            assert_eq!(tree.nodes[number as usize].next, level.get(place + 1).copied());
+            assert_eq!(nexts[number as usize], level.get(place + 1).copied());
         }
     }
-    assert_eq!(expected as usize, tree.nodes.len());
+    assert_eq!(expected as usize, tree.count());
     tree
 }
 
@@ -149,7 +150,7 @@ proptest! {
 #[test]
 fn no_triangles_give_one_empty_leaf() {
     let tree = check(&[], 1, DEPTH);
-    assert_eq!(tree.nodes.len(), 1);
+    assert_eq!(tree.count(), 1);
     assert_eq!(tree.statistics().empty_leaves, 1);
     assert_eq!(tree.statistics().depth, 0);
 }
@@ -157,11 +158,11 @@ fn no_triangles_give_one_empty_leaf() {
 #[test]
 fn a_flat_node_stays_whole() {
     let apart = [bounds([0, 0, 0], [1, 0, 0]), bounds([100, 0, 0], [101, 0, 0])];
-    assert_eq!(check(&apart, 0, DEPTH).nodes.len(), 1, "surface 0");
-    assert!(check(&apart, 1, DEPTH).nodes.len() == 1, "2 triangles never pay for a division that costs 1");
+    assert_eq!(check(&apart, 0, DEPTH).count(), 1, "surface 0");
+    assert!(check(&apart, 1, DEPTH).count() == 1, "2 triangles never pay for a division that costs 1");
     let many: Vec<Bounds> = (0..8).map(|k| bounds([k * 100, 0, 0], [k * 100 + 1, 0, 0])).collect();
-    assert_eq!(check(&many, 0, DEPTH).nodes.len(), 1);
-    assert!(check(&many, 1, DEPTH).nodes.len() > 1);
+    assert_eq!(check(&many, 0, DEPTH).count(), 1);
+    assert!(check(&many, 1, DEPTH).count() > 1);
 }
 
 #[test]
@@ -170,21 +171,21 @@ fn triangles_in_the_plane_go_to_the_cheaper_side() {
     let mut triangles = vec![bounds([20, 0, 0], [20, 50, 50]); 8];
     triangles.push(bounds([0, 0, 0], [100, 50, 50]));
     let tree = check(&triangles, 1, 1);
-    let Content::Inner { axis: 0, at: 20, left: 1 } = tree.nodes[0].content else { panic!("{:?}", tree.nodes[0]) };
-    assert_eq!(tree.nodes[1].content, Content::Leaf { triangles: (0..9).collect() });
-    assert_eq!(tree.nodes[2].content, Content::Leaf { triangles: vec![8] });
+    let Content::Inner { axis: 0, at: 20, left: 1 } = tree.content(0) else { panic!("{:?}", tree.content(0)) };
+    assert_eq!(tree.content(1), Content::Leaf { triangles: &[0, 1, 2, 3, 4, 5, 6, 7, 8] });
+    assert_eq!(tree.content(2), Content::Leaf { triangles: &[8] });
     // Mirrored, the right one does.
     for triangle in &mut triangles {
         (triangle.low[0], triangle.high[0]) = (100 - triangle.high[0], 100 - triangle.low[0]);
     }
     let tree = check(&triangles, 1, 1);
-    assert_eq!(tree.nodes[1].content, Content::Leaf { triangles: vec![8] });
+    assert_eq!(tree.content(1), Content::Leaf { triangles: &[8] });
     // Exactly between, the left one.
     for triangle in &mut triangles[..8] {
         (triangle.low[0], triangle.high[0]) = (50, 50);
     }
     let tree = check(&triangles, 1, 1);
-    assert_eq!(tree.nodes[2].content, Content::Leaf { triangles: vec![8] });
+    assert_eq!(tree.content(2), Content::Leaf { triangles: &[8] });
 }
 
 #[test]
@@ -193,7 +194,7 @@ fn equal_costs_take_the_lowest_coordinate_and_equal_sides_the_first_axis() {
     let packet = |x: i32| bounds([x.min(x * 9), -90, -90], [x.max(x * 9), 90, 90]);
     let triangles: Vec<Bounds> = [packet(10); 5].into_iter().chain([packet(-10); 5]).collect();
     let tree = check(&triangles, 1, 1);
-    assert!(matches!(tree.nodes[0].content, Content::Inner { axis: 0, at: -10, .. }), "{:?}", tree.nodes[0]);
+    assert!(matches!(tree.content(0), Content::Inner { axis: 0, at: -10, .. }), "{:?}", tree.content(0));
 }
 
 #[test]
@@ -215,7 +216,7 @@ fn the_statistics_of_a_small_tree_are_right() {
     assert_eq!((statistics.references, statistics.depth, statistics.mean_triangles), (4, 1, 2.0));
     // The halves of a box of 303 x 52 x 52: 1 + (SA(left) n(left) + SA(right) n(right)) / SA(root).
     let half = |side: f64| side * 104.0 + 2704.0;
-    let Content::Inner { at, .. } = tree.nodes[0].content else { panic!("one division") };
+    let Content::Inner { at, .. } = tree.content(0) else { panic!("one division") };
     let (left, right) = (f64::from(at + 1), f64::from(302 - at));
     let below = many.iter().filter(|bounds| bounds.low[0] < at).count() as f64;
     let expected = 1.0 + (half(left) * below + half(right) * (4.0 - below)) / half(303.0);
@@ -246,8 +247,8 @@ fn a_terrain_of_sixty_thousand_triangles_takes_moments() {
     let tree = build(&triangles, root(&triangles), Depth::default(), Method::Report).unwrap();
     assert_eq!(tree.statistics().depth, DEPTH);
     // Every triangle is in every leaf that its box reaches into.
-    for node in &tree.nodes {
-        if let Content::Leaf { triangles: packet } = &node.content {
+    for node in tree.nodes() {
+        if let Content::Leaf { triangles: packet } = node.content {
             assert!(packet.is_sorted());
             for &index in packet {
                 let (t, b) = (Bounds::of_triangle(&triangles[index as usize]), &node.bounds);
@@ -308,8 +309,8 @@ proptest! {
     ) {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| x << scale))).collect();
         let tree = build(&triangles, root(&triangles), Depth::Levels(10), Method::Exact).unwrap();
-        for node in &tree.nodes {
-            let Content::Leaf { triangles: packet } = &node.content else { continue };
+        for node in tree.nodes() {
+            let Content::Leaf { triangles: packet } = node.content else { continue };
             prop_assert!(packet.is_sorted());
             for (index, triangle) in (0..).zip(&triangles) {
                 let is_inside = |p: [i64; 3]| {

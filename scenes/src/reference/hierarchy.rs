@@ -1,26 +1,43 @@
 //! The quick search: a hierarchy of boxes (bounding volume hierarchy), divided by the surface area heuristic over 16 bins of centroids. It
 //! has nothing in common with the kd tree of the memory image.
 
+use std::ops::Range;
+
 use super::search::{Hit, Search, better};
-use super::triangle::{Ray, Triangle};
+use super::triangle::{Ray, Shapes, Triangle};
 use crate::model::Vec3;
 use crate::vector::AXES;
 
 /// The hierarchy; node 0 is its root.
 #[derive(Debug)]
-pub struct Hierarchy {
-    triangles: Vec<Triangle>,
+pub struct Hierarchy<'a> {
+    shapes: Shapes<'a>,
+    /// The numbers of the triangles, leaf by leaf.
+    indices: Vec<u32>,
     nodes: Vec<Node>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
-    low: Vec3,
-    high: Vec3,
-    /// Of a leaf the first triangle, else the left child; the right child follows it.
+    /// Its box in single precision, rounded outwards.
+    low: [f32; 3],
+    high: [f32; 3],
+    /// Of a leaf the place of its first triangle in the list, else the left child; the right child follows it.
     first: u32,
     /// Triangles of a leaf, 0 for an inner node.
     count: u32,
+}
+
+impl Node {
+    /// A leaf.
+    fn new((low, high): Box3, range: &Range<usize>) -> Node {
+        Node {
+            low: low.map(|x| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 }),
+            high: high.map(|x| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 }),
+            first: range.start as u32,
+            count: range.len() as u32,
+        }
+    }
 }
 
 /// Triangles that a leaf holds without being divided.
@@ -39,8 +56,8 @@ fn joined((low, high): Box3, (other_low, other_high): Box3) -> Box3 {
     (AXES.map(|k| low[k].min(other_low[k])), AXES.map(|k| high[k].max(other_high[k])))
 }
 
-fn box_of(triangle: &Triangle) -> Box3 {
-    triangle.vertices.iter().fold(EMPTY, |all, &v| joined(all, (v, v)))
+fn box_of(shapes: &Shapes, index: u32) -> Box3 {
+    shapes.triangle(index).vertices.iter().fold(EMPTY, |all, &v| joined(all, (v, v)))
 }
 
 fn half_surface((low, high): Box3) -> f64 {
@@ -52,16 +69,17 @@ fn middle((low, high): Box3, axis: usize) -> f64 {
     (low[axis] + high[axis]) / 2.0
 }
 
-impl Hierarchy {
-    /// Builds the hierarchy.
-    pub fn new(mut triangles: Vec<Triangle>) -> Hierarchy {
-        let mut nodes = vec![Node { low: EMPTY.0, high: EMPTY.1, first: 0, count: 0 }];
-        let mut open = vec![(0usize, 0..triangles.len(), 0)];
+impl<'a> Hierarchy<'a> {
+    /// Builds the hierarchy of the triangles with these numbers.
+    pub fn new(shapes: Shapes<'a>, mut indices: Vec<u32>) -> Hierarchy<'a> {
+        // Mostly half as many; growing by doubling would hold three times of it at once.
+        let mut nodes = Vec::with_capacity(indices.len().max(1));
+        nodes.push(Node::new(EMPTY, &(0..0)));
+        let mut open = vec![(0usize, 0..indices.len(), 0)];
         while let Some((number, range, level)) = open.pop() {
-            let part = &mut triangles[range.clone()];
-            let (low, high) = part.iter().map(box_of).fold(EMPTY, joined);
-            let split = if part.len() <= SMALL { None } else { Some(divide(part, level)) };
-            nodes[number] = Node { low, high, first: range.start as u32, count: range.len() as u32 };
+            let part = &mut indices[range.clone()];
+            let split = if part.len() <= SMALL { None } else { Some(divide(&shapes, part, level)) };
+            nodes[number] = Node::new(part.iter().map(|&index| box_of(&shapes, index)).fold(EMPTY, joined), &range);
             if let Some(at) = split {
                 let left = nodes.len();
                 nodes[number].first = left as u32;
@@ -71,11 +89,11 @@ impl Hierarchy {
                 open.push((left + 1, range.start + at..range.end, level + 1));
             }
         }
-        Hierarchy { triangles, nodes }
+        Hierarchy { shapes, indices, nodes }
     }
 
     /// Visits the leaves that the ray passes before `end`, near ones first; `visit` returns the new end.
-    fn walk(&self, ray: &Ray, mut end: f64, mut visit: impl FnMut(&[Triangle], u32) -> f64) {
+    fn walk(&self, ray: &Ray, mut end: f64, mut visit: impl FnMut(&[u32]) -> f64) {
         let reciprocal = ray.direction.map(|d| 1.0 / d);
         let entry = |node: &Node, end: f64| enters(node, ray.origin, reciprocal, end);
         let mut stack = [(0u32, 0.0f64); STACK];
@@ -86,9 +104,9 @@ impl Hierarchy {
         }
         loop {
             let node = &self.nodes[number as usize];
-            if node.count > 0 || self.triangles.is_empty() {
+            if node.count > 0 || self.indices.is_empty() {
                 let range = node.first as usize..(node.first + node.count) as usize;
-                end = visit(&self.triangles[range], node.first);
+                end = visit(&self.indices[range]);
             } else {
                 let (left, right) = (node.first, node.first + 1);
                 let enter = |child: u32| Some((child, entry(&self.nodes[child as usize], end)?));
@@ -127,8 +145,8 @@ fn enters(node: &Node, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> 
     let (mut near, mut far) = (0.0f64, end);
     for k in AXES {
         // An origin on the face of a box that it runs along gives 0 * infinity; min and max skip it.
-        let a = (node.low[k] - origin[k] - SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
-        let b = (node.high[k] - origin[k] + SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
+        let a = (f64::from(node.low[k]) - origin[k] - SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
+        let b = (f64::from(node.high[k]) - origin[k] + SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
         near = near.max(a.min(b));
         far = far.min(a.max(b));
     }
@@ -136,7 +154,8 @@ fn enters(node: &Node, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> 
 }
 
 /// Orders the triangles so that the first ones, as many as is returned, are the left part.
-fn divide(part: &mut [Triangle], level: u32) -> usize {
+fn divide(shapes: &Shapes, part: &mut [u32], level: u32) -> usize {
+    let box_of = |&index: &u32| box_of(shapes, index);
     let centroids = part.iter().map(box_of).fold(EMPTY, |all, b| {
         let point = AXES.map(|k| middle(b, k));
         joined(all, (point, point))
@@ -147,8 +166,7 @@ fn divide(part: &mut [Triangle], level: u32) -> usize {
     let bin = |b: Box3| (((middle(b, axis) - centroids.0[axis]) / side[axis] * BINS as f64) as usize).min(BINS - 1);
     if level < UNBALANCED && side[axis] > 0.0 {
         let mut bins = [(EMPTY, 0usize); BINS];
-        for triangle in part.iter() {
-            let b = box_of(triangle);
+        for b in part.iter().map(box_of) {
             let slot = &mut bins[bin(b)];
             *slot = (joined(slot.0, b), slot.1 + 1);
         }
@@ -160,25 +178,28 @@ fn divide(part: &mut [Triangle], level: u32) -> usize {
         if let Some((cost, at)) = best
             && cost.is_finite()
         {
-            part.sort_by_key(|triangle| bin(box_of(triangle)) >= at);
-            return part.partition_point(|triangle| bin(box_of(triangle)) < at);
+            let (left, right): (Vec<u32>, Vec<u32>) = part.iter().partition(|index| bin(box_of(index)) < at);
+            let (first, last) = part.split_at_mut(left.len());
+            first.copy_from_slice(&left);
+            last.copy_from_slice(&right);
+            return left.len();
         }
     }
     part.sort_by(|a, b| middle(box_of(a), axis).total_cmp(&middle(box_of(b), axis)));
     half
 }
 
-impl Search for Hierarchy {
-    fn triangles(&self) -> &[Triangle] {
-        &self.triangles
+impl Search for Hierarchy<'_> {
+    fn triangle(&self, index: u32) -> Triangle {
+        self.shapes.triangle(index)
     }
 
     fn nearest(&self, ray: &Ray) -> Option<Hit> {
         let mut best = None;
-        self.walk(ray, f64::INFINITY, |leaf, first| {
-            for (place, triangle) in (first..).zip(leaf) {
-                if let Some(t) = triangle.hit(ray) {
-                    best = better(&self.triangles, best, place, t);
+        self.walk(ray, f64::INFINITY, |leaf| {
+            for &index in leaf {
+                if let Some(t) = self.triangle(index).hit(ray) {
+                    best = better(best, Hit { t, index });
                 }
             }
             best.map_or(f64::INFINITY, |hit| hit.t)
@@ -188,8 +209,8 @@ impl Search for Hierarchy {
 
     fn is_blocked(&self, ray: &Ray, end: f64) -> bool {
         let mut is_blocked = false;
-        self.walk(ray, end, |leaf, _| {
-            is_blocked |= leaf.iter().any(|triangle| triangle.hit(ray).is_some_and(|t| t < end));
+        self.walk(ray, end, |leaf| {
+            is_blocked |= leaf.iter().any(|&index| self.triangle(index).hit(ray).is_some_and(|t| t < end));
             if is_blocked { f64::NEG_INFINITY } else { end }
         });
         is_blocked

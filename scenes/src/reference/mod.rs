@@ -17,7 +17,7 @@ use crate::model::{Picture, Scene, Vec3, View};
 use crate::vector::{exponent, largest, shifted, sub};
 use hierarchy::Hierarchy;
 use search::{Exhaustive, Search};
-use triangle::Triangle;
+use triangle::Shapes;
 
 /// Pixels of the largest picture that is rendered.
 pub const MOST_PIXELS: u64 = 1 << 27;
@@ -67,20 +67,20 @@ pub enum Method {
 }
 
 /// A scene made ready for rays.
-pub struct Reference {
-    search: Box<dyn Search>,
-    world: whitted::World,
+pub struct Reference<'a> {
+    search: Box<dyn Search + 'a>,
+    world: whitted::World<'a>,
     rays: Rays,
     size: (u32, u32),
 }
 
-impl Reference {
+impl<'a> Reference<'a> {
     /// Prepares a scene. All coordinates are taken relative to the middle of the scene's box and multiplied by a power of two that makes the
     /// box at most 2 long, so that scenes of any size and place keep the same relative precision.
     ///
     /// # Errors
     /// What [`Scene::check`], [`View::check`] and [`Rays::new`] refuse, and pictures of more than [`MOST_PIXELS`].
-    pub fn new(scene: &Scene, view: &View, method: Method) -> Result<Reference, Report> {
+    pub fn new(scene: &'a Scene, view: &View, method: Method) -> Result<Reference<'a>, Report> {
         Reference::framed(scene, scene.bounds(), view, method)
     }
 
@@ -88,7 +88,12 @@ impl Reference {
     ///
     /// # Errors
     /// As [`Reference::new`].
-    pub fn framed(scene: &Scene, corners: Option<Corners>, view: &View, method: Method) -> Result<Reference, Report> {
+    pub fn framed(
+        scene: &'a Scene,
+        corners: Option<Corners>,
+        view: &View,
+        method: Method,
+    ) -> Result<Reference<'a>, Report> {
         let mut report = scene.check();
         report.0.extend(view.check().0);
         let pixels = u64::from(view.size.0) * u64::from(view.size.1);
@@ -107,15 +112,14 @@ impl Reference {
         // Halves, because the distance of two representable points need not be representable.
         let power = exponent(largest(sub(halves(corners.1), halves(corners.0))));
         let local = |p: Vec3| [0, 1, 2].map(|k| shifted(p[k] / 2.0 - middle[k] / 2.0, 1 - power));
-        let triangles = (0..).zip(&scene.triangles);
-        let triangles: Vec<Triangle> = triangles
-            .filter_map(|(index, t)| Triangle::new(index, t.vertices.map(|v| local(scene.vertices[v as usize]))))
-            .collect();
+        let shapes =
+            Shapes { vertices: scene.vertices.iter().map(|&p| local(p)).collect(), triangles: &scene.triangles };
+        let indices = shapes.visible();
         let local_view = View { camera: camera::mapped(&view.camera, local), ..view.clone() };
         let rays = Rays::new((local(corners.0), local(corners.1)), &local_view)?;
-        let search: Box<dyn Search> = match method {
-            Method::Hierarchy => Box::new(Hierarchy::new(triangles)),
-            Method::Exhaustive => Box::new(Exhaustive(triangles)),
+        let search: Box<dyn Search + 'a> = match method {
+            Method::Hierarchy => Box::new(Hierarchy::new(shapes, indices)),
+            Method::Exhaustive => Box::new(Exhaustive { shapes, indices }),
         };
         Ok(Reference { search, world: whitted::World::new(scene, view, local), rays, size: view.size })
     }

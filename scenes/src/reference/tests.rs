@@ -166,20 +166,22 @@ fn total_reflection_keeps_the_whole_light_inside() {
 #[test]
 fn nearest_hits_are_ordered_by_distance_then_by_number() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let same = |index| Triangle::new(index, corners).unwrap();
-    let nearer = Triangle::new(9, corners.map(|[x, y, _]| [x, y, 0.25])).unwrap();
+    let triangle = |vertices| crate::model::Triangle { vertices, material: 0 };
+    // Number 9 is nearer than all others, which are in one place; number 10 has no area.
+    let mut triangles = vec![triangle([0, 1, 2]); 9];
+    triangles.extend([triangle([3, 4, 5]), triangle([0, 1, 1])]);
+    let vertices = corners.into_iter().chain(corners.map(|[x, y, _]| [x, y, 0.25])).collect();
+    let shapes = Shapes { vertices, triangles: &triangles };
     let ray = Ray::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]);
-    let of = |list: Vec<Triangle>| {
-        let tree = Hierarchy::new(list.clone());
-        let found = tree.nearest(&ray).map(|Hit { t, place }| (t, tree.triangles()[place as usize].index));
-        let list = Exhaustive(list);
-        assert_eq!(found, list.nearest(&ray).map(|Hit { t, place }| (t, list.triangles()[place as usize].index)));
+    let of = |indices: &[u32]| {
+        let found = Hierarchy::new(shapes.clone(), indices.to_vec()).nearest(&ray);
+        assert_eq!(found, Exhaustive { shapes: shapes.clone(), indices: indices.to_vec() }.nearest(&ray));
         found
     };
-    assert_eq!(of(vec![same(5), same(3), same(7), same(4), same(6), same(8)]), Some((1.0, 3)));
-    assert_eq!(of(vec![same(5), nearer, same(3)]), Some((0.75, 9)));
-    assert_eq!(of(vec![]), None);
-    assert!(Triangle::new(0, [[0.0; 3], [1.0; 3], [2.0; 3]]).is_none(), "no area, never hit");
+    assert_eq!(of(&[5, 3, 7, 4, 6, 8]), Some(Hit { t: 1.0, index: 3 }));
+    assert_eq!(of(&[5, 9, 3]), Some(Hit { t: 0.75, index: 9 }));
+    assert_eq!(of(&[]), None);
+    assert!(!shapes.visible().contains(&10), "no area, never hit");
 }
 
 /// A direction of length 1.
@@ -222,16 +224,20 @@ proptest! {
     ) {
         // Coordinates on few different values: edges, vertices, flat boxes and zero directions are met all the time.
         let quarter = |v: [i8; 3]| v.map(|x| f64::from(x) / 4.0);
-        let triangles: Vec<Triangle> = (0..).zip(&corners).filter_map(|(k, &(a, b, c))| {
+        let vertices = corners.iter().flat_map(|&(a, b, c)| {
             let a = quarter(a);
-            Triangle::new(k, [a, crate::vector::add(a, quarter(b)), crate::vector::add(a, quarter(c))])
+            [a, crate::vector::add(a, quarter(b)), crate::vector::add(a, quarter(c))]
         }).collect();
-        let (tree, all) = (Hierarchy::new(triangles.clone()), Exhaustive(triangles));
+        let triangles: Vec<crate::model::Triangle> = (0..corners.len() as u32)
+            .map(|k| crate::model::Triangle { vertices: [3 * k, 3 * k + 1, 3 * k + 2], material: 0 })
+            .collect();
+        let shapes = Shapes { vertices, triangles: &triangles };
+        let indices = shapes.visible();
+        let (tree, all) = (Hierarchy::new(shapes.clone(), indices.clone()), Exhaustive { shapes, indices });
         for (origin, direction) in rays {
             let Some(direction) = unit(quarter(direction)) else { continue };
             let ray = Ray::new(quarter(origin), direction);
-            let index = |search: &dyn Search| search.nearest(&ray).map(|hit| (hit.t, search.triangles()[hit.place as usize].index));
-            prop_assert_eq!(index(&tree), index(&all));
+            prop_assert_eq!(tree.nearest(&ray), all.nearest(&ray));
             prop_assert_eq!(tree.is_blocked(&ray, end), all.is_blocked(&ray, end));
         }
     }

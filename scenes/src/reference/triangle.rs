@@ -3,7 +3,7 @@
 //!
 //! The edge functions of an edge that two triangles share are each other's exact negatives, so no ray passes between them.
 
-use crate::model::Vec3;
+use crate::model::{self, Vec3};
 use crate::vector::{cross, sub, unit};
 
 /// A ray, with the shear that makes it the z axis.
@@ -38,22 +38,39 @@ impl Ray {
     }
 }
 
-/// A triangle that can be hit.
+/// The triangles of a scene with their vertices where the rays are.
+#[derive(Clone, Debug)]
+pub struct Shapes<'a> {
+    /// The vertices.
+    pub vertices: Vec<Vec3>,
+    /// The vertices of each triangle, by number.
+    pub triangles: &'a [model::Triangle],
+}
+
+impl Shapes<'_> {
+    /// A triangle by its number in the scene.
+    pub fn triangle(&self, index: u32) -> Triangle {
+        Triangle { vertices: self.triangles[index as usize].vertices.map(|vertex| self.vertices[vertex as usize]) }
+    }
+
+    /// The numbers of the triangles that can be hit: those with an area.
+    pub fn visible(&self) -> Vec<u32> {
+        (0..self.triangles.len() as u32).filter(|&index| self.triangle(index).normal().is_some()).collect()
+    }
+}
+
+/// A triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
-    /// Its number in the scene.
-    pub index: u32,
     /// Its vertices.
     pub vertices: [Vec3; 3],
-    /// A normal of length 1; the side it is on depends on the order of the vertices.
-    pub normal: Vec3,
 }
 
 impl Triangle {
-    /// The triangle, `None` when it has no area and so is never hit.
-    pub fn new(index: u32, vertices: [Vec3; 3]) -> Option<Triangle> {
-        let [a, b, c] = vertices;
-        Some(Triangle { index, vertices, normal: unit(cross(sub(b, a), sub(c, a)))? })
+    /// A normal of length 1; the side it is on depends on the order of the vertices. `None` where the triangle has no area.
+    pub fn normal(&self) -> Option<Vec3> {
+        let [a, b, c] = self.vertices;
+        unit(cross(sub(b, a), sub(c, a)))
     }
 
     /// Distance t > 0 along the ray at which it meets the triangle, edges included; `None` also where the triangle is seen so exactly from

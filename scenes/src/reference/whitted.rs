@@ -4,7 +4,7 @@
 use super::RayCounts;
 use super::search::Search;
 use super::triangle::{Ray, Triangle};
-use crate::model::{Light, Material, Scene, Vec3, View};
+use crate::model::{self, Light, Material, Scene, Vec3, View};
 use crate::vector::{add, dot, scale, sub, unit};
 
 /// How far the origins of secondary rays are moved off the surface along its normal, as part of the scene's box (which is 1 to 2 long here).
@@ -14,9 +14,10 @@ const OFFSET: f64 = 1e-10;
 
 /// Everything that shading needs beside the triangles' shapes.
 #[derive(Debug)]
-pub struct World {
-    /// Material of each triangle by its number.
-    materials: Vec<Material>,
+pub struct World<'a> {
+    materials: &'a [Material],
+    /// The number of its material for each triangle by its number.
+    triangles: &'a [model::Triangle],
     lights: Vec<Light>,
     ambient: f64,
     background: Vec3,
@@ -34,12 +35,13 @@ struct Branch {
     is_inside: bool,
 }
 
-impl World {
+impl<'a> World<'a> {
     /// The shading of a scene whose positions have been moved by `local`.
-    pub fn new(scene: &Scene, view: &View, local: impl Fn(Vec3) -> Vec3) -> World {
+    pub fn new(scene: &'a Scene, view: &View, local: impl Fn(Vec3) -> Vec3) -> World<'a> {
         let lights = scene.lights.iter().map(|light| Light { position: local(light.position), colour: light.colour });
         World {
-            materials: scene.triangles.iter().map(|t| scene.materials[t.material as usize]).collect(),
+            materials: &scene.materials,
+            triangles: &scene.triangles,
             lights: lights.collect(),
             ambient: view.ambient,
             background: view.background,
@@ -58,10 +60,10 @@ impl World {
                 colour = add(colour, scale(self.background, branch.weight));
                 continue;
             };
-            let triangle = &search.triangles()[hit.place as usize];
-            let material = &self.materials[triangle.index as usize];
+            let triangle = search.triangle(hit.index);
+            let material = &self.materials[self.triangles[hit.index as usize].material as usize];
             let point = triangle.point(&branch.ray);
-            let normal = facing(triangle, branch.ray.direction);
+            let normal = facing(&triangle, branch.ray.direction);
             let local = self.local(search, material, point, normal, &mut counts);
             colour = add(colour, scale(local, branch.weight));
             if branch.level < self.bounces {
@@ -134,7 +136,8 @@ impl World {
 
 /// The triangle's normal on the side that a ray comes from.
 fn facing(triangle: &Triangle, direction: Vec3) -> Vec3 {
-    if dot(triangle.normal, direction) > 0.0 { scale(triangle.normal, -1.0) } else { triangle.normal }
+    let normal = triangle.normal().expect("a triangle that is hit has an area");
+    if dot(normal, direction) > 0.0 { scale(normal, -1.0) } else { normal }
 }
 
 /// Direction of the mirrored ray; `normal` faces where the ray comes from. Report 4.1.

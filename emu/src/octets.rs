@@ -1,6 +1,10 @@
 //! Octets that programs address: a core's local buffer and the global memory. Who may touch them when is not said here.
 
+mod memory;
+
 use isa::number::Vector;
+
+pub use memory::Memory;
 
 use crate::trap::Fault;
 
@@ -149,87 +153,5 @@ impl Buffer {
             }
             None => Err(self.fault(address, length)),
         }
-    }
-}
-
-/// Global memory: octet addresses from 0, little-endian, any alignment.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Memory {
-    octets: Vec<u8>,
-}
-
-impl Memory {
-    /// Memory that holds an image and nothing else.
-    pub fn new(image: Vec<u8>) -> Memory {
-        Memory { octets: image }
-    }
-
-    /// All octets.
-    pub fn octets(&self) -> &[u8] {
-        &self.octets
-    }
-
-    /// All octets, without a copy.
-    pub fn into_octets(self) -> Vec<u8> {
-        self.octets
-    }
-
-    /// `length` octets from `address` on.
-    ///
-    /// # Errors
-    /// A range that leaves the memory.
-    #[inline]
-    pub fn slice(&self, address: u32, length: u32) -> Result<&[u8], Fault> {
-        match range(address, length, self.octets.len()) {
-            Some(range) => Ok(&self.octets[range]),
-            None => Err(Fault::Memory { address, octets: length, size: self.octets.len() as u64 }),
-        }
-    }
-
-    /// `length` octets from `address` on, to write.
-    ///
-    /// # Errors
-    /// A range that leaves the memory.
-    #[inline]
-    pub fn slice_mut(&mut self, address: u32, length: u32) -> Result<&mut [u8], Fault> {
-        let size = self.octets.len();
-        match range(address, length, size) {
-            Some(range) => Ok(&mut self.octets[range]),
-            None => Err(Fault::Memory { address, octets: length, size: size as u64 }),
-        }
-    }
-
-    /// The 32 bits at `address`.
-    ///
-    /// # Errors
-    /// A range that leaves the memory.
-    pub fn word(&self, address: u32) -> Result<i32, Fault> {
-        let slice = self.slice(address, 4)?;
-        Ok(i32::from_le_bytes(std::array::from_fn(|at| slice[at])))
-    }
-
-    /// Reads words of 32 bits from `address` on.
-    ///
-    /// # Errors
-    /// A range that leaves the memory.
-    #[inline(always)]
-    pub fn read_words(&self, address: u32, words: &mut [i32]) -> Result<(), Fault> {
-        let (octets, _) = self.slice(address, 4 * words.len() as u32)?.as_chunks::<4>();
-        for (word, &octets) in words.iter_mut().zip(octets) {
-            *word = i32::from_le_bytes(octets);
-        }
-        Ok(())
-    }
-
-    /// Writes words of 32 bits from `address` on.
-    ///
-    /// # Errors
-    /// A range that leaves the memory; nothing is written then.
-    pub fn put_words(&mut self, address: u32, words: &[i32]) -> Result<(), Fault> {
-        let slice = self.slice_mut(address, 4 * words.len() as u32)?;
-        for (place, word) in slice.chunks_exact_mut(4).zip(words) {
-            place.copy_from_slice(&word.to_le_bytes());
-        }
-        Ok(())
     }
 }

@@ -88,13 +88,11 @@ struct Alone(Memory);
 
 impl Link for Alone {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        buffer.slice_mut(to, octets)?.copy_from_slice(self.0.slice(from, octets)?);
-        Ok(())
+        Ok(self.0.read(from, buffer.slice_mut(to, octets)?)?)
     }
 
     fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        self.0.slice_mut(to, octets)?.copy_from_slice(buffer.slice(from, octets)?);
-        Ok(())
+        Ok(self.0.write(to, buffer.slice(from, octets)?)?)
     }
 
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {

@@ -101,7 +101,7 @@ pub struct Measured {
 /// A scene that does not fit its formats, errors in the user's kernels, a machine that cannot be used, a frame without counts.
 pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<Measured>, Failure> {
     let (load, mut image) = Load::picture(job)?;
-    image.bytes = load.memory.octets().to_vec();
+    image.bytes = load.memory.octets().into_owned();
     let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
     let features = Features::new(&job.scene, &job.view, &image.formats, &job.kernels);
     let modes = job.machine.arithmetic.modes();

@@ -1,5 +1,6 @@
 //! What `lancer run` found: as JSON and as tables.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -207,9 +208,10 @@ fn dumped(run: &SingleRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> 
     let (space, address, octets) = match dump {
         Dump::Registers => return None,
         Dump::Memory(address, octets) => ("memory", address, run.memory.slice(address, octets)),
-        Dump::Buffer(address, octets) => ("buffer", address, run.state.buffer.slice(address, octets)),
+        Dump::Buffer(address, octets) => ("buffer", address, run.state.buffer.slice(address, octets).map(Cow::from)),
     };
-    let dumped = |octets: &[u8]| DumpedOctets { space, address, octets: hexadecimal(octets), raw: octets.to_vec() };
+    let dumped =
+        |octets: Cow<[u8]>| DumpedOctets { space, address, octets: hexadecimal(&octets), raw: octets.into_owned() };
     Some(octets.map(dumped).map_err(|fault| Diagnostic::error(format!("there is nothing to dump: {fault}")).into()))
 }
 

@@ -163,7 +163,7 @@ impl Run {
                 (_, number) => (vec![at.state.registers.wide(number)], 64),
             },
             Subject::Buffer(address) => (octets(address, at.state.buffer.octets())?, 8),
-            Subject::Memory(address) => (octets(address, at.memory.octets())?, 8),
+            Subject::Memory(address) => (octets(address, &at.memory.octets())?, 8),
             Subject::Exit => {
                 let code = self.code();
                 let here = self.steps.iter().filter(|&&(pc, _)| self.line(pc) == claim.line);

@@ -240,10 +240,10 @@ pub fn run_all(
     results.into_iter().flatten().collect()
 }
 
-/// Machines that share a run of the work items, at most: each has a thread and a copy of global memory.
+/// Machines that share a run of the work items, at most: each has a thread, and of global memory what it writes, which may be all of it.
 fn at_once(memory: &Memory) -> usize {
     const OCTETS: usize = 256 << 20;
-    (OCTETS / memory.octets().len().max(1)).clamp(1, 64)
+    (OCTETS / memory.size().max(1)).clamp(1, 64)
 }
 
 fn check(setup: &Setup) -> Result<(), Failure> {

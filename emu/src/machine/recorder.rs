@@ -43,19 +43,17 @@ impl Wire<'_> {
         Stop::Wait
     }
 
-    fn read_octets(&mut self, access: Access, from: u32, octets: u32) -> Result<&[u8], Stop> {
-        let memory = self.memory;
-        let found = memory.slice(from, octets)?;
-        self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })?;
-        Ok(found)
+    fn ask(&mut self, access: Access, from: u32, octets: u32) -> Result<(), Stop> {
+        self.memory.holds(from, octets)?;
+        self.enter(Request::Transfer { address: from, octets: Octets(octets.into()), access })
     }
 }
 
 impl Link for Wire<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
-        place.copy_from_slice(self.read_octets(Access::Load, from, octets)?);
-        Ok(())
+        self.ask(Access::Load, from, octets)?;
+        Ok(self.memory.read(from, place)?)
     }
 
     fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
@@ -63,7 +61,7 @@ impl Link for Wire<'_> {
     }
 
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        self.read_octets(Access::Read, address, 4 * words.len() as u32)?;
+        self.ask(Access::Read, address, 4 * words.len() as u32)?;
         Ok(self.memory.read_words(address, words)?)
     }
 

@@ -41,13 +41,11 @@ struct Desk<'a> {
 
 impl Link for Desk<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        buffer.slice_mut(to, octets)?.copy_from_slice(self.memory.slice(from, octets)?);
-        Ok(())
+        Ok(self.memory.read(from, buffer.slice_mut(to, octets)?)?)
     }
 
     fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        self.memory.slice_mut(to, octets)?.copy_from_slice(buffer.slice(from, octets)?);
-        Ok(())
+        Ok(self.memory.write(to, buffer.slice(from, octets)?)?)
     }
 
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {

@@ -112,38 +112,37 @@ fn transfer(access: Access, address: u32, octets: u32) -> Request {
 impl Link for Station<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
-        self.shared.memory.slice(from, octets)?;
+        self.shared.memory.holds(from, octets)?;
         self.enter(transfer(Access::Load, from, octets))?;
-        place.copy_from_slice(self.shared.memory.slice(from, octets)?);
-        Ok(())
+        Ok(self.shared.memory.read(from, place)?)
     }
 
     fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let data = buffer.slice(from, octets)?;
-        self.shared.memory.slice(to, octets)?;
+        self.shared.memory.holds(to, octets)?;
         self.enter(transfer(Access::Write, to, octets))?;
-        self.shared.memory.slice_mut(to, octets)?.copy_from_slice(data);
+        self.shared.memory.write(to, data)?;
         self.shared.note_written(to, octets);
         Ok(())
     }
 
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         let octets = 4 * words.len() as u32;
-        self.shared.memory.slice(address, octets)?;
+        self.shared.memory.holds(address, octets)?;
         self.enter(transfer(Access::Read, address, octets))?;
         Ok(self.shared.memory.read_words(address, words)?)
     }
 
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         let octets = 4 * words.len() as u32;
-        self.shared.memory.slice(address, octets)?;
+        self.shared.memory.holds(address, octets)?;
         self.enter(transfer(Access::Write, address, octets))?;
         self.shared.note_written(address, octets);
         Ok(self.shared.memory.put_words(address, words)?)
     }
 
     fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
-        self.shared.memory.slice(address, 4)?;
+        self.shared.memory.holds(address, 4)?;
         // It is read and written back in one transfer.
         self.enter(transfer(Access::Write, address, 8))?;
         let before = self.shared.memory.word(address)?;

@@ -190,7 +190,7 @@ impl Memory {
 
     #[inline(never)]
     fn gather_words(&self, address: u32, words: &mut [i32]) -> Result<(), Fault> {
-        (address..).step_by(4).zip(words).try_for_each(|(address, word)| {
+        words.iter_mut().zip((address..).step_by(4)).try_for_each(|(word, address)| {
             *word = self.word(address)?;
             Ok(())
         })
@@ -202,7 +202,10 @@ impl Memory {
     /// A range that leaves the memory; nothing is written then.
     pub fn put_words(&mut self, address: u32, words: &[i32]) -> Result<(), Fault> {
         self.range(address, 4 * words.len())?;
-        (address..).step_by(4).zip(words).try_for_each(|(address, word)| self.write(address, &word.to_le_bytes()))
+        words
+            .iter()
+            .zip((address..).step_by(4))
+            .try_for_each(|(word, address)| self.write(address, &word.to_le_bytes()))
     }
 }
 
@@ -216,7 +219,7 @@ mod tests {
     const SIZE: usize = 3 * PAGE + 100;
 
     fn image() -> Vec<u8> {
-        (0..SIZE).map(|at| (at * 37 >> 3) as u8).collect()
+        (0..SIZE).map(|at| ((at * 37) >> 3) as u8).collect()
     }
 
     #[test]

@@ -41,7 +41,7 @@ impl Node {
 }
 
 /// Triangles that a leaf holds without being divided.
-const SMALL: usize = 4;
+const SMALL: usize = 8;
 const BINS: usize = 16;
 /// Levels after which nodes are halved, which bounds the depth.
 const UNBALANCED: u32 = 48;

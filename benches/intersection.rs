@@ -19,11 +19,13 @@ const RUNS: usize = 9;
 const ANSWERS: usize = 4 * RAYS;
 const RECORD: usize = 36;
 
-/// The main processor sends each ray's number and stores what comes back.
+/// The main processor sends each ray's number and stores what comes back; no more cores than rays are given one.
 const DISPATCH: &str = "
 .entry dispatch
 dispatch:
     cores s3
+    li    s2, RAYS
+    min   s3, s3, s2
 next:
     bge   s1, s3, wait
     mov   s6, s1
@@ -291,6 +293,7 @@ fn main() {
             times.sort_by(f64::total_cmp);
             times[times.len() / 2] * 1e9 / (RAYS * TRIANGLES) as f64
         };
+        println!("{form:<8} checksum {}", sums[0]);
         let base = median(&contenders[0].times);
         for contender in &contenders {
             let time = median(&contender.times);

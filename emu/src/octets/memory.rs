@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::range;
 use crate::trap::Fault;
 
 /// Octets that are copied together where a copy is written to.
@@ -76,18 +75,26 @@ impl Memory {
         }
     }
 
+    #[inline(always)]
     fn range(&self, address: u32, length: usize) -> Result<Range<usize>, Fault> {
-        let beyond = || Fault::Memory { address, octets: length as u32, size: self.size() as u64 };
-        u32::try_from(length).ok().and_then(|length| range(address, length, self.size())).ok_or_else(beyond)
+        let size = self.shared.len();
+        let start = address as usize;
+        match start.checked_add(length) {
+            Some(end) if end <= size => Ok(start..end),
+            _ => Err(Fault::Memory { address, octets: length as u32, size: size as u64 }),
+        }
     }
 
     /// Whether the memory has `length` octets from `address` on.
     ///
     /// # Errors
     /// A range that leaves the memory.
-    #[inline]
+    #[inline(always)]
     pub fn holds(&self, address: u32, length: u32) -> Result<(), Fault> {
-        self.range(address, length as usize).map(|_| ())
+        match self.range(address, length as usize) {
+            Ok(_) => Ok(()),
+            Err(fault) => Err(fault),
+        }
     }
 
     /// `length` octets from `address` on; they are copied where pages were written.
@@ -122,6 +129,7 @@ impl Memory {
     }
 
     /// Reads octets that may lie in pages.
+    #[inline(never)]
     fn gather(&self, start: usize, octets: &mut [u8]) {
         let mut at = 0;
         for Piece { page, offset, length } in pieces(start, octets.len()) {

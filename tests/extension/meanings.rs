@@ -34,6 +34,10 @@ const ROWS: &str = "\
     mul t0, a, b, i
     add d, t0, c
 .end
+;; Puts into `e` what `d` was, and takes two units.
+.instr spin (d: S, e: S)  \"custom0 ddddd eeeee ---------------1\"  [Done(add 3; each mul 1)]
+    .meaning rust
+.end
 ";
 
 /// Random bits: a shift register with feedback.
@@ -116,6 +120,18 @@ impl Meaning for Fma {
     }
 }
 
+/// What was in its destination.
+#[derive(Clone, Debug)]
+struct Spin;
+
+impl Meaning for Spin {
+    fn execute(&mut self, call: &mut Call) -> Result<Ending, Fault> {
+        call.set_scalar('e', call.operands.scalar('d'));
+        call.set_scalar('d', 5);
+        Ok(Ending::DONE.with_units(2))
+    }
+}
+
 fn units(keeps: bool) -> Isa {
     let (mut isa, loaded) = isa_of(ROWS);
     assert!(loaded.iter().all(|loaded| loaded.is_rust));
@@ -123,7 +139,18 @@ fn units(keeps: bool) -> Isa {
     attach(&mut isa, "total", Total).unwrap();
     attach(&mut isa, "swap", Swap).unwrap();
     attach(&mut isa, "fma", Fma { is_floor: false }).unwrap();
+    attach(&mut isa, "spin", Spin).unwrap();
     isa
+}
+
+#[test]
+fn a_meaning_sees_its_destination_as_it_was_and_one_exit_has_cost_and_units() {
+    let isa = units(false);
+    let program = program("li s1, 7\n iadd s0, s1, s1\n spin s0, s2\n spin s1, s3\n spin s1, s4\n halt", &isa);
+    let run = run_with(&program, &isa, Registers::default(), 100);
+    assert_eq!([0, 1, 2, 3, 4].map(|number| run.state.registers.scalar(number)), [0, 5, 0, 7, 5]);
+    let counts = run.tally.counts(&Code::new(&program, &isa, Default::default()));
+    assert_eq!((counts[Class::Add], counts[Class::Mul], run.clocks.0), (3 * 3 + 1, 3 * 2, 16));
 }
 
 #[test]

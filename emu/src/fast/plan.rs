@@ -81,6 +81,11 @@ pub struct Plan<'a> {
     places: Vec<Place>,
     /// By exit: the pass of the program.
     passes: Vec<u32>,
+    has_inner_steps: bool,
+    /// Number of words.
+    pub words: u32,
+    /// Whether their places are their numbers.
+    is_in_order: bool,
     /// By exit: what it adds to the block's toll; 0 where all exits of the slot take the same.
     extra: Vec<Toll>,
     marks: Vec<Mark>,
@@ -125,7 +130,7 @@ impl<'a> Plan<'a> {
                 continue;
             }
             let costs: Vec<ExitCost> = passes[exits.clone()].iter().map(|&pass| code.costs()[pass as usize]).collect();
-            let is_alike = costs.iter().all(|cost| cost == &costs[0] && !cost.has_busy_units);
+            let is_alike = costs.iter().all(|cost| cost == &costs[0]);
             let bare = Toll::step(costs.first().is_some_and(|cost| cost.is_inner));
             let whole = if is_alike { costs.first().map_or(bare, Toll::new) } else { bare };
             most[place] = whole;
@@ -162,7 +167,22 @@ impl<'a> Plan<'a> {
         for mark in &marks {
             asking.push(asking.last().copied().unwrap_or(0) + u32::from(mark.asks()));
         }
-        let mut plan = Plan { code, order, places, passes, extra, marks, steps: Vec::new(), run_ends, asking };
+        let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
+        let words = code.words();
+        let mut plan = Plan {
+            code,
+            is_in_order: order.stages().len() == words as usize,
+            order,
+            places,
+            passes,
+            has_inner_steps,
+            words,
+            extra,
+            marks,
+            steps: Vec::new(),
+            run_ends,
+            asking,
+        };
         plan.lay_out(&firsts);
         Some(plan)
     }
@@ -179,15 +199,15 @@ impl<'a> Plan<'a> {
         self.steps = (0..).zip(firsts).map(|(place, &first)| self.new_step(place, first)).collect();
     }
 
-    /// Whether bodies stand in the places of words.
+    /// Whether there are steps that are no instructions.
     #[inline]
-    pub fn has_bodies(&self) -> bool {
-        self.end() != self.code.words()
+    pub fn has_inner_steps(&self) -> bool {
+        self.has_inner_steps
     }
 
     /// Whether all instructions are rows of the table.
     pub fn is_plain(&self) -> bool {
-        !self.has_bodies() && self.steps.iter().all(|step| step.row != Step::UNIT)
+        (0..self.code.words()).all(|word| !matches!(self.code.op(word), Some(Op::Ext(_))))
     }
 
     /// What a run takes, with the [`FLAG`] where it has to be looked at.
@@ -232,8 +252,10 @@ impl<'a> Plan<'a> {
         // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
         step.fields = code.slots()[slot as usize].fields;
         let mut is_odd = target.is_none() && branches(row);
+        // Meanings in Rust may ask for what they write, and keep s0 zero.
+        let is_unit = matches!(op, Op::Ext(_));
         for operand in row.operands.iter().filter(|operand| operand.kind == Kind::S && operand.is_written()) {
-            if step.fields.get(operand.letter) == 0 {
+            if !is_unit && step.fields.get(operand.letter) == 0 {
                 is_odd |= operand.is_read();
                 step.fields.set(operand.letter, Registers::NOWHERE.into());
             }
@@ -255,7 +277,7 @@ impl<'a> Plan<'a> {
     /// The place of a slot; that behind the program for what is none.
     #[inline(always)]
     pub fn place_of(&self, slot: u32) -> u32 {
-        self.order.place(slot)
+        if self.is_in_order { slot.min(self.words) } else { self.order.place(slot) }
     }
 
     /// What is known of a place; `None` outside the program.

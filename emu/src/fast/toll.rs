@@ -9,7 +9,7 @@ const CLOCKS: (u32, u32) = (30, 17);
 const ELEMENTARY: (u32, u32) = (47, 16);
 const FIELDS: [(u32, u32); 4] = [STEPS, INNER, CLOCKS, ELEMENTARY];
 
-/// The bits which say that one of the numbers has come to half of what there is room for. No run takes as much as that.
+/// The bits which say that one of the numbers has come to half of what there is room for. No run takes half of that.
 pub(super) const HALVES: u64 = half(STEPS) | half(INNER) | half(CLOCKS) | half(ELEMENTARY);
 
 const fn half((start, bits): (u32, u32)) -> u64 {
@@ -49,9 +49,9 @@ impl Toll {
         Toll(FIELDS.iter().map(|&field| self.part(field).max(other.part(field)) << field.0).sum())
     }
 
-    /// Whether none of the numbers has come to half of the room for it.
+    /// Whether none of the numbers has come to a quarter of the room for it: two runs and what their exits add fit on top of a half.
     pub(super) fn is_small(self) -> bool {
-        self.0 & HALVES == 0
+        self.0 & (HALVES | HALVES >> 1) == 0
     }
 
     #[inline(always)]

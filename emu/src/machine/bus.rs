@@ -177,7 +177,9 @@ impl Bus {
     /// Decides as long as that is before a clock and concerns nobody but the bus and reels, and yields the grant that ends a transfer of a master
     /// who has something else to do then.
     pub fn serve(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
-        match (self.arbiter.ranking().is_some(), self.claims.masters()) {
+        let is_ranked =
+            self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.claims.are_before(1 << 57);
+        match (is_ranked, self.claims.masters()) {
             (true, 0..=2) => self.serve_ranked::<2>(reels, until),
             (true, 3) => self.serve_ranked::<3>(reels, until),
             (true, 4..=5) => self.serve_ranked::<5>(reels, until),

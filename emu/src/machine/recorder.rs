@@ -203,6 +203,9 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
         let mut wire = self.wire(Some(Message::new([[0; 3]])));
         match self.run(&mut wire) {
+            _ if self.observer.origin.depends_on_core || self.observer.origin.depends_on_cores => {
+                Err("what comes before the message depends on the core")
+            }
             Pause::Wait if wire.request == Some(Request::Receive) => {
                 Ok(Prefix { clocks: self.state.clocks, pc: self.state.pc })
             }

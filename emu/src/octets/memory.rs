@@ -128,9 +128,25 @@ impl Memory {
         Ok(())
     }
 
+    /// Octets that lie in one page.
+    #[inline]
+    fn in_page(&self, start: usize, length: usize) -> Option<&[u8]> {
+        let (page, offset) = (start / PAGE, start % PAGE);
+        if offset + length > PAGE {
+            return None;
+        }
+        match self.pages.get(page)? {
+            Some(page) => page.get(offset..offset + length),
+            None => self.shared.get(start..start + length),
+        }
+    }
+
     /// Reads octets that may lie in pages.
     #[inline(never)]
     fn gather(&self, start: usize, octets: &mut [u8]) {
+        if let Some(found) = self.in_page(start, octets.len()) {
+            return octets.copy_from_slice(found);
+        }
         let mut at = 0;
         for Piece { page, offset, length } in pieces(start, octets.len()) {
             octets[at..at + length].copy_from_slice(match &self.pages[page] {
@@ -198,6 +214,11 @@ impl Memory {
 
     #[inline(never)]
     fn gather_words(&self, address: u32, words: &mut [i32]) -> Result<(), Fault> {
+        if let Some(found) = self.in_page(address as usize, 4 * words.len()) {
+            let (octets, _) = found.as_chunks::<4>();
+            words.iter_mut().zip(octets).for_each(|(word, &octets)| *word = i32::from_le_bytes(octets));
+            return Ok(());
+        }
         words.iter_mut().zip((address..).step_by(4)).try_for_each(|(word, address)| {
             *word = self.word(address)?;
             Ok(())

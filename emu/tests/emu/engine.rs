@@ -1,13 +1,14 @@
 //! The interpreter: registers, the local buffer, and any words at all.
 
 use emu::code::Code;
+use emu::fast::Features;
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
 use emu::tally::Losses;
 use emu::trap::Fault;
-use isa::{Isa, Op, Program, Row};
+use isa::{Class, Isa, Op, Program, Row};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -16,7 +17,47 @@ use super::builder::{Builder, program};
 fn run_with(config: &Config, program: &Program, registers: Registers) -> SingleRun {
     let isa = Isa::base();
     let single = Single { registers, step_limit: 500, has_profile: true, ..Single::new(config, &isa, program) };
-    single::run(&single, Memory::new((0..=255).collect())).expect("the setup is right")
+    let run =
+        |features| single::run_with(&single, Memory::new((0..=255).collect()), features).expect("the setup is right");
+    let checked = run(None);
+    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
+        let fast = run(Some(features));
+        let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
+        assert_eq!(parts(&fast), parts(&checked), "{}", features.name());
+        assert_eq!(fast.profile, checked.profile, "{}", features.name());
+    }
+    checked
+}
+
+#[test]
+fn sums_of_long_times_are_right_on_all_engines() {
+    for clocks in [1, 300, 600, 1000] {
+        let mut config = Config::default();
+        for class in Class::ALL.iter().filter(|class| class.is_elementary()) {
+            config.clocks.0[*class] = clocks;
+        }
+        let program = program(|p| {
+            p.constant(9, 4);
+            let top = p.here();
+            (0..100).for_each(|_| {
+                p.emit(Op::add, &[1, 1, 2]);
+            });
+            let test = p.label();
+            p.branch(Op::jump, &[], test);
+            p.place(test);
+            p.emit(Op::rtri, &[3, 8, 1, 3, 16]).emit(Op::isubi, &[9, 9, 1]);
+            p.branch(Op::bne, &[9, 0], top);
+            p.emit(Op::halt, &[]);
+        });
+        let mut registers = Registers::default();
+        let vectors = [[0, 0, -1000], [0, 0, 1 << 20], [-1000, -1000, 0], [3000, -1000, 0], [-1000, 3000, 0]];
+        (1..).zip(vectors).for_each(|(number, vector)| registers.set_vector(number, vector));
+        let run = run_with(&config, &program, registers);
+        assert_eq!(run.trap, None);
+        // Four times 100 additions and the 61 operations of a hit; what counts the loops subtracts and compares.
+        assert_eq!(run.state.elementary, 4 * (100 + 61 + 2));
+        assert_eq!(run.clocks.0, run.state.elementary * clocks);
+    }
 }
 
 fn run(body: impl FnOnce(&mut Builder)) -> SingleRun {
@@ -182,7 +223,7 @@ proptest! {
         prop_assert_eq!(run.tally.instructions(), run.state.steps);
         prop_assert_eq!(counts.elementary(), run.state.elementary);
         prop_assert_eq!(counts.elementary(), run.state.clocks, "one clock an elementary operation");
-        prop_assert_eq!(counts[isa::Class::Octet] * 2, run.waiting.0, "two clocks an octet");
+        prop_assert_eq!(counts[Class::Octet] * 2, run.waiting.0, "two clocks an octet");
         prop_assert_eq!(run.clocks, run.waiting + emu::quantity::Clocks(run.state.clocks));
         prop_assert_eq!(run.profile.as_ref().map(|profile| profile.total()), Some(counts));
 

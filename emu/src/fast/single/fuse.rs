@@ -44,8 +44,8 @@ impl Fuse {
     pub(super) fn begin(&mut self, plan: &Plan) -> u64 {
         const FULL: u64 = Toll::WHOLE as u64;
         let room = if self.origin.tainted != 0 { 0 } else { self.limit.saturating_sub(self.all_steps()) };
-        // Where there are bodies, each of the two sums may come to half of what is left.
-        self.bias = match plan.has_bodies() {
+        // Where there are two kinds of steps, each of the two sums may come to half of what is left.
+        self.bias = match plan.has_inner_steps() {
             false => Toll::of_steps(FULL - FULL.min(room), 0),
             true => Toll::of_steps(FULL - FULL.min(room / 2), FULL - FULL.min(room / 2)),
         };

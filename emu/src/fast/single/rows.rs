@@ -110,7 +110,7 @@ macro_rules! row {
         function! { $features $name (registers step walk sums now fields L O C) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             if C::IS_ON {
-                walk.note(Place { step, sums });
+                walk.note(Place { step, sums }, now);
             }
             let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
             match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
@@ -130,7 +130,8 @@ macro_rules! row {
             let mut flow = Flow::new(now.slot, now.slot + 1, walk.seat.core, walk.seat.cores);
             let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
             let has_target = const { false $(|| is_relative!($kind))* };
-            if matches!(flow.end, Some(End::Trap(_))) || !has_target && flow.next >= walk.plan.code.words() {
+            let goes_on = flow.next == now.slot + 1;
+            if matches!(flow.end, Some(End::Trap(_))) || !has_target && !goes_on && flow.next >= walk.plan.words {
                 return walk.stop_before(Stopped::Unusual, Place { step, sums });
             }
             let exit: exit::$name::Exit = finish!(registers fields, result, $written);

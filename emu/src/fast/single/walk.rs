@@ -165,7 +165,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             let next = match (is_falling, has_target) {
                 (true, _) => place + 1,
                 (false, true) => now.target,
-                (false, false) => self.plan.place_of(flow.next),
+                (false, false) => self.next_place(step, now, flow),
             };
             self.tell(place, next, flow.motion);
         }
@@ -178,7 +178,13 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             }
             return Way { place: now.target, step: self.step(now.target), toll: now.edges[1] };
         }
-        self.way_to::<C>(self.plan.place_of(flow.next))
+        self.way_to::<C>(self.next_place(step, now, flow))
+    }
+
+    /// The place of a word to which control goes. What leads to the next word leads to what stands behind it, also in a body.
+    #[inline(always)]
+    fn next_place(&self, step: *const Step, now: &Step, flow: Flow) -> u32 {
+        if flow.next == now.slot + 1 { self.place(step) + 1 } else { self.plan.place_of(flow.next) }
     }
 
     /// The way on from a hop.
@@ -203,7 +209,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         let (plan, fuse, link) = (self.plan, &self.fuse, &mut *self.link);
         let mut read = |address, words: &mut [i32]| {
             if C::IS_ON {
-                note(plan, fuse, link, plan.place_of(now.slot), sums);
+                note(plan, fuse, link, (now.slot, plan.place_of(now.slot)), sums);
             }
             link.read(address, words)
         };
@@ -233,8 +239,9 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// Tells the link when it is asked.
     #[inline(always)]
-    pub fn note(&mut self, at: Place) {
-        note(self.plan, &self.fuse, self.link, self.place(at.step), at.sums);
+    pub fn note(&mut self, at: Place, now: &Step) {
+        let place = self.place(at.step);
+        note(self.plan, &self.fuse, self.link, (now.slot, place), at.sums);
     }
 
     fn pass_seen(&mut self, exit: usize, is_only: bool, units: u32) {
@@ -288,9 +295,9 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     }
 }
 
-/// Tells a link when it is asked by the step at a place.
+/// Tells a link when it is asked by a slot at a place.
 #[inline(always)]
-fn note(plan: &Plan, fuse: &Fuse, link: &mut impl Wire, place: u32, sums: u64) {
+fn note(plan: &Plan, fuse: &Fuse, link: &mut impl Wire, (slot, place): (u32, u32), sums: u64) {
     let clocks = if link.keeps_time() { fuse.clocks_before(sums, plan.run_toll(place)) } else { 0 };
-    link.note(Moment { pc: plan.steps()[place as usize].slot, clocks });
+    link.note(Moment { pc: slot, clocks });
 }

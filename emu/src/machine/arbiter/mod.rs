@@ -71,6 +71,11 @@ impl Claims {
         self.arrivals.iter().copied().min().filter(|&arrival| arrival != NEVER).map(|arrival| arrival.max(floor))
     }
 
+    /// Whether all that ask begin to before a clock.
+    pub(super) fn are_before(&self, clock: u64) -> bool {
+        self.arrivals.iter().all(|&arrival| arrival.0 < clock || arrival == NEVER)
+    }
+
     /// Masters that ask at a clock, by number.
     pub fn asking(&self, clock: Clocks) -> impl Iterator<Item = u32> {
         (0..).zip(&self.arrivals).filter(move |(_, arrival)| **arrival <= clock).map(|(master, _)| master)

@@ -52,10 +52,12 @@ pub struct Grant {
 /// A burst of a transfer that has not ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Burst {
-    octets: Octets,
+    /// What it moves.
+    pub octets: Octets,
     /// Octets after that.
-    rest: Octets,
-    length: Clocks,
+    pub rest: Octets,
+    /// How long it holds the bus.
+    pub length: Clocks,
 }
 
 /// How long bursts are.
@@ -102,8 +104,6 @@ pub struct Bus {
     free_at: Clocks,
     not_before: Clocks,
     claims: Claims,
-    /// The burst that each master asks for.
-    bursts: Vec<Burst>,
     used: BusUse,
     waits: Vec<Waits>,
     /// The masters twice round the circle, and more: from each one on, the ranks of all.
@@ -119,7 +119,6 @@ impl Bus {
             free_at: Clocks(0),
             not_before: Clocks(0),
             claims: Claims::new(masters),
-            bursts: vec![Burst::default(); masters as usize],
             used: BusUse::default(),
             waits: vec![Waits::default(); masters as usize],
             circle: (0..u64::from(masters)).cycle().take(4 * masters as usize).collect(),
@@ -131,13 +130,7 @@ impl Bus {
     pub fn request(&mut self, master: u32, arrival: Clocks, octets: Octets) {
         debug_assert_eq!(self.claims.arrival(master), NEVER, "one transfer a master");
         self.not_before = self.not_before.min(arrival);
-        self.ask(master, arrival, self.lengths.burst(octets));
-    }
-
-    #[inline]
-    fn ask(&mut self, master: u32, arrival: Clocks, burst: Burst) {
-        self.claims.ask(master, arrival, burst.length);
-        self.bursts[master as usize] = burst;
+        self.claims.ask(master, arrival, self.lengths.burst(octets));
     }
 
     /// When the arbiter has something to decide, if nobody else begins to ask before.
@@ -159,14 +152,14 @@ impl Bus {
             }
         };
         let waited = clock - self.claims.arrival(master);
-        let Burst { octets, rest, length } = self.bursts[master as usize];
+        let Burst { octets, rest, length } = self.claims.bursts[master as usize];
         let (end, is_last) = (clock + length, rest == Octets(0));
         self.free_at = end;
         self.not_before = Clocks(0);
         if is_last {
             self.claims.withdraw(master);
         } else {
-            self.ask(master, end, self.lengths.burst(rest));
+            self.claims.ask(master, end, self.lengths.burst(rest));
         }
         let grant = Grant { master, start: clock, end, waited, octets, is_last };
         self.used.add(&grant);
@@ -197,7 +190,7 @@ impl Bus {
             reel.note_wait(grant.waited);
             if grant.is_last {
                 let Some((computing, burst)) = reel.roll_on(&self.lengths) else { return Some(grant) };
-                self.ask(grant.master, grant.end + computing, burst);
+                self.claims.ask(grant.master, grant.end + computing, burst);
             }
         }
         None
@@ -208,8 +201,8 @@ impl Bus {
     fn serve_ranked<const SIZE: usize>(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
         const RANK: u32 = 6;
         let masters = self.claims.masters() as usize;
-        let (lengths, bursts, waits) = (self.lengths, &mut self.bursts[..masters], &mut self.waits[..masters]);
-        let (reels, all) = (&mut reels[..masters], &mut self.claims.arrivals[..masters]);
+        let (lengths, waits, reels) = (self.lengths, &mut self.waits[..masters], &mut reels[..masters]);
+        let (all, bursts) = (&mut self.claims.arrivals[..masters], &mut self.claims.bursts[..masters]);
         let mut arrivals = [NEVER.0; SIZE];
         for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
             *arrival = *known;
@@ -267,9 +260,6 @@ impl Bus {
         };
         for (arrival, known) in arrivals.iter().zip(all) {
             *known = Clocks(*arrival);
-        }
-        for (length, burst) in self.claims.lengths.iter_mut().zip(bursts) {
-            *length = burst.length;
         }
         if let Some(Ranking::Circle(turn)) = ranking {
             *turn = first as u32;

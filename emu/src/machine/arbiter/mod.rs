@@ -14,6 +14,7 @@ pub use round_robin::RoundRobin;
 pub use tdma::Tdma;
 pub use weighted::Weighted;
 
+use super::bus::Burst;
 use super::config::BusConfig;
 use crate::quantity::Clocks;
 
@@ -22,8 +23,8 @@ use crate::quantity::Clocks;
 pub struct Claims {
     /// When each begins to ask.
     pub(super) arrivals: Vec<Clocks>,
-    /// How long its burst holds the bus.
-    pub(super) lengths: Vec<Clocks>,
+    /// Its burst.
+    pub(super) bursts: Vec<Burst>,
 }
 
 /// When a master begins to ask that does not ask.
@@ -32,13 +33,13 @@ pub const NEVER: Clocks = Clocks(u64::MAX);
 impl Claims {
     /// Nobody asks.
     pub fn new(masters: u32) -> Claims {
-        Claims { arrivals: vec![NEVER; masters as usize], lengths: vec![Clocks(0); masters as usize] }
+        Claims { arrivals: vec![NEVER; masters as usize], bursts: vec![Burst::default(); masters as usize] }
     }
 
-    /// A master asks, from a clock on, for a burst that holds the bus for that long.
+    /// A master asks for a burst from a clock on.
     #[inline]
-    pub fn ask(&mut self, master: u32, arrival: Clocks, length: Clocks) {
-        (self.arrivals[master as usize], self.lengths[master as usize]) = (arrival, length);
+    pub fn ask(&mut self, master: u32, arrival: Clocks, burst: Burst) {
+        (self.arrivals[master as usize], self.bursts[master as usize]) = (arrival, burst);
     }
 
     /// A master asks no more.
@@ -62,7 +63,7 @@ impl Claims {
     /// How long a master's burst will hold the bus.
     #[inline]
     pub fn length(&self, master: u32) -> Clocks {
-        self.lengths[master as usize]
+        self.bursts[master as usize].length
     }
 
     /// The first clock, not before `floor`, at which anybody asks; `None` when nobody ever does.
@@ -184,7 +185,7 @@ impl ArbiterKind {
 fn claims(masters: u32, asking: impl IntoIterator<Item = (u32, u64, u64)>) -> Claims {
     let mut claims = Claims::new(masters);
     for (master, arrival, length) in asking {
-        claims.ask(master, Clocks(arrival), Clocks(length));
+        claims.ask(master, Clocks(arrival), Burst { length: Clocks(length), ..Burst::default() });
     }
     claims
 }

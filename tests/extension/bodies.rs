@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use emu::code::Code;
+use emu::machine::{Engine, Options, Setup};
 use emu::registers::Registers;
 use isa::{Class, Isa, Kind};
 use proptest::prelude::*;
@@ -228,5 +229,31 @@ fn every_word_of_an_extension_survives_text() {
         if let Err(error) = result {
             panic!("{name}: {error}");
         }
+    }
+}
+
+#[test]
+fn instructions_of_extensions_run_quickly_and_never_in_lock_step() {
+    let (isa, _) = isa_of(
+        ".extension short\n.instr turn (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    neg d, a\n.end\n",
+    );
+    let (core, main) = (program("turn s1, s2\n turn s3, s1\n halt", &isa), program("halt", &isa));
+    let config = emu::machine::Config::default();
+    for engine in [Engine::Fast, Engine::Lockstep] {
+        let options = Options { engine, ..Options::default() };
+        let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
+        assert_eq!(setup.engine(), Engine::Fast, "one step stands for each word");
+    }
+}
+
+#[test]
+fn written_out_bodies_of_nothing_but_an_exit_come_to_the_step_limit() {
+    let text = ".extension idle\n.instr idle (i: Un) \"custom0 iiiii ---------------------\" [Done(body)]\n    exit Done\n.end\n";
+    let (isa, loaded) = isa_of(text);
+    let isa = isa.expanded(&[loaded[0].op]);
+    let program = program("again: idle 1\n idle 2\n jump again", &isa);
+    for limit in [0, 1, 2, 100, 40_000] {
+        let run = run_with(&program, &isa, Registers::default(), limit);
+        assert_eq!(run.state.steps + run.state.inner_steps, limit);
     }
 }

@@ -132,6 +132,16 @@ impl Meaning for Spin {
     }
 }
 
+/// Goes on where a distance would lead, though it has none.
+#[derive(Clone, Debug)]
+struct Leaves;
+
+impl Meaning for Leaves {
+    fn execute(&mut self, _: &mut Call) -> Result<Ending, Fault> {
+        Ok(Ending::DONE.taken())
+    }
+}
+
 fn units(keeps: bool) -> Isa {
     let (mut isa, loaded) = isa_of(ROWS);
     assert!(loaded.iter().all(|loaded| loaded.is_rust));
@@ -151,6 +161,19 @@ fn a_meaning_sees_its_destination_as_it_was_and_one_exit_has_cost_and_units() {
     assert_eq!([0, 1, 2, 3, 4].map(|number| run.state.registers.scalar(number)), [0, 5, 0, 7, 5]);
     let counts = run.tally.counts(&Code::new(&program, &isa, Default::default()));
     assert_eq!((counts[Class::Add], counts[Class::Mul], run.clocks.0), (3 * 3 + 1, 3 * 2, 16));
+}
+
+#[test]
+fn what_goes_on_behind_the_program_is_outside_at_any_step_limit() {
+    // The body of two steps gives the program slots behind its words.
+    let (mut isa, _) = isa_of(ROWS);
+    attach(&mut isa, "noise", Leaves).unwrap();
+    let program = program("fma s1, s1, s1, s1, 0\n noise s1, 3", &isa);
+    for limit in [2, 3, 4] {
+        let run = run_with(&program, &isa, Registers::default(), limit);
+        let fault = if limit == 2 { Fault::StepLimit(2) } else { Fault::OutsideProgram { words: 2 } };
+        assert_eq!(run.trap.map(|trap| trap.kind), Some(fault), "{limit}");
+    }
 }
 
 #[test]

@@ -221,16 +221,18 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         let exit = now.exit as usize + usize::from(ending.exit);
         let sums = self.pass_any::<C>(now, sums, exit, ending.units, now.exits > 1);
         // Only what may lead elsewhere ends a run, and knows where.
-        if now.target > self.plan.end() {
+        let place = self.place(step);
+        let has_target = now.target <= self.plan.end();
+        let next = if ending.is_taken && has_target { now.target } else { place + 1 };
+        let strays = ending.is_taken && next == self.plan.end();
+        if !has_target && !strays {
             return self.go_on(Place { step, sums });
         }
-        let place = self.place(step);
-        let next = if ending.is_taken { now.target } else { place + 1 };
         if O::IS_ACTIVE {
             self.tell(place, next, Motion::Jump);
         }
-        if ending.is_taken && next == self.plan.end() {
-            let fault = Fault::OutsideProgram { words: self.plan.code.words() };
+        if strays {
+            let fault = Fault::OutsideProgram { words: self.plan.words };
             return self.stop(Ended { stopped: Stopped::Fault(fault), place: next, sums, is_cut: false });
         }
         let way = self.way_to::<C>(next);

@@ -1,4 +1,4 @@
-//! The interpreter: registers, the local buffer, and any words at all.
+//! Programs by themselves, on every engine: registers, the local buffer, times, and any words at all.
 
 use emu::code::Code;
 use emu::fast::Features;

@@ -63,45 +63,117 @@ fn in_order(lanes: i32, w: bool) -> u32 {
     lanes & 7 | u32::from(w) << 3 | (lanes & 8) << 1
 }
 
-/// A ray against a triangle; see the row.
+/// A ray and a triangle: the four vectors, and four times the volumes that decide.
+#[derive(Clone, Copy)]
+struct Met {
+    direction: __m256d,
+    edge1: __m256d,
+    edge2: __m256d,
+    start: __m256d,
+    /// The determinant, u, v and t.
+    found: __m256d,
+}
+
 #[target_feature(enable = "avx2,fma")]
 #[inline]
-pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
+fn meet(registers: &Registers, fields: &Fields) -> Met {
     let (origin, direction) = (vector(registers, fields.a), vector(registers, fields.a.wrapping_add(1)));
     let corner = vector(registers, fields.b);
     let edge1 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(1)), corner);
     let edge2 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(2)), corner);
     let start = _mm256_sub_pd(origin, corner);
     let (p, q) = (cross(direction, edge2), cross(start, edge1));
-    // The determinant, u, v and t, all turned so that the determinant is positive.
     let found =
         sums(_mm256_mul_pd(p, edge1), _mm256_mul_pd(p, start), _mm256_mul_pd(q, direction), _mm256_mul_pd(q, edge2));
-    let turn = _mm256_and_pd(_mm256_permute4x64_pd::<0>(found), _mm256_set1_pd(-0.0));
-    let found = _mm256_xor_pd(found, turn);
-    let large = largest([direction, edge1, edge2, start]);
-    // Direction, direction, direction, start; edge1, edge2, edge1, edge1; edge2, start, start, edge2.
-    let margin = _mm256_mul_pd(
-        _mm256_mul_pd(_mm256_set1_pd(DETERMINANT), _mm256_permute4x64_pd::<0b11_00_00_00>(large)),
-        _mm256_mul_pd(_mm256_permute4x64_pd::<0b01_01_10_01>(large), _mm256_permute4x64_pd::<0b10_11_11_10>(large)),
+    Met { direction, edge1, edge2, start, found }
+}
+
+/// How many of the tests a ray surely passes, and whether it surely fails the next one, where the determinants are off by at most the margins
+/// and w = determinant - u - v by at most its own.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn judge(found: __m256d, margins: __m256d, w_margin: f64) -> (u32, bool) {
+    let high = _mm256_extractf128_pd::<1>(found);
+    let w = _mm_sub_sd(
+        _mm_sub_sd(_mm256_castpd256_pd128(found), _mm256_castpd256_pd128(_mm256_permute_pd::<1>(found))),
+        high,
     );
-    let [whole, u, v, _] = lanes(found);
-    let [whole_margin, u_margin, v_margin, _] = lanes(margin);
-    let (w, w_margin) = (whole - u - v, 2.0 * (whole_margin + u_margin + v_margin));
-    let inside = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(found, margin));
-    let below = _mm256_xor_pd(margin, _mm256_set1_pd(-0.0));
-    let outside = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(found, below));
-    let (inside, outside) = (in_order(inside, w > w_margin), in_order(outside, w < -w_margin));
+    let w = _mm_cvtsd_f64(w);
+    let above = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(found, margins));
+    let below = _mm256_xor_pd(margins, _mm256_set1_pd(-0.0));
+    let below = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(found, below));
+    let (above, below) = (in_order(above, w > w_margin), in_order(below, w < -w_margin));
+    // All tests are turned where the determinant is negative.
+    let (inside, outside) = if below & 1 == 0 { (above, below) } else { (below, above) };
     // The first test that is not passed decides, if it is decided.
     let passed = inside.trailing_ones();
-    if outside >> passed & 1 == 1 {
-        const WAYS: [Way; 8] =
-            [Way::Parallel, Way::OutsideU, Way::OutsideV, Way::OutsideW, Way::Behind, Way::Hit, Way::Hit, Way::Hit];
-        registers.set_other_scalar(fields.d, i32::MAX);
-        set_vector(registers, fields.e, [0; 3]);
-        return Exit { way: WAYS[passed as usize & 7], units: 0 };
+    (passed, outside >> passed & 1 == 1)
+}
+
+/// A margin for all determinants: from the largest lane of the direction, and the largest one of the other vectors.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn wide_margin(met: &Met) -> __m128d {
+    let sign = _mm256_set1_pd(-0.0);
+    let [direction, edge1, edge2, start] =
+        [met.direction, met.edge1, met.edge2, met.start].map(|vector| _mm256_andnot_pd(sign, vector));
+    let others = _mm256_max_pd(_mm256_max_pd(edge1, edge2), start);
+    let pairs = _mm256_max_pd(_mm256_unpacklo_pd(direction, others), _mm256_unpackhi_pd(direction, others));
+    let both = _mm_max_pd(_mm256_castpd256_pd128(pairs), _mm256_extractf128_pd::<1>(pairs));
+    let other = _mm_unpackhi_pd(both, both);
+    _mm_mul_sd(_mm_mul_sd(_mm_max_sd(both, other), _mm_set_sd(DETERMINANT)), _mm_mul_sd(other, other))
+}
+
+/// The margin of each.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+fn close_margins(met: &Met) -> __m256d {
+    let large = largest([met.direction, met.edge1, met.edge2, met.start]);
+    // Direction, direction, direction, start; edge1, edge2, edge1, edge1; edge2, start, start, edge2.
+    _mm256_mul_pd(
+        _mm256_mul_pd(_mm256_set1_pd(DETERMINANT), _mm256_permute4x64_pd::<0b11_00_00_00>(large)),
+        _mm256_mul_pd(_mm256_permute4x64_pd::<0b01_01_10_01>(large), _mm256_permute4x64_pd::<0b10_11_11_10>(large)),
+    )
+}
+
+/// A ray against a triangle; see the row.
+#[target_feature(enable = "avx2,fma")]
+#[inline]
+pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
+    let met = meet(registers, fields);
+    let margin = wide_margin(&met);
+    let (passed, is_missed) = judge(met.found, _mm256_broadcastsd_pd(margin), 6.0 * _mm_cvtsd_f64(margin));
+    if is_missed {
+        return miss(registers, fields, passed);
     }
+    closely(registers, fields)
+}
+
+/// The test that comes after those passed is failed.
+#[inline(always)]
+fn miss(registers: &mut Registers, fields: &Fields, passed: u32) -> Exit {
+    const WAYS: [Way; 8] =
+        [Way::Parallel, Way::OutsideU, Way::OutsideV, Way::OutsideW, Way::Behind, Way::Hit, Way::Hit, Way::Hit];
+    registers.set_other_scalar(fields.d, i32::MAX);
+    set_vector(registers, fields.e, [0; 3]);
+    Exit { way: WAYS[passed as usize & 7], units: 0 }
+}
+
+/// The same with closer bounds.
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+fn closely(registers: &mut Registers, fields: &Fields) -> Exit {
+    let met = meet(registers, fields);
+    let margins = close_margins(&met);
+    let [whole_margin, u_margin, v_margin, _] = lanes(margins);
+    let (passed, is_missed) = judge(met.found, margins, 2.0 * (whole_margin + u_margin + v_margin));
+    if is_missed {
+        return miss(registers, fields, passed);
+    }
+    let turn = _mm256_and_pd(_mm256_permute4x64_pd::<0>(met.found), _mm256_set1_pd(-0.0));
+    let turned = _mm256_xor_pd(met.found, turn);
     if passed == 5
-        && let Some((t, weights)) = hit(found, margin, whole, whole_margin, fields.i)
+        && let Some((t, weights)) = hit(turned, margins, _mm256_cvtsd_f64(turned), whole_margin, fields.i)
     {
         registers.set_other_scalar(fields.d, t);
         set_vector(registers, fields.e, weights);
@@ -163,4 +235,58 @@ fn exactly(registers: &mut Registers, fields: &Fields) -> Exit {
     registers.set_other_scalar(fields.d, t);
     set_vector(registers, fields.e, weights);
     exit
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::*;
+
+    /// Vectors with lanes of at most so many bits.
+    fn vector(bits: u32) -> impl Strategy<Value = Vector> {
+        let most = i32::MAX >> (31 - bits);
+        prop::array::uniform3(-most..=most)
+    }
+
+    /// A ray that goes close to a point of a triangle's edge, or of its plane, and the triangle.
+    fn close() -> impl Strategy<Value = [Vector; 5]> {
+        let parts = (1u32..30, 1u32..30).prop_flat_map(|(far, near)| {
+            (vector(far), vector(near), vector(near), vector(far), -2i64..=66, vector(1), 0u32..3, 1i64..5)
+        });
+        parts.prop_map(|(corner, edge1, edge2, origin, part, offset, target, scale)| {
+            let moved = |edge: Vector, part: i64| {
+                [0, 1, 2].map(|k| (i64::from(corner[k]) + ((i64::from(edge[k]) * part) >> 6)) as i32)
+            };
+            let [b, c] = [moved(edge1, 64), moved(edge2, 64)];
+            let aim = match target {
+                0 => moved(edge1, part),
+                1 => moved([0, 1, 2].map(|k| edge1[k] / 2 + edge2[k] / 2), part),
+                _ => moved(edge2, 64 - part),
+            };
+            let lane = |k: usize| (i64::from(aim[k]) - i64::from(origin[k])) * scale + i64::from(offset[k]);
+            let direction = [0, 1, 2].map(|k| lane(k).clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+            [origin, direction, corner, b, c]
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 20_000, rng_seed: RngSeed::Fixed(11), ..ProptestConfig::default() })]
+
+        #[test]
+        fn it_decides_as_integers_do([origin, direction, a, b, c] in close(), shift in 0i32..32) {
+            if !crate::fast::Features::Avx2.is_present() {
+                return Ok(());
+            }
+            let mut found = Registers::default();
+            found.set_vectors(1, [origin, direction, a, b, c]);
+            let mut exact = found.clone();
+            let fields = Fields { d: 4, e: 9, a: 1, b: 3, i: shift, ..Fields::default() };
+            // SAFETY: the host has the features.
+            let exit = unsafe { rtri(&mut found, &fields) };
+            prop_assert_eq!(exit, exactly(&mut exact, &fields));
+            prop_assert_eq!(found, exact);
+        }
+    }
 }

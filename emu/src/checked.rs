@@ -100,7 +100,7 @@ pub fn run<T: Watch, O: Observer>(
     tally: &mut Tally,
     observer: &mut O,
 ) -> Pause {
-    let (slots, (passes, losses)) = (code.slots(), tally.parts_mut());
+    let (slots, (passes, losses), link) = (code.slots(), tally.parts_mut(), &mut { link });
     let State { registers, buffer, units, .. } = state;
     let numbers = arithmetic.numbers();
     let mut next = state.pc;

@@ -51,6 +51,16 @@ impl Mark {
     pub fn asks(&self) -> bool {
         self.counts != 0 || self.is_send || self.tells_core
     }
+
+    /// Registers that hold the number of cores when nothing else did before.
+    pub fn counts(&self) -> u64 {
+        self.counts
+    }
+
+    /// Whether it matters to the instruction which of these registers hold the number of cores.
+    pub fn touches(&self, registers: u64) -> bool {
+        (self.reads | self.writes | self.target) & registers != 0
+    }
 }
 
 /// What a work item has learned of the cores on its way.

@@ -47,76 +47,147 @@ impl Message {
 }
 
 /// The machine as one core sees it. Every call either happens whole or not at all: `Stop::Wait` means that the core is
-/// to try the same instruction again when the machine says so.
+/// to try the same instruction again when the machine says so, and what a link has no answer for it leaves at that.
 pub trait Link {
     /// Copies `octets` octets from global memory at `from` to the buffer at `to`.
     ///
     /// # Errors
     /// A range that leaves buffer or memory, or not yet.
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let _ = (buffer, to, from, octets);
+        Err(Stop::Wait)
+    }
 
     /// Copies `octets` octets from the buffer at `from` to global memory at `to`.
     ///
     /// # Errors
     /// A range that leaves buffer or memory, or not yet.
-    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
+    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+        let _ = (buffer, to, from, octets);
+        Err(Stop::Wait)
+    }
 
     /// Reads words of 32 bits from global memory from `address` on, in one transfer.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop>;
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        let _ = (address, words);
+        Err(Stop::Wait)
+    }
+
+    /// What a read finds, where that can be had at once; then it has been read. `None` says nothing, and then nothing has happened.
+    #[inline(always)]
+    fn glance(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
+        let _ = (address, octets);
+        None
+    }
+
+    /// The same for a number of words that is known.
+    ///
+    /// # Errors
+    /// As [`Link::read`].
+    #[inline]
+    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop>
+    where
+        Self: Sized,
+    {
+        let mut words = [0; N];
+        self.read(address, &mut words)?;
+        Ok(words)
+    }
 
     /// Writes words of 32 bits to global memory from `address` on, in one transfer.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop>;
+    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
+        let _ = (address, words);
+        Err(Stop::Wait)
+    }
 
     /// Adds to the 32 bits of global memory at `address`, modulo 2^32, and returns what they were.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop>;
+    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
+        let _ = (address, more);
+        Err(Stop::Wait)
+    }
 
     /// Puts a message into the mailbox that core `to` has for this core.
     ///
     /// # Errors
     /// No such core, or not yet.
-    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop>;
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        let _ = (to, message);
+        Err(Stop::Wait)
+    }
 
     /// Takes the message that arrived first, of several at the same time that of the lowest sender.
     ///
     /// # Errors
     /// None there yet.
-    fn receive(&mut self) -> Result<(Message, u32), Stop>;
+    fn receive(&mut self) -> Result<(Message, u32), Stop> {
+        Err(Stop::Wait)
+    }
 
     /// Waits for the others.
     ///
     /// # Errors
     /// Some have not come yet.
-    fn barrier(&mut self) -> Result<(), Stop>;
+    fn barrier(&mut self) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+}
+
+/// A link that hands on to another one.
+macro_rules! hand_on {
+    ([$($head:tt)*] $link:ident => $to:expr) => {
+        $crate::exec::hand_on! { [$($head)*] $link => $to;
+            load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
+            store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
+            read(address: u32, words: &mut [i32]) -> ();
+            write(address: u32, words: &[i32]) -> ();
+            fetch_add(address: u32, more: i32) -> i32;
+            send(to: i32, message: Message) -> ();
+            receive() -> (Message, u32);
+            barrier() -> ();
+        }
+    };
+    ([$($head:tt)*] $link:ident => $to:expr; $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+        $($head)* {
+            $(fn $name(&mut $link, $($argument: $kind),*) -> Result<$result, Stop> {
+                $to.$name($($argument),*)
+            })*
+        }
+    };
+}
+
+pub(crate) use hand_on;
+
+hand_on! { [impl<L: Link + ?Sized> Link for &mut L] self => (**self) }
+
+/// What of a link can be had at once: [`Link::glance`].
+pub(crate) struct Glance<'a, L>(pub &'a mut L);
+
+impl<L: Link> Link for Glance<'_, L> {
+    #[inline(always)]
+    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
+        let (words, _) = self.0.glance(address, 4 * N as u32).ok_or(Stop::Wait)?.as_chunks::<4>();
+        Ok(std::array::from_fn(|at| i32::from_le_bytes(words[at])))
+    }
 }
 
 /// What the bus rows work on: a core's buffer and its link to the machine.
-pub struct Port<'a, L: ?Sized = dyn Link + 'a> {
+pub struct Port<'a, L> {
     /// The local buffer.
     pub buffer: &'a mut Buffer,
     /// The machine.
     pub link: &'a mut L,
 }
 
-impl<L: Link + ?Sized> Port<'_, L> {
-    /// Words from global memory, in one transfer.
-    #[inline]
-    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        let mut words = [0; N];
-        self.link.read(address, &mut words)?;
-        Ok(words)
-    }
-}
-
-impl<L: Link + ?Sized> BusRoom for Port<'_, L> {
+impl<L: Link> BusRoom for Port<'_, L> {
     #[inline]
     fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
         self.link.load(self.buffer, a, b, c as u32)?;
@@ -129,21 +200,21 @@ impl<L: Link + ?Sized> BusRoom for Port<'_, L> {
         Ok(Each(c as u32))
     }
 
-    #[inline]
+    #[inline(always)]
     fn ldw(&mut self, a: u32, i: i32) -> Result<(i32, Done), Stop> {
-        let [word] = self.words(a.wrapping_add_signed(i))?;
+        let [word] = self.link.words(a.wrapping_add_signed(i))?;
         Ok((word, Done))
     }
 
-    #[inline]
+    #[inline(always)]
     fn ldwide(&mut self, a: u32, i: i32) -> Result<(i64, Done), Stop> {
-        let [low, high] = self.words(a.wrapping_add_signed(i))?;
+        let [low, high] = self.link.words(a.wrapping_add_signed(i))?;
         Ok((i64::from(high) << 32 | i64::from(low as u32), Done))
     }
 
-    #[inline]
+    #[inline(always)]
     fn ldv3(&mut self, a: u32, i: i32) -> Result<([Vector; 3], Done), Stop> {
-        let words: [i32; 9] = self.words(a.wrapping_add_signed(i))?;
+        let words: [i32; 9] = self.link.words(a.wrapping_add_signed(i))?;
         Ok((std::array::from_fn(|at| std::array::from_fn(|lane| words[3 * at + lane])), Done))
     }
 

@@ -17,6 +17,7 @@ mod wide;
 use isa::number::Vector;
 use isa::table::exit;
 
+pub(crate) use bus::{Glance, hand_on};
 pub use bus::{Link, Message, Port};
 pub use control::{End, Flow, Motion};
 pub use watch::{Watch, Watching};

@@ -29,6 +29,9 @@ pub struct Moment {
 pub trait Wires {
     /// The link of a lane.
     fn link(&mut self, lane: usize, moment: Moment) -> impl Link;
+
+    /// The link of some lanes that ask for the same, and read it.
+    fn links(&mut self, mask: Mask, moments: impl Fn(usize) -> Moment) -> impl Link;
 }
 
 /// Some lanes at a word, in calls as deep.
@@ -167,6 +170,19 @@ impl Group {
     pub fn moment(&self, plan: &Plan, lane: usize) -> Moment {
         let rest = plan.toll(self.pc, self.end);
         Moment { pc: self.pc, clocks: self.meter.clocks_before(lane, rest) }
+    }
+
+    /// The registers, the buffer of a lane, and the moments of all at the current word.
+    #[inline(always)]
+    pub(super) fn parts<C: Counting>(
+        &mut self,
+        plan: &Plan,
+        lane: usize,
+    ) -> (&mut Lanes, &mut Buffer, impl Fn(usize) -> Moment) {
+        let Group { lanes, buffers, meter, pc, end, .. } = self;
+        let (pc, rest, meter) = (*pc, plan.toll(*pc, *end), &*meter);
+        let clocks = move |lane| if C::IS_ON { meter.clocks_before(lane, rest) } else { 0 };
+        (lanes, &mut buffers[lane], move |lane| Moment { pc, clocks: clocks(lane) })
     }
 
     /// Sends the lanes of the block on.

@@ -40,6 +40,14 @@ pub fn where_true(claim: impl Fn(usize) -> bool) -> Mask {
     mask
 }
 
+/// Sets some lanes to a value.
+#[inline(always)]
+pub fn fill<T: Copy>(row: &mut [T; LANES], mask: Mask, value: T) {
+    for (lane, place) in row.iter_mut().enumerate() {
+        *place = if mask & 1 << lane != 0 { value } else { *place };
+    }
+}
+
 /// Registers of all lanes.
 #[derive(Clone, Debug)]
 #[repr(align(64))]

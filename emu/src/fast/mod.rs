@@ -5,6 +5,7 @@
 mod group;
 mod lanes;
 mod meter;
+mod operands;
 mod origins;
 mod plan;
 mod ray;
@@ -13,7 +14,7 @@ pub mod single;
 mod toll;
 
 pub use group::{Counted, Counting, Group, Moment, Uncounted, Unusual, Wires};
-pub use lanes::{LANES, Mask};
+pub use lanes::{LANES, Mask, each};
 pub use plan::Plan;
 
 /// What the host can do for a group, best last.

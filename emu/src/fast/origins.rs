@@ -30,7 +30,7 @@ impl Origins {
     /// Some lanes execute some words.
     #[inline(always)]
     pub fn follow(&mut self, plan: &Plan, words: Range<u32>, mask: Mask) {
-        if self.tainted & mask != 0 || plan.asks(&words) {
+        if plan.asks(&words, self.tainted & mask != 0) {
             self.follow_each(plan, words, mask);
         }
     }

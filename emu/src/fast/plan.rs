@@ -45,6 +45,8 @@ pub struct Step {
     pub target: u32,
     /// Number of the instruction whose meaning is in Rust.
     pub unit: u16,
+    /// What a run takes that begins here, with the [`FLAG`] where it has to be looked at.
+    pub toll: u64,
 }
 
 impl Step {
@@ -89,11 +91,12 @@ pub struct Plan<'a> {
     /// By exit: what it adds to the block's toll; 0 where all exits of the slot take the same.
     extra: Vec<Toll>,
     marks: Vec<Mark>,
+    /// The steps, and one behind them; then, where registers may hold the number of cores, the same for an item in which one does.
     steps: Vec<Step>,
     /// By place: the end of the run that begins there, behind the next control row or in front of the end of the program.
     run_ends: Vec<u32>,
-    /// How many places up to here ask for numbers of cores, or send.
-    asking: Vec<u32>,
+    /// How many places up to here matter to what is known of the cores: while no register holds their number, and while one does.
+    asking: [Vec<u32>; 2],
 }
 
 impl<'a> Plan<'a> {
@@ -163,10 +166,15 @@ impl<'a> Plan<'a> {
             Stage::Hop(_) => Mark::default(),
         };
         let marks: Vec<Mark> = stages.iter().map(mark).collect();
-        let mut asking = vec![0];
-        for mark in &marks {
-            asking.push(asking.last().copied().unwrap_or(0) + u32::from(mark.asks()));
-        }
+        let held = marks.iter().fold(0, |held, mark| held | mark.counts());
+        let sums = |matters: &dyn Fn(&Mark) -> bool| {
+            let places = marks.iter().scan(0, |sum, mark| {
+                *sum += u32::from(matters(mark));
+                Some(*sum)
+            });
+            std::iter::once(0).chain(places).collect()
+        };
+        let asking = [sums(&Mark::asks), sums(&|mark| mark.asks() || mark.touches(held))];
         let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
         let mut plan = Plan {
@@ -183,20 +191,24 @@ impl<'a> Plan<'a> {
             run_ends,
             asking,
         };
-        plan.lay_out(&firsts);
+        plan.lay_out(&firsts, held != 0);
         Some(plan)
     }
 
     /// The same for those who do not ask what depends on the number of cores.
     pub fn regardless_of_cores(mut self) -> Plan<'a> {
-        self.asking.fill(0);
-        let firsts: Vec<usize> = self.steps.iter().map(|step| step.exit as usize).collect();
-        self.lay_out(&firsts);
+        self.asking.iter_mut().for_each(|sums| sums.fill(0));
+        let firsts: Vec<usize> = self.steps().iter().map(|step| step.exit as usize).collect();
+        self.lay_out(&firsts, false);
         self
     }
 
-    fn lay_out(&mut self, firsts: &[usize]) {
-        self.steps = (0..).zip(firsts).map(|(place, &first)| self.new_step(place, first)).collect();
+    fn lay_out(&mut self, firsts: &[usize], is_twofold: bool) {
+        let ways = if is_twofold { &[false, true][..] } else { &[false] };
+        let plan = &*self;
+        let steps =
+            |&is_held: &bool| (0..).zip(firsts).map(move |(place, &first)| plan.new_step(place, first, is_held));
+        self.steps = ways.iter().flat_map(steps).collect();
     }
 
     /// Whether there are steps that are no instructions.
@@ -210,16 +222,16 @@ impl<'a> Plan<'a> {
         (0..self.code.words()).all(|word| !matches!(self.code.op(word), Some(Op::Ext(_))))
     }
 
-    /// What a run takes, with the [`FLAG`] where it has to be looked at.
-    pub fn flagged_toll(&self, place: u32) -> u64 {
+    /// What a run takes, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
+    fn flagged_toll(&self, place: u32, is_held: bool) -> u64 {
         match place <= self.end() {
-            true if self.asks(&(place..self.run_end(place))) => FLAG | self.run_toll(place).0,
+            true if self.asks(&(place..self.run_end(place)), is_held) => FLAG | self.run_toll(place).0,
             true => self.run_toll(place).0,
             false => FLAG,
         }
     }
 
-    fn new_step(&self, place: u32, first: usize) -> Step {
+    fn new_step(&self, place: u32, first: usize, is_held: bool) -> Step {
         let code = self.code;
         let slot = self.order.slot(place);
         let mut step = Step {
@@ -232,12 +244,13 @@ impl<'a> Plan<'a> {
             edges: [FLAG; 2],
             target: self.end() + 1,
             unit: 0,
+            toll: self.flagged_toll(place, is_held),
         };
         let Some(&stage) = self.order.stages().get(place as usize) else { return step };
         let target = target(code, &self.order, stage);
         step.target = target.unwrap_or(self.end() + 1);
         if let Stage::Hop(_) = stage {
-            step.edges[1] = self.flagged_toll(step.target);
+            step.edges[1] = self.flagged_toll(step.target, is_held);
             return Step { row: Step::HOP, exits: 1, ..step };
         }
         let Some((op, row)) = code.slots()[slot as usize].op.zip(code.slot_row(slot)) else { return step };
@@ -246,8 +259,8 @@ impl<'a> Plan<'a> {
         step.is_uneven = extra.iter().any(|extra| *extra != Toll::default());
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
         step.edges = [
-            self.flagged_toll(place + 1) + extra_of(0),
-            self.flagged_toll(step.target) + extra_of(row.exits.len().saturating_sub(1)),
+            self.flagged_toll(place + 1, is_held) + extra_of(0),
+            self.flagged_toll(step.target, is_held) + extra_of(row.exits.len().saturating_sub(1)),
         ];
         // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
         step.fields = code.slots()[slot as usize].fields;
@@ -309,10 +322,11 @@ impl<'a> Plan<'a> {
         self.passes.len()
     }
 
-    /// Whether one of some places asks for numbers of cores, or sends.
+    /// Whether one of some places matters to what is known of the cores; `is_held` where a register holds their number.
     #[inline(always)]
-    pub fn asks(&self, places: &Range<u32>) -> bool {
-        self.asking[places.start as usize] != self.asking[places.end as usize]
+    pub fn asks(&self, places: &Range<u32>, is_held: bool) -> bool {
+        let sums = &self.asking[usize::from(is_held)];
+        sums[places.start as usize] != sums[places.end as usize]
     }
 
     /// What a place does with numbers of cores.
@@ -323,7 +337,16 @@ impl<'a> Plan<'a> {
     /// The steps by their places, and one behind them.
     #[inline(always)]
     pub fn steps(&self) -> &[Step] {
-        &self.steps
+        &self.steps[..self.places.len()]
+    }
+
+    /// The same for an item in which a register holds the number of cores, or in which none does.
+    #[inline(always)]
+    pub fn steps_of(&self, is_held: bool) -> &[Step] {
+        match self.steps.get(self.places.len()..) {
+            Some(steps) if is_held && !steps.is_empty() => steps,
+            _ => self.steps(),
+        }
     }
 
     /// Whether a run ends behind a place.

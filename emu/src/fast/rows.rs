@@ -24,148 +24,14 @@ pub(super) const fn is_heavy(op: Op) -> bool {
     )
 }
 
+/// Rows that read global memory and nothing else of the machine: where lanes ask for the same, it is read once. A row that is missing here
+/// costs time and nothing else.
+pub(super) const fn is_read(op: Op) -> bool {
+    matches!(op, Op::ldw | Op::ldwide | Op::ldv3)
+}
+
 /// Lanes from which on the ray unit is faster over all of them than one after the other.
 const FEW: u32 = 12;
-
-/// Copies the lanes of an operand, so that what is written cannot change what is still to be read.
-macro_rules! copy {
-    ($lanes:expr, $fields:expr, $letter:ident S) => {
-        *$lanes.scalar($fields.$letter)
-    };
-    ($lanes:expr, $fields:expr, $letter:ident A) => {
-        *$lanes.scalar($fields.$letter)
-    };
-    ($lanes:expr, $fields:expr, $letter:ident V) => {
-        *$lanes.vector($fields.$letter)
-    };
-    ($lanes:expr, $fields:expr, $letter:ident W) => {
-        *$lanes.wide($fields.$letter)
-    };
-    ($lanes:expr, $fields:expr, $letter:ident W3) => {{
-        let number = $fields.$letter;
-        [*$lanes.wide(number), *$lanes.wide(number.wrapping_add(1)), *$lanes.wide(number.wrapping_add(2))]
-    }};
-    ($lanes:expr, $fields:expr, $letter:ident $immediate:ident) => {
-        $fields.$letter
-    };
-}
-
-/// The value of one lane of such a copy.
-macro_rules! pick {
-    ($lane:ident, $letter:ident S) => {
-        $letter[$lane]
-    };
-    ($lane:ident, $letter:ident A) => {
-        $letter[$lane] as u32
-    };
-    ($lane:ident, $letter:ident V) => {
-        [$letter[0][$lane], $letter[1][$lane], $letter[2][$lane]]
-    };
-    ($lane:ident, $letter:ident W) => {
-        $letter[$lane]
-    };
-    ($lane:ident, $letter:ident W3) => {
-        [$letter[0][$lane], $letter[1][$lane], $letter[2][$lane]]
-    };
-    ($lane:ident, $letter:ident $immediate:ident) => {
-        $letter
-    };
-}
-
-/// Keeps what was computed for a lane if the lane executes.
-macro_rules! blend {
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $letter:ident S) => {{
-        let place = &mut $lanes.scalar_mut($fields.$letter)[$lane];
-        *place = if $is_on { $letter } else { *place };
-    }};
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $letter:ident V) => {
-        for k in 0..3 {
-            let place = &mut $lanes.vector_mut($fields.$letter)[k][$lane];
-            *place = if $is_on { $letter[k] } else { *place };
-        }
-    };
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $letter:ident W) => {{
-        let place = &mut $lanes.wide_mut($fields.$letter)[$lane];
-        *place = if $is_on { $letter } else { *place };
-    }};
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $letter:ident W3) => {
-        for k in 0..3 {
-            let place = &mut $lanes.wide_mut($fields.$letter.wrapping_add(k as u8))[$lane];
-            *place = if $is_on { $letter[k] } else { *place };
-        }
-    };
-}
-
-/// The value of an operand in one lane.
-macro_rules! get {
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident S) => {
-        $lanes.scalar($fields.$letter)[$lane]
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident A) => {
-        $lanes.scalar($fields.$letter)[$lane] as u32
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident V) => {{
-        let vector = $lanes.vector($fields.$letter);
-        [vector[0][$lane], vector[1][$lane], vector[2][$lane]]
-    }};
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident W) => {
-        $lanes.wide($fields.$letter)[$lane]
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident V2) => {
-        $lanes.vectors::<2>($fields.$letter, $lane)
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident V3) => {
-        $lanes.vectors::<3>($fields.$letter, $lane)
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident V5) => {
-        $lanes.vectors::<5>($fields.$letter, $lane)
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident W3) => {
-        $lanes.wides3($fields.$letter, $lane)
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident $immediate:ident) => {
-        $fields.$letter
-    };
-}
-
-/// Puts a value where a written operand of one lane says; scalar 0 is cleared by [`clear_zero`].
-macro_rules! set {
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident S) => {
-        $lanes.scalar_mut($fields.$letter)[$lane] = $letter
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident V) => {
-        $lanes.set_vectors($fields.$letter, $lane, [$letter])
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident W) => {
-        $lanes.wide_mut($fields.$letter)[$lane] = $letter
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident W3) => {
-        $lanes.set_wides3($fields.$letter, $lane, $letter)
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $letter:ident $vectors:ident) => {
-        $lanes.set_vectors($fields.$letter, $lane, $letter)
-    };
-}
-
-/// Scalar 0 stays zero.
-macro_rules! clear_zero {
-    ($lanes:expr, $letter:ident S) => {
-        *$lanes.scalar_mut(0) = [0; LANES]
-    };
-    ($lanes:expr, $letter:ident $kind:ident) => {};
-}
-
-/// Writes what a meaning handed back for one lane, and yields the exit.
-macro_rules! finish {
-    ($lanes:expr, $fields:expr, $lane:ident, $result:expr, []) => {
-        $result
-    };
-    ($lanes:expr, $fields:expr, $lane:ident, $result:expr, [$(($letter:ident $kind:ident))+]) => {{
-        let ($($letter,)+ exit) = $result;
-        $(set!($lanes, $fields, $lane, $letter $kind);)+
-        exit
-    }};
-}
 
 /// One row.
 macro_rules! row {
@@ -239,6 +105,18 @@ macro_rules! row {
         pub fn $name<W: Wires, C: Counting>(plan: &Plan, group: &mut Group, slot: &Slot, wires: &mut W) -> Result<(), Unusual> {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             let fields = &slot.fields;
+            if is_read(Op::$name) {
+                let (mask, lead) = (group.mask, group.mask.trailing_zeros() as usize % LANES);
+                let addresses = group.lanes.scalar(fields.a);
+                if mask & !where_true(|lane| addresses[lane] == addresses[lead]) == 0 {
+                    let (lanes, buffer, moments) = group.parts::<C>(plan, lead);
+                    let port = &mut Port { buffer, link: &mut wires.links(mask, moments) };
+                    let result = $trait::$name(port $(, get!(lanes, fields, lead, $letter $kind))*);
+                    spread!(lanes, fields, mask, result.map_err(|_| Unusual)?, [$(($written $written_kind))*]);
+                    $(clear_zero!(lanes, $written $written_kind);)*
+                    return Ok(());
+                }
+            }
             for lane in each(group.mask) {
                 let moment = if C::IS_ON { group.moment(plan, lane) } else { Moment { pc: group.pc, clocks: 0 } };
                 let (lanes, buffer) = (&mut group.lanes, &mut group.buffers[lane]);
@@ -298,19 +176,6 @@ macro_rules! row {
     };
 }
 
-/// Keeps what a control row wrote for a lane that executes, and yields the exit.
-macro_rules! keep {
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $result:expr, []) => {{
-        let _ = $is_on;
-        $result
-    }};
-    ($lanes:expr, $fields:expr, $lane:ident $is_on:ident, $result:expr, [$(($letter:ident $kind:ident))+]) => {{
-        let ($($letter,)+ exit) = $result;
-        $(blend!($lanes, $fields, $lane $is_on, $letter $kind);)+
-        exit
-    }};
-}
-
 /// Calls a row with what its style needs.
 macro_rules! call {
     (pure RayRoom $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {{
@@ -352,9 +217,10 @@ macro_rules! stamp {
                 use isa::number::Nearest32;
                 use isa::table::{Ending, exit};
 
-                use super::super::{FEW, is_heavy};
+                use super::super::{FEW, is_heavy, is_read};
                 use super::super::super::group::{Counting, Group, Moment, Turn, Unusual, Wires};
-                use super::super::super::lanes::{LANES, Mask, each, where_true};
+                use super::super::super::lanes::{LANES, Mask, each, fill, where_true};
+                use super::super::super::operands::{blend, clear_zero, copy, finish, get, keep, pick, set, spread};
                 use super::super::super::plan::Plan;
                 use super::super::super::ray;
                 use crate::code::Slot;

@@ -14,7 +14,7 @@ const RECENT: usize = 32;
 pub struct Kinds {
     ranges: Vec<(Range<u32>, usize)>,
     totals: Vec<KindUse>,
-    /// The ranges that were met last, by the instruction that asked: mostly it meets the same again.
+    /// The ranges, or gaps between them, that were met last, by the instruction that asked: mostly it meets the same again.
     last: [(u32, u32, u32); RECENT],
     message: usize,
     other: usize,
@@ -58,12 +58,26 @@ impl Kinds {
         }
     }
 
+    /// Adds octets where the instruction at `pc` met the same range before; else nothing happens.
+    #[inline(always)]
+    pub fn add_known(&mut self, pc: u32, address: u32, octets: u32) -> Option<()> {
+        let (start, length, kind) = self.last[pc as usize % RECENT];
+        let total = self.totals.get_mut(kind as usize).filter(|_| address.wrapping_sub(start) < length)?;
+        total.octets += Octets(octets.into());
+        Some(())
+    }
+
     /// The kind at an address.
     #[inline(never)]
     fn find(&mut self, pc: u32, address: u32) -> usize {
         let after = self.ranges.partition_point(|(range, _)| range.start <= address);
-        let found = self.ranges[..after].last().filter(|(range, _)| range.contains(&address));
-        let Some(&(Range { start, end }, kind)) = found else { return self.other };
+        let (start, end, kind) = match self.ranges[..after].last() {
+            Some(&(Range { start, end }, kind)) if address < end => (start, end, kind),
+            last => {
+                let next = self.ranges.get(after).map_or(u32::MAX, |(range, _)| range.start);
+                (last.map_or(0, |(range, _)| range.end), next, self.other)
+            }
+        };
         self.last[pc as usize % RECENT] = (start, end - start, kind as u32);
         kind
     }

@@ -126,6 +126,8 @@ pub struct Recorder<'a, T, O> {
     pub observer: Independence<O>,
     lockstep: Option<Lockstep<'a>>,
     single: Option<One<'a>>,
+    /// Segments of the last item, and so about those of the next one.
+    usual: usize,
 }
 
 /// What a core needs to record one item after the other, quickly.
@@ -166,6 +168,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         });
         Recorder {
             lockstep,
+            usual: 0,
             single: single.map(|plan| One { count: Count::new(&plan, true), plan, features }),
             keeping,
             state: State::new(code, initial.clone()),
@@ -232,7 +235,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let mut kinds = self.kinds.clone();
         kinds.clear();
         let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
-        let mut strands = Strands { memory, main, room, kinds, strands, keeping };
+        let mut strands = Strands { memory, main, room, kinds, strands, keeping, begun: 0 };
         let ended = match self.keeping {
             Keeping::Nothing => fast::run::<_, Uncounted>(*features, plan, group, &mut strands),
             Keeping::Passes | Keeping::Segments => fast::run::<_, Counted>(*features, plan, group, &mut strands),
@@ -315,7 +318,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
-        let mut strand = Strand { message: Some(message), ..Strand::default() };
+        let segments = Vec::with_capacity(self.usual);
+        let mut strand = Strand { message: Some(message), segments, ..Strand::default() };
         let stopped = self.run_quickly(&mut strand, room);
         let mut wire = Wire { sent: strand.sent, ..self.wire(strand.message) };
         let (mut segments, mut octets, mut before) = (strand.segments, strand.octets, strand.before);
@@ -355,6 +359,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
         self.observer.end();
         room.take(segments.len() % Room::PORTION);
+        self.usual = segments.len().min(Room::PORTION);
         if self.observer.origin.depends_on_core {
             return Err("a work item asks which core it runs on");
         }

@@ -6,7 +6,7 @@ use super::room::Room;
 use super::station::{Access, Request};
 use crate::exec::{Link, Message};
 use crate::fast::single::Wire;
-use crate::fast::{Moment, Wires};
+use crate::fast::{Mask, Moment, Wires, each};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::Octets;
 use crate::trap::Stop;
@@ -30,6 +30,8 @@ pub(super) struct Strands<'a> {
     pub kinds: Kinds,
     pub strands: Vec<Strand>,
     pub keeping: Keeping,
+    /// Lanes of which it is known that they have taken their message.
+    pub begun: Mask,
 }
 
 /// One of them.
@@ -53,11 +55,67 @@ pub(super) struct StrandLink<'s> {
     pub moment: Moment,
 }
 
+impl Strands<'_> {
+    #[inline(always)]
+    fn one(&mut self, lane: usize, moment: Moment) -> StrandLink<'_> {
+        let Strands { memory, main, room, kinds, strands, keeping, begun: _ } = self;
+        StrandLink { memory, main: *main, room, kinds, strand: &mut strands[lane], keeping: *keeping, moment }
+    }
+}
+
 impl<'a> Wires for Strands<'a> {
     #[inline(always)]
     fn link(&mut self, lane: usize, moment: Moment) -> impl Link {
-        let Strands { memory, main, room, kinds, strands, keeping } = self;
-        StrandLink { memory, main: *main, room, kinds, strand: &mut strands[lane], keeping: *keeping, moment }
+        self.one(lane, moment)
+    }
+
+    #[inline(always)]
+    fn links(&mut self, mask: Mask, moments: impl Fn(usize) -> Moment) -> impl Link {
+        StrandLinks { strands: self, mask, moments }
+    }
+}
+
+/// The link of some of them that read the same.
+struct StrandLinks<'s, 'a, F> {
+    strands: &'s mut Strands<'a>,
+    mask: Mask,
+    moments: F,
+}
+
+impl<F: Fn(usize) -> Moment> StrandLinks<'_, '_, F> {
+    #[inline(always)]
+    fn enter(&mut self, address: u32, octets: u64) -> Result<(), Stop> {
+        let Strands { kinds, strands, keeping, begun, .. } = &mut *self.strands;
+        let lanes = u64::from(self.mask.count_ones());
+        let request = |octets| Request::Transfer { address, octets: Octets(octets), access: Access::Read };
+        if *keeping == Keeping::Segments {
+            return each(self.mask)
+                .try_for_each(|lane| self.strands.one(lane, (self.moments)(lane)).enter(request(octets)));
+        }
+        if self.mask & !*begun != 0 {
+            if each(self.mask).any(|lane| strands[lane].message.is_some()) {
+                return Err(Stop::Wait);
+            }
+            *begun |= self.mask;
+        }
+        if *keeping == Keeping::Passes {
+            kinds.add((self.moments)(0).pc, Some(request(lanes * octets)));
+        }
+        Ok(())
+    }
+}
+
+impl<F: Fn(usize) -> Moment> Link for StrandLinks<'_, '_, F> {
+    #[inline(always)]
+    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
+        let words = self.strands.memory.words(address)?;
+        self.enter(address, 4 * N as u64)?;
+        Ok(words)
+    }
+
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+        self.strands.memory.read_words(address, words)?;
+        self.enter(address, 4 * words.len() as u64)
     }
 }
 
@@ -85,6 +143,23 @@ impl StrandLink<'_> {
             Keeping::Segments => return self.keep(request),
         }
         Ok(())
+    }
+
+    /// Keeps a read where there is a place for its segment; else nothing happens.
+    #[inline(always)]
+    fn keep_at_once(&mut self, address: u32, octets: u32) -> Option<()> {
+        let (strand, Moment { pc, clocks }) = (&mut *self.strand, self.moment);
+        let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
+        let segment = Segment::new(clocks - strand.before, pc, request, 0)?;
+        let count = strand.segments.len();
+        if count == strand.segments.capacity() || (count + 1).is_multiple_of(Room::PORTION) {
+            return None;
+        }
+        self.kinds.add_known(pc, address, octets)?;
+        strand.octets += segment.octets();
+        strand.before = clocks;
+        strand.segments.push(segment);
+        Some(())
     }
 
     fn keep(&mut self, request: Request) -> Result<(), Stop> {
@@ -116,22 +191,32 @@ impl Link for StrandLink<'_> {
         Ok(self.memory.read(from, place)?)
     }
 
-    fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
-
     #[inline(always)]
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         self.ask(Access::Read, address, 4 * words.len() as u32)?;
         Ok(self.memory.read_words(address, words)?)
     }
 
-    fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
-        Err(Stop::Wait)
+    #[inline(always)]
+    fn glance(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
+        let found = self.memory.glance(address, octets)?;
+        if self.strand.message.is_some() {
+            return None;
+        }
+        match self.keeping {
+            Keeping::Nothing => {}
+            Keeping::Passes => self.kinds.add_known(self.moment.pc, address, octets)?,
+            Keeping::Segments => self.keep_at_once(address, octets)?,
+        }
+        Some(found)
     }
 
-    fn fetch_add(&mut self, _: u32, _: i32) -> Result<i32, Stop> {
-        Err(Stop::Wait)
+    #[inline(always)]
+    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
+        let words = self.memory.words(address)?;
+        let octets = Octets(4 * N as u64);
+        self.enter(Request::Transfer { address, octets, access: Access::Read })?;
+        Ok(words)
     }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
@@ -148,9 +233,5 @@ impl Link for StrandLink<'_> {
         let message = strand.message.take().ok_or(Stop::Wait)?;
         strand.before = self.moment.clocks;
         Ok((message, self.main))
-    }
-
-    fn barrier(&mut self) -> Result<(), Stop> {
-        Err(Stop::Wait)
     }
 }

@@ -114,6 +114,14 @@ impl Memory {
         Cow::Owned(octets)
     }
 
+    /// `length` octets from `address` on where no pages were written; `None` also outside the memory.
+    #[inline(always)]
+    pub fn glance(&self, address: u32, length: u32) -> Option<&[u8]> {
+        let start = address as usize;
+        let found = self.shared.get(start..start + length as usize)?;
+        self.pages.is_empty().then_some(found)
+    }
+
     /// Reads octets from `address` on.
     ///
     /// # Errors
@@ -210,6 +218,23 @@ impl Memory {
             *word = i32::from_le_bytes(octets);
         }
         Ok(())
+    }
+
+    /// The `N` words of 32 bits from `address` on.
+    ///
+    /// # Errors
+    /// A range that leaves the memory.
+    #[inline(always)]
+    pub fn words<const N: usize>(&self, address: u32) -> Result<[i32; N], Fault> {
+        let range = self.range(address, 4 * N)?;
+        if !self.pages.is_empty() {
+            // They have a place of their own, so that in the other case they need none in the host's memory.
+            let mut words = [0; N];
+            self.gather_words(address, &mut words)?;
+            return Ok(words);
+        }
+        let (octets, _) = self.shared[range].as_chunks::<4>();
+        Ok(std::array::from_fn(|at| i32::from_le_bytes(octets[at])))
     }
 
     #[inline(never)]

@@ -338,3 +338,78 @@ fn what_is_unusual_is_the_interpreters() {
     let step = same("a core's number", &core, 5000).expect("it is stepped");
     assert_eq!(step.method.reason(), Some("a work item asks which core it runs on"));
 }
+
+/// Something that may read the number of cores, write where it is, or leave it alone.
+fn meddle(p: &mut Builder, random: &mut Random, depth: i64) {
+    let register = 20 + random.below(2);
+    match random.below(if depth == 0 { 6 } else { 9 }) {
+        0 => p.emit(Op::iadd, &[1, 1, register]),
+        1 => p.emit(Op::movi, &[register, 5]),
+        2 => p.emit(Op::cores, &[21]),
+        3..6 => p.emit(Op::iaddi, &[1, 1, 7]),
+        6 => {
+            let end = p.label();
+            p.emit(Op::andi, &[3, NUMBER, 1 + random.below(4)]);
+            p.branch(Op::beq, &[3, 0], end);
+            meddle(p, random, depth - 1);
+            meddle(p, random, depth - 1);
+            p.place(end)
+        }
+        7 => {
+            let counter = 24 + depth;
+            p.emit(Op::movi, &[counter, random.below(3)]);
+            let again = p.here();
+            meddle(p, random, depth - 1);
+            meddle(p, random, depth - 1);
+            p.emit(Op::isubi, &[counter, counter, 1]);
+            p.branch(Op::bge, &[counter, 0], again);
+            p
+        }
+        _ => {
+            let (over, function) = (p.label(), p.label());
+            p.branch(Op::call, &[28 + depth], function);
+            p.branch(Op::jump, &[], over);
+            p.place(function);
+            meddle(p, random, depth - 1);
+            p.emit(Op::ret, &[28 + depth]);
+            p.place(over)
+        }
+    };
+}
+
+#[test]
+fn every_engine_knows_what_depends_on_the_number_of_cores() {
+    let isa = Isa::base();
+    let machines = [1, 2, 5].map(|cores| Config { cores, ..Config::default() });
+    let (main, memory) = (dispatch(ITEMS), Memory::new(vec![0; MEMORY as usize]));
+    let mut dependent = [0, 0];
+    for seed in 0..150 {
+        let random = &mut Random(seed);
+        let core = program(|p| {
+            p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]);
+            for _ in 0..4 {
+                meddle(p, random, 2);
+            }
+            p.emit(Op::vsplat, &[6, NUMBER]).emit(Op::vsplat, &[7, 1]).emit(Op::cores, &[20]);
+            p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+        });
+        let setup = |config, engine| {
+            let options = Options { engine, ..Options::default() };
+            Setup { config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
+        };
+        let stepped = machines.each_ref().map(|config| {
+            machine::step(&setup(config, Engine::Checked), memory.clone(), &mut |_| {}).expect("it runs")
+        });
+        dependent[usize::from(stepped[0].memory != stepped[2].memory)] += 1;
+        for engine in Engine::ALL {
+            // The three share what was recorded, but for what depends on how many they are.
+            let frames = machine::run_all(&setup(&machines[0], engine), &machines, &memory, &mut |_| {});
+            for (frame, stepped) in frames.into_iter().zip(&stepped) {
+                let frame = frame.unwrap_or_else(|failure| panic!("{failure}"));
+                let found = (&frame.memory, frame.clocks, &frame.tally);
+                assert_eq!(found, (&stepped.memory, stepped.clocks, &stepped.tally), "seed {seed}, {engine:?}");
+            }
+        }
+    }
+    assert!(dependent[0] > 20 && dependent[1] > 20, "{dependent:?}");
+}

@@ -7,8 +7,6 @@ use crate::tally::Tally;
 /// What is counted of a place beside its exits.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Run {
-    /// What a run takes that begins here, flagged.
-    pub toll: u64,
     /// How often a run was begun here that no exit led to whose target is known.
     pub begun: u64,
     /// How often a run ended before this place.
@@ -33,8 +31,7 @@ impl Count {
     /// Nothing yet, for a program; `is_following` where it is to be found out what depends on the number of cores.
     pub fn new(plan: &Plan, is_following: bool) -> Count {
         let exits = plan.exits();
-        let run = |place| Run { toll: plan.flagged_toll(place), begun: 0, cut: 0 };
-        let runs = (0..=plan.end()).map(run).collect();
+        let runs = vec![Run::default(); plan.steps().len()];
         Count { runs, exits: vec![0; exits], units: vec![0; exits], is_following, origin: Origin::default() }
     }
 

@@ -17,7 +17,7 @@ pub(super) struct Fuse {
     clocks: u64,
     elementary: u64,
     limit: u64,
-    /// Where the sums of the steps began, so that one is full before both come to the limit, or at once while numbers of cores are followed.
+    /// Where the sums of the steps began, so that one is full before both come to the limit.
     bias: Toll,
     is_following: bool,
     /// What it knows of the cores.
@@ -36,6 +36,11 @@ impl Fuse {
         Fuse { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
     }
 
+    /// Whether a register holds the number of cores.
+    pub(super) fn is_held(&self) -> bool {
+        self.origin.tainted != 0
+    }
+
     fn all_steps(&self) -> u64 {
         self.steps + self.inner_steps
     }
@@ -43,7 +48,7 @@ impl Fuse {
     /// The sums at the beginning.
     pub(super) fn begin(&mut self, plan: &Plan) -> u64 {
         const FULL: u64 = Toll::WHOLE as u64;
-        let room = if self.origin.tainted != 0 { 0 } else { self.limit.saturating_sub(self.all_steps()) };
+        let room = self.limit.saturating_sub(self.all_steps());
         // Where there are two kinds of steps, each of the two sums may come to half of what is left.
         self.bias = match plan.has_inner_steps() {
             false => Toll::of_steps(FULL - FULL.min(room), 0),
@@ -64,12 +69,11 @@ impl Fuse {
             return (sums, false);
         }
         let end = plan.run_end(place);
-        if self.is_following && (self.origin.tainted != 0 || plan.asks(&(place..end))) {
+        if self.is_following && plan.asks(&(place..end), self.is_held()) {
             (self.before, self.followed) = (self.origin, (place, after));
             for place in place..end {
                 self.origin.step(plan.mark(place));
             }
-            return (self.begin(plan) + run.0, true);
         }
         (sums + run.0, true)
     }

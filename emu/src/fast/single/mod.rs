@@ -22,7 +22,7 @@ pub use driver::Driver;
 use super::plan::Plan;
 use super::{Counting, Features, Moment};
 use crate::checked::{Seat, State};
-use crate::exec::{Link, Message};
+use crate::exec::{Link, Message, hand_on};
 use crate::octets::Buffer;
 use crate::profile::RunObserver;
 use crate::registers::Registers;
@@ -95,7 +95,8 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     let from = plan.place_of(state.pc);
     let State { registers, buffer, units, .. } = &mut *state;
     let stop = Ended { stopped: Stopped::Unusual, place: from, sums: 0, is_cut: false };
-    let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuse, from, stop };
+    let steps = plan.steps_of(fuse.is_held()).as_ptr();
+    let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuse, steps, from, stop };
     let sums = walk.fuse.begin(plan);
     let first = walk.begin::<C>(from, sums);
     run(registers, first, &mut walk);
@@ -112,32 +113,7 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     stopped
 }
 
-macro_rules! hand_on {
-    ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
-        impl Link for Timeless<'_> {
-            $(fn $name(&mut self, $($argument: $kind),*) -> Result<$result, Stop> {
-                self.0.$name($($argument),*)
-            })*
-        }
-
-        impl Link for &mut dyn Wire {
-            $(fn $name(&mut self, $($argument: $kind),*) -> Result<$result, Stop> {
-                (**self).$name($($argument),*)
-            })*
-        }
-    };
-}
-
-hand_on! {
-    load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
-    store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
-    read(address: u32, words: &mut [i32]) -> ();
-    write(address: u32, words: &[i32]) -> ();
-    fetch_add(address: u32, more: i32) -> i32;
-    send(to: i32, message: Message) -> ();
-    receive() -> (Message, u32);
-    barrier() -> ();
-}
+hand_on! { [impl Link for Timeless<'_>] self => self.0 }
 
 impl Wire for Timeless<'_> {
     fn keeps_time(&self) -> bool {

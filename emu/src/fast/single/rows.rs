@@ -1,13 +1,22 @@
 //! A function a row, stamped from the table once a set of host features, from the same meanings as the interpreter's, and the loop that
 //! calls one after the other.
 
+use isa::Op;
+
 use super::walk::{Place, Walk};
 use crate::fast::plan::Step;
+use crate::fast::rows::is_heavy;
 use crate::registers::Registers;
 
 /// A row: it does what the step says, goes on with the rows behind it as long as they are cheap, and yields where that led to.
 /// The last number is that of [`Place::sums`].
 type RowFunction<L, O> = unsafe fn(&mut Registers, *const Step, &mut Walk<L, O>, u64) -> Place;
+
+/// Rows whose functions keep something on the stack for what they call, so that a call in their last place does not become a jump: they go back
+/// to the loop. `is_wide` where some of the ray unit are done in a way that suits the host.
+const fn goes_back(op: Op, is_wide: bool) -> bool {
+    is_heavy(op) || matches!(op, Op::rbox) || !is_wide && matches!(op, Op::rtri | Op::rexit)
+}
 
 /// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
 macro_rules! thread {
@@ -32,7 +41,7 @@ macro_rules! turn {
         let way: Way = $way;
         let after = $sums.wrapping_add(way.toll);
         if after & LOOK != 0 {
-            return $walk.look::<$C>(way, $sums);
+            return $walk.look::<$C>(way.step, way.toll, $sums);
         }
         thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O $C))
     }};
@@ -56,6 +65,7 @@ macro_rules! function {
         ($registers:ident $step:ident $walk:ident $sums:ident $now:ident $fields:ident $L:ident $O:ident $C:ident) $body:block
     ) => {
         # $features
+        #[inline(never)]
         #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
         unsafe fn $name<$L: Wire, $O: RunObserver, $C: Counting>(
             $registers: &mut Registers,
@@ -71,14 +81,17 @@ macro_rules! function {
     };
 }
 
-/// One row. A straight row goes on with the next word; a control row begins the next run. Rows that are long, or that may keep something on the
-/// stack, go back to the loop.
+/// One row. A straight row goes on with the next word; a control row begins the next run. See [`goes_back`].
 macro_rules! row {
     ({ $features:tt $ray:ident pure RayRoom $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O C) {
             let exit: exit::$name::Exit = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
             let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
-            walk.go_on(Place { step, sums })
+            let next = walk.go_on(Place { step, sums });
+            if goes_back(Op::$name, IS_WIDE) {
+                return next;
+            }
+            thread!(next, (registers walk L O C))
         }}
     };
     ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
@@ -87,7 +100,7 @@ macro_rules! row {
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
             let _: exit::$name::Exit = finish!(registers fields, result, $written);
             let next = walk.go_on(Place { step, sums });
-            if is_heavy(Op::$name) {
+            if goes_back(Op::$name, IS_WIDE) {
                 return next;
             }
             thread!(next, (registers walk L O C))
@@ -112,16 +125,28 @@ macro_rules! row {
             if C::IS_ON {
                 walk.note(Place { step, sums }, now);
             }
-            let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
-            match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
-                Ok(result) => {
-                    let exit: exit::$name::Exit = finish!(registers fields, result, $written);
-                    let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
-                    walk.go_on(Place { step, sums })
+            if is_read(Op::$name) {
+                let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Glance(&mut *walk.link) };
+                if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
+                    let _: exit::$name::Exit = finish!(registers fields, result, $written);
+                    let next = walk.go_on(Place { step, sums });
+                    return thread!(next, (registers walk L O C));
                 }
-                Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
-                Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
             }
+            function! { $features whole (registers step walk sums now fields L O C) {
+                let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
+                match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
+                    Ok(result) => {
+                        let exit: exit::$name::Exit = finish!(registers fields, result, $written);
+                        let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
+                        walk.go_on(Place { step, sums })
+                    }
+                    Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
+                    Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
+                }
+            }}
+            // SAFETY: as of this function.
+            unsafe { whole::<L, O, C>(registers, step, walk, sums) }
         }}
     };
     ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
@@ -178,7 +203,7 @@ macro_rules! wide_ray {
 
 /// The rows and the loop for one set of host features.
 macro_rules! stamp {
-    ($features:tt $module:ident $ray:ident
+    ($features:tt $module:ident $is_wide:literal $ray:ident
         $($style:ident $room:ident $trait:ident $room_doc:literal {
             $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
         })*
@@ -200,12 +225,12 @@ macro_rules! stamp {
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Place, Walk, Way};
                 use super::super::super::{Stopped, Wire};
-                use super::super::super::super::rows::is_heavy;
-                use super::super::RowFunction;
+                use super::super::super::super::rows::is_read;
+                use super::super::{RowFunction, goes_back};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::exec::RayRoom;
                 use crate::exec::{
-                    BusRoom, ControlRoom, End, Flow, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
+                    BusRoom, ControlRoom, End, Flow, Glance, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
                     split_operands,
                 };
                 use crate::fast::group::Counting;
@@ -213,6 +238,8 @@ macro_rules! stamp {
                 use crate::profile::RunObserver;
                 use crate::registers::{Registers, read, write};
                 use crate::trap::Stop;
+
+                const IS_WIDE: bool = $is_wide;
 
                 $($(split_operands! { row { $features $ray $style $trait $name } [] [] ($($operands)*) })*)*
 
@@ -254,14 +281,14 @@ macro_rules! stamp {
 }
 
 macro_rules! stamp_baseline {
-    ($($rows:tt)*) => { stamp! { [cfg(all())] baseline exact_ray $($rows)* } };
+    ($($rows:tt)*) => { stamp! { [cfg(all())] baseline false exact_ray $($rows)* } };
 }
 
 isa::rows!(stamp_baseline);
 
 #[cfg(target_arch = "x86_64")]
 macro_rules! stamp_avx2 {
-    ($($rows:tt)*) => { stamp! { [target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")] avx2 wide_ray $($rows)* } };
+    ($($rows:tt)*) => { stamp! { [target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")] avx2 true wide_ray $($rows)* } };
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -26,7 +26,6 @@ pub(super) struct Place {
 /// Where control goes from one run to the next, and what that and the next run take.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
-    pub place: u32,
     pub step: *const Step,
     pub toll: u64,
 }
@@ -51,6 +50,8 @@ pub(super) struct Walk<'a, L, O> {
     pub count: &'a mut Count,
     pub observer: &'a mut O,
     pub fuse: Fuse,
+    /// The plan's steps for what the fuse knows of the cores.
+    pub steps: *const Step,
     /// The place from which on the observer was told of nothing.
     pub from: u32,
     pub stop: Ended,
@@ -73,12 +74,12 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     /// The place of a step in the plan.
     #[inline(always)]
     pub fn place(&self, step: *const Step) -> u32 {
-        ((step as usize - self.plan.steps().as_ptr() as usize) / size_of::<Step>()) as u32
+        ((step as usize - self.steps as usize) / size_of::<Step>()) as u32
     }
 
     #[inline(always)]
     fn step(&self, place: u32) -> *const Step {
-        self.plan.steps().as_ptr().wrapping_add(place as usize)
+        self.steps.wrapping_add(place as usize)
     }
 
     /// Tells the observer of everything up to a step, after which control goes to another one.
@@ -104,29 +105,32 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     /// The way to a place to which no exit leads whose target is known.
     #[inline(always)]
     pub fn way_to<C: Counting>(&mut self, place: u32) -> Way {
+        let step = self.step(place);
         let toll = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
                 run.begun += u64::from(C::IS_ON);
-                run.toll
+                // SAFETY: there is a step for each of them. The safe twin is `Plan::steps`.
+                unsafe { (*step).toll }
             }
             None => FLAG,
         };
-        Way { place, step: self.step(place), toll }
+        Way { step, toll }
     }
 
     /// Begins at a place.
     pub fn begin<C: Counting>(&mut self, place: u32, sums: u64) -> Place {
         self.from = place;
         let way = self.way_to::<C>(place);
-        self.look::<C>(way, sums)
+        self.look::<C>(way.step, way.toll, sums)
     }
 
     /// Looks at what is to be looked at before a run begins, which is counted already.
     #[cold]
     #[inline(never)]
-    pub fn look<C: Counting>(&mut self, way: Way, sums: u64) -> Place {
-        let Way { place, toll, .. } = way;
+    pub fn look<C: Counting>(&mut self, step: *const Step, toll: u64, sums: u64) -> Place {
+        let place = self.place(step);
         let (sums, begins) = self.fuse.look(self.plan, place, sums, toll);
+        self.steps = self.plan.steps_of(self.fuse.is_held()).as_ptr();
         if begins {
             return Place { step: self.step(place), sums };
         }
@@ -170,13 +174,13 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             self.tell(place, next, flow.motion);
         }
         if is_falling {
-            return Way { place: self.place(step) + 1, step: step.wrapping_add(1), toll: now.edges[0] };
+            return Way { step: step.wrapping_add(1), toll: now.edges[0] };
         }
         if has_target {
             if C::IS_ON {
                 self.count.take_exit(number);
             }
-            return Way { place: now.target, step: self.step(now.target), toll: now.edges[1] };
+            return Way { step: self.step(now.target), toll: now.edges[1] };
         }
         self.way_to::<C>(self.next_place(step, now, flow))
     }
@@ -199,7 +203,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         if C::IS_ON {
             self.count.take_exit(now.exit as usize);
         }
-        Way { place: now.target, step: self.step(now.target), toll: now.edges[1] }
+        Way { step: self.step(now.target), toll: now.edges[1] }
     }
 
     /// Executes an instruction with a meaning in Rust.
@@ -236,7 +240,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             return self.stop(Ended { stopped: Stopped::Fault(fault), place: next, sums, is_cut: false });
         }
         let way = self.way_to::<C>(next);
-        self.look::<C>(way, sums)
+        self.look::<C>(way.step, way.toll, sums)
     }
 
     /// Tells the link when it is asked.

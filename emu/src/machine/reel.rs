@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::arbiter::NEVER;
 use super::bus::{Burst, Lengths};
-use super::recording::Recording;
-use crate::quantity::Clocks;
+use super::recording::{Recording, Segment};
+use crate::quantity::{Clocks, Octets};
 
 /// What a master of the bus plays by itself; nothing at first.
 #[derive(Debug)]
@@ -41,6 +41,34 @@ pub struct Played {
     pub waiting: Clocks,
 }
 
+/// What a master did while nobody else asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Alone {
+    /// The burst that it asks for next.
+    pub burst: Burst,
+    /// When it asks for that.
+    pub arrival: Clocks,
+    /// When the last one ended.
+    pub free: Clocks,
+    /// How long all held the bus.
+    pub held: Clocks,
+    /// What they moved.
+    pub octets: Octets,
+    /// Transfers that ended.
+    pub transfers: u64,
+    /// Bursts, each granted at once.
+    pub bursts: u64,
+}
+
+/// Clocks of computing before a transfer that reads, and its first burst; [`NEVER`] before anything else.
+#[inline(always)]
+fn ahead_of(segments: &[Segment], next: usize, lengths: &Lengths) -> (Clocks, Burst) {
+    match segments.get(next) {
+        Some(segment) if segment.is_read() => (Clocks(segment.clocks.into()), lengths.burst(segment.octets())),
+        _ => (NEVER, Burst::default()),
+    }
+}
+
 /// Whether two ranges have an octet in common.
 pub fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
     one.start < other.end && other.start < one.end
@@ -64,14 +92,8 @@ impl Reel {
 
     #[inline(always)]
     fn look(&mut self, lengths: &Lengths) {
-        let segment = self.recording.as_ref().and_then(|recording| recording.segments.get(self.next));
-        self.computing = NEVER;
-        if let Some(segment) = segment
-            && segment.is_read()
-        {
-            self.computing = Clocks(segment.clocks.into());
-            self.ahead = lengths.burst(segment.octets());
-        }
+        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        (self.computing, self.ahead) = ahead_of(segments, self.next, lengths);
     }
 
     /// Goes on from a transfer to the next one, and yields the clocks of computing between them; `None` when something else is next.
@@ -85,6 +107,46 @@ impl Reel {
         self.next += 1;
         self.look(lengths);
         Some((computing, ahead))
+    }
+
+    /// Goes on while its master asks before `limit`, where nobody else does: so it never waits. Where something else than a transfer comes next,
+    /// the last burst before that is left.
+    #[inline(never)]
+    pub(super) fn roll_alone(&mut self, lengths: &Lengths, first: Burst, arrival: Clocks, limit: Clocks) -> Alone {
+        let mut alone = Alone {
+            burst: first,
+            arrival,
+            free: Clocks(0),
+            held: Clocks(0),
+            octets: Octets(0),
+            transfers: 0,
+            bursts: 0,
+        };
+        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
+        let before = (next, arrival);
+        while alone.arrival < limit {
+            let Burst { octets, rest, length } = alone.burst;
+            let is_last = rest == Octets(0);
+            if is_last && computing == NEVER {
+                break;
+            }
+            alone.free = alone.arrival + length;
+            alone.held += length;
+            alone.octets += octets;
+            alone.bursts += 1;
+            if !is_last {
+                (alone.burst, alone.arrival) = (lengths.burst(rest), alone.free);
+                continue;
+            }
+            (alone.burst, alone.arrival) = (ahead, alone.free + computing);
+            next += 1;
+            (computing, ahead) = ahead_of(segments, next, lengths);
+        }
+        alone.transfers = (next - before.0) as u64;
+        self.busy += alone.arrival - before.1 - alone.held;
+        (self.next, self.computing, self.ahead) = (next, computing, ahead);
+        alone
     }
 
     /// Makes it end with the transfer that its master asks for, where it reads any of these octets.

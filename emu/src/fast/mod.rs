@@ -61,30 +61,38 @@ impl Features {
         self == Features::Baseline
     }
 
+    /// The best of this host that is not above it.
+    pub fn present(self) -> Present {
+        Present(self.min(Features::best()))
+    }
+
     /// The best of this host.
     pub fn best() -> Features {
         Features::ALL.into_iter().rfind(|features| features.is_present()).unwrap_or(Features::Baseline)
     }
 }
 
-/// Runs the lanes of a group until all have halted, with the best features of the host that are not above those given. The results are the
-/// same with all of them.
+/// Features that this host has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Present(Features);
+
+/// Runs the lanes of a group until all have halted, with the features given. The results are the same with all of them.
 ///
 /// # Errors
 /// Something unusual: then the group is worth nothing, and its items are for the interpreter.
 pub fn run<W: Wires, C: Counting>(
-    features: Features,
+    Present(features): Present,
     plan: &Plan,
     group: &mut Group,
     wires: &mut W,
 ) -> Result<(), Unusual> {
     #[cfg(target_arch = "x86_64")]
     {
-        if features >= Features::Avx512 && Features::Avx512.is_present() {
+        if features >= Features::Avx512 {
             // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
             return unsafe { rows::avx512::run::<W, C>(plan, group, wires) };
         }
-        if features >= Features::Avx2 && Features::Avx2.is_present() {
+        if features >= Features::Avx2 {
             // SAFETY: as above.
             return unsafe { rows::avx2::run::<W, C>(plan, group, wires) };
         }

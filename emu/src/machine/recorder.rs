@@ -10,7 +10,7 @@ use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
 use crate::fast::single::{self, Count, Stopped};
-use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Uncounted, Unusual};
+use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Present, Uncounted, Unusual};
 use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, RunObserver, Unobserved};
@@ -134,14 +134,14 @@ pub struct Recorder<'a, T, O> {
 struct One<'a> {
     plan: Plan<'a>,
     count: Count,
-    features: Features,
+    features: Present,
 }
 
 /// What a core needs to record many items at once.
 struct Lockstep<'a> {
     plan: Plan<'a>,
     group: Box<Group>,
-    features: Features,
+    features: Present,
     /// Words that groups executed, each for as many lanes as there were.
     rounds: u64,
 }
@@ -155,7 +155,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let config = setup.config;
         let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
-        let (engine, features) = (setup.options.engine, setup.options.features.unwrap_or_else(Features::best));
+        let (engine, features) =
+            (setup.options.engine, setup.options.features.unwrap_or_else(Features::best).present());
         let plan = (engine != Engine::Checked && !T::IS_WATCHING).then(|| Plan::new(code)).flatten();
         // Who watches each instruction has to see them one after the other.
         let suits = |plan: &Plan| engine == Engine::Lockstep && !O::IS_ACTIVE && plan.is_plain();

@@ -4,7 +4,7 @@ use super::{Count, Stopped, Timeless, Wire};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Watch};
-use crate::fast::{Counted, Features, Plan};
+use crate::fast::{Counted, Features, Plan, Present};
 use crate::profile::RunObserver;
 use crate::tally::Tally;
 
@@ -13,7 +13,7 @@ use crate::tally::Tally;
 pub struct Driver<'a> {
     code: &'a Code<'a>,
     quick: Option<(Plan<'a>, Count)>,
-    features: Features,
+    features: Present,
 }
 
 impl<'a> Driver<'a> {
@@ -24,7 +24,7 @@ impl<'a> Driver<'a> {
             let count = Count::new(&plan, false);
             (plan, count)
         };
-        Driver { code, quick: plan.map(with_count), features: features.unwrap_or(Features::Baseline) }
+        Driver { code, quick: plan.map(with_count), features: features.unwrap_or(Features::Baseline).present() }
     }
 
     /// Whether anything is executed quickly.

@@ -20,7 +20,7 @@ pub use count::Count;
 pub use driver::Driver;
 
 use super::plan::Plan;
-use super::{Counting, Features, Moment};
+use super::{Counting, Features, Moment, Present};
 use crate::checked::{Seat, State};
 use crate::exec::{Link, Message, hand_on};
 use crate::octets::Buffer;
@@ -53,10 +53,9 @@ pub enum Stopped {
     Unusual,
 }
 
-/// Runs until the program halts, waits or comes to something unusual, with the best features of the host that are not above those given. The
-/// results are the same with all of them.
+/// Runs until the program halts, waits or comes to something unusual, with the features given. The results are the same with all of them.
 pub fn run<L: Wire, O: RunObserver, C: Counting>(
-    features: Features,
+    Present(features): Present,
     plan: &Plan,
     seat: Seat,
     state: &mut State,
@@ -65,7 +64,7 @@ pub fn run<L: Wire, O: RunObserver, C: Counting>(
     observer: &mut O,
 ) -> Stopped {
     #[cfg(target_arch = "x86_64")]
-    if features >= Features::Avx2 && Features::Avx2.is_present() {
+    if features >= Features::Avx2 {
         let run = |registers: &mut Registers, first: Place, walk: &mut Walk<L, O>| {
             // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
             unsafe { rows::avx2::run::<L, O, C>(registers, first, walk) }

@@ -94,19 +94,6 @@ pub struct Group {
     pub steps: u64,
 }
 
-/// How a control row leaves its lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Turn {
-    /// All go to one word.
-    Together(u32),
-    /// They go to two words: those of the set to the first.
-    Fork(Mask, u32, u32),
-    /// Each goes where [`Group::next`] says.
-    Apart,
-    /// They halt.
-    Halt,
-}
-
 impl Group {
     /// A group on a program, its buffers as they are at first.
     pub fn new(plan: &Plan, seat: Seat, initial: &Buffer) -> Group {
@@ -185,34 +172,41 @@ impl Group {
         (lanes, &mut buffers[lane], move |lane| Moment { pc, clocks: clocks(lane) })
     }
 
-    /// Sends the lanes of the block on.
-    #[inline(always)]
-    pub(super) fn turn(&mut self, turn: Turn) {
-        match turn {
-            Turn::Together(pc) => self.queue.push(Party::new(self.depth, pc, self.mask)),
-            Turn::Fork(first, pc, other) => {
-                let (here, there) = (self.mask & first, self.mask & !first);
-                if here != 0 {
-                    self.queue.push(Party::new(self.depth, pc, here));
-                }
-                if there != 0 {
-                    self.queue.push(Party::new(self.depth, other, there));
-                }
-            }
-            Turn::Apart => {
-                let mut rest = self.mask;
-                while rest != 0 {
-                    let pc = self.next[rest.trailing_zeros() as usize];
-                    let here = super::lanes::where_true(|lane| self.next[lane] == pc) & rest;
-                    self.queue.push(Party::new(self.depth, pc, here));
-                    rest &= !here;
-                }
-            }
-            Turn::Halt => {
-                for lane in each(self.mask) {
-                    self.halted_at[lane] = self.pc;
-                }
-            }
+    /// The lanes of the block go to one word.
+    #[inline]
+    pub(super) fn go(&mut self, pc: u32) {
+        self.queue.push(Party::new(self.depth, pc, self.mask));
+    }
+
+    /// They go to two words: those of the set to the first.
+    #[inline(never)]
+    pub(super) fn fork(&mut self, first: Mask, pc: u32, other: u32) {
+        let (here, there) = (self.mask & first, self.mask & !first);
+        if here != 0 {
+            self.queue.push(Party::new(self.depth, pc, here));
+        }
+        if there != 0 {
+            self.queue.push(Party::new(self.depth, other, there));
+        }
+    }
+
+    /// Each goes where [`Group::next`] says.
+    #[inline(never)]
+    pub(super) fn scatter(&mut self) {
+        let mut rest = self.mask;
+        while rest != 0 {
+            let pc = self.next[rest.trailing_zeros() as usize];
+            let here = super::lanes::where_true(|lane| self.next[lane] == pc) & rest;
+            self.queue.push(Party::new(self.depth, pc, here));
+            rest &= !here;
+        }
+    }
+
+    /// They halt.
+    #[inline(never)]
+    pub(super) fn halt(&mut self) {
+        for lane in each(self.mask) {
+            self.halted_at[lane] = self.pc;
         }
     }
 }

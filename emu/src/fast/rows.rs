@@ -134,7 +134,7 @@ macro_rules! row {
     ({ $features:tt control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] [$(($written:ident $written_kind:ident))*]) => {
         # $features
         #[allow(unused_variables, reason = "rows differ in what they read and write")]
-        pub fn $name<C: Counting>(plan: &Plan, group: &mut Group, slot: &Slot) -> Result<Turn, Unusual> {
+        pub fn $name<C: Counting>(plan: &Plan, group: &mut Group, slot: &Slot) -> Result<(), Unusual> {
             let (fields, lanes, mask) = (&slot.fields, &mut group.lanes, group.mask);
             let here = Flow::new(group.pc, group.pc.wrapping_add(1), group.seat.core, group.seat.cores);
             $(let $letter = copy!(lanes, fields, $letter $kind);)*
@@ -156,11 +156,16 @@ macro_rules! row {
                     group.meter.pass(plan, slot.first_exit as usize + 1, taken);
                 }
                 let next = |lanes: Mask| group.next[lanes.trailing_zeros() as usize % LANES];
-                return Ok(Turn::Fork(taken, next(taken), next(fallen)));
+                let (first, other) = (next(taken), next(fallen));
+                group.fork(taken, first, other);
+                return Ok(());
             }
             const { assert!(exit::$name::Exit::EXITS <= 2) };
             match end {
-                Some(End::Halt) => return Ok(Turn::Halt),
+                Some(End::Halt) => {
+                    group.halt();
+                    return Ok(());
+                }
                 Some(End::Trap(_)) => return Err(Unusual),
                 None => {}
             }
@@ -171,7 +176,11 @@ macro_rules! row {
             };
             let next = group.next[mask.trailing_zeros() as usize % LANES];
             let same = where_true(|lane| group.next[lane] == next);
-            Ok(if mask & !same == 0 { Turn::Together(next) } else { Turn::Apart })
+            match mask & !same {
+                0 => group.go(next),
+                _ => group.scatter(),
+            }
+            Ok(())
         }
     };
 }
@@ -180,20 +189,20 @@ macro_rules! row {
 macro_rules! call {
     (pure RayRoom $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {{
         rows::$name::<$count>($plan, $group, $slot);
-        Ok(None)
+        Ok(false)
     }};
     (pure $trait:ident $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {{
         rows::$name($group, $slot);
-        Ok(None)
+        Ok(false)
     }};
     (local $trait:ident $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {
-        rows::$name($group, $slot).map(|()| None)
+        rows::$name($group, $slot).map(|()| false)
     };
     (bus $trait:ident $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {
-        rows::$name::<W, $count>($plan, $group, $slot, $wires).map(|()| None)
+        rows::$name::<W, $count>($plan, $group, $slot, $wires).map(|()| false)
     };
     (control $trait:ident $name:ident $plan:ident $group:ident $slot:ident $wires:ident $count:ident) => {
-        rows::$name::<$count>($plan, $group, $slot).map(Some)
+        rows::$name::<$count>($plan, $group, $slot).map(|()| true)
     };
 }
 
@@ -207,7 +216,7 @@ macro_rules! stamp {
         pub(super) mod $module {
             use isa::Op;
 
-            use super::super::group::{Counting, Group, Turn, Unusual, Wires};
+            use super::super::group::{Counting, Group, Unusual, Wires};
             use super::super::plan::Plan;
             use crate::code::Slot;
 
@@ -218,7 +227,7 @@ macro_rules! stamp {
                 use isa::table::{Ending, exit};
 
                 use super::super::{FEW, is_heavy, is_read};
-                use super::super::super::group::{Counting, Group, Moment, Turn, Unusual, Wires};
+                use super::super::super::group::{Counting, Group, Moment, Unusual, Wires};
                 use super::super::super::lanes::{LANES, Mask, each, fill, where_true};
                 use super::super::super::operands::{blend, clear_zero, copy, finish, get, keep, pick, set, spread};
                 use super::super::super::plan::Plan;
@@ -234,7 +243,7 @@ macro_rules! stamp {
                 $($(split_operands! { row { $features $style $trait $name } [] [] ($($operands)*) })*)*
             }
 
-            /// Executes a word; control rows say where the lanes go.
+            /// Executes a word, and yields whether it sent the lanes elsewhere, as control rows do.
             # $features
             #[inline]
             fn execute<W: Wires, C: Counting>(
@@ -242,7 +251,7 @@ macro_rules! stamp {
                 group: &mut Group,
                 slot: &Slot,
                 wires: &mut W,
-            ) -> Result<Option<Turn>, Unusual> {
+            ) -> Result<bool, Unusual> {
                 match slot.op {
                     $($(Some(Op::$name) => call!($style $trait $name plan group slot wires C),)*)*
                     Some(Op::Ext(_)) | None => Err(Unusual),
@@ -257,17 +266,17 @@ macro_rules! stamp {
                 wires: &mut W,
             ) -> Result<(), Unusual> {
                 while group.begin_block::<C>(plan)? {
-                    let turn = loop {
+                    loop {
                         let slot = &plan.slots()[group.pc as usize];
-                        if let Some(turn) = execute::<W, C>(plan, group, slot, wires)? {
-                            break turn;
+                        if execute::<W, C>(plan, group, slot, wires)? {
+                            break;
                         }
                         group.pc += 1;
                         if group.pc == group.end {
-                            break Turn::Together(group.pc);
+                            group.go(group.pc);
+                            break;
                         }
-                    };
-                    group.turn(turn);
+                    }
                 }
                 Ok(())
             }

@@ -19,6 +19,13 @@ fn range(address: u32, length: u32, size: usize) -> Option<std::ops::Range<usize
     (end <= size).then_some(start..end)
 }
 
+/// Words of 32 bits, of as many octets.
+#[inline(always)]
+pub(crate) fn words_of<const N: usize>(octets: &[u8]) -> [i32; N] {
+    let (words, _) = octets.as_chunks::<4>();
+    std::array::from_fn(|at| i32::from_le_bytes(words[at]))
+}
+
 /// The local buffer of a core: octet addresses from 0, little-endian, any alignment.
 #[derive(Clone, Debug)]
 pub struct Buffer {

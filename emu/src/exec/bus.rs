@@ -5,7 +5,7 @@ use isa::number::Vector;
 use isa::table::{Done, Each};
 
 use super::BusRoom;
-use crate::octets::Buffer;
+use crate::octets::{Buffer, words_of};
 use crate::trap::{Fault, Stop};
 
 /// Most vectors that a message carries.
@@ -47,34 +47,25 @@ impl Message {
 }
 
 /// The machine as one core sees it. Every call either happens whole or not at all: `Stop::Wait` means that the core is
-/// to try the same instruction again when the machine says so, and what a link has no answer for it leaves at that.
+/// to try the same instruction again when the machine says so.
 pub trait Link {
     /// Copies `octets` octets from global memory at `from` to the buffer at `to`.
     ///
     /// # Errors
     /// A range that leaves buffer or memory, or not yet.
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        let _ = (buffer, to, from, octets);
-        Err(Stop::Wait)
-    }
+    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
 
     /// Copies `octets` octets from the buffer at `from` to global memory at `to`.
     ///
     /// # Errors
     /// A range that leaves buffer or memory, or not yet.
-    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        let _ = (buffer, to, from, octets);
-        Err(Stop::Wait)
-    }
+    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop>;
 
     /// Reads words of 32 bits from global memory from `address` on, in one transfer.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        let _ = (address, words);
-        Err(Stop::Wait)
-    }
+    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop>;
 
     /// What a read finds, where that can be had at once; then it has been read. `None` says nothing, and then nothing has happened.
     #[inline(always)]
@@ -101,50 +92,37 @@ pub trait Link {
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
-        let _ = (address, words);
-        Err(Stop::Wait)
-    }
+    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop>;
 
     /// Adds to the 32 bits of global memory at `address`, modulo 2^32, and returns what they were.
     ///
     /// # Errors
     /// An address beyond the memory, or not yet.
-    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
-        let _ = (address, more);
-        Err(Stop::Wait)
-    }
+    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop>;
 
     /// Puts a message into the mailbox that core `to` has for this core.
     ///
     /// # Errors
     /// No such core, or not yet.
-    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
-        let _ = (to, message);
-        Err(Stop::Wait)
-    }
+    fn send(&mut self, to: i32, message: Message) -> Result<(), Stop>;
 
     /// Takes the message that arrived first, of several at the same time that of the lowest sender.
     ///
     /// # Errors
     /// None there yet.
-    fn receive(&mut self) -> Result<(Message, u32), Stop> {
-        Err(Stop::Wait)
-    }
+    fn receive(&mut self) -> Result<(Message, u32), Stop>;
 
     /// Waits for the others.
     ///
     /// # Errors
     /// Some have not come yet.
-    fn barrier(&mut self) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
+    fn barrier(&mut self) -> Result<(), Stop>;
 }
 
-/// A link that hands on to another one.
-macro_rules! hand_on {
-    ([$($head:tt)*] $link:ident => $to:expr) => {
-        $crate::exec::hand_on! { [$($head)*] $link => $to;
+/// Hands the methods that every link has to a macro, behind what is for it.
+macro_rules! methods {
+    ($macro:ident! $($arguments:tt)*) => {
+        $crate::exec::$macro! { $($arguments)*
             load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
             store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
             read(address: u32, words: &mut [i32]) -> ();
@@ -155,27 +133,45 @@ macro_rules! hand_on {
             barrier() -> ();
         }
     };
-    ([$($head:tt)*] $link:ident => $to:expr; $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
-        $($head)* {
-            $(fn $name(&mut $link, $($argument: $kind),*) -> Result<$result, Stop> {
-                $to.$name($($argument),*)
-            })*
+}
+
+/// The methods of a link that hands on to another one.
+macro_rules! hand_on {
+    ($link:ident => $to:expr; $($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+        $(fn $name(&mut $link, $($argument: $kind),*) -> Result<$result, Stop> {
+            $to.$name($($argument),*)
+        })*
+
+        fn glance(&mut $link, address: u32, octets: u32) -> Option<&[u8]> {
+            $to.glance(address, octets)
         }
     };
 }
 
-pub(crate) use hand_on;
+/// The methods of a link that refuses everything.
+macro_rules! refuse {
+    ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
+        $(fn $name(&mut self, $(_: $kind),*) -> Result<$result, Stop> {
+            Err(Stop::Wait)
+        })*
+    };
+}
 
-hand_on! { [impl<L: Link + ?Sized> Link for &mut L] self => (**self) }
+pub(crate) use {hand_on, methods, refuse};
+
+impl<L: Link + ?Sized> Link for &mut L {
+    methods! { hand_on! self => (**self); }
+}
 
 /// What of a link can be had at once: [`Link::glance`].
 pub(crate) struct Glance<'a, L>(pub &'a mut L);
 
 impl<L: Link> Link for Glance<'_, L> {
+    methods! { refuse! }
+
     #[inline(always)]
     fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        let (words, _) = self.0.glance(address, 4 * N as u32).ok_or(Stop::Wait)?.as_chunks::<4>();
-        Ok(std::array::from_fn(|at| i32::from_le_bytes(words[at])))
+        Ok(words_of(self.0.glance(address, 4 * N as u32).ok_or(Stop::Wait)?))
     }
 }
 

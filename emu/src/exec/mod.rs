@@ -17,7 +17,7 @@ mod wide;
 use isa::number::Vector;
 use isa::table::exit;
 
-pub(crate) use bus::{Glance, hand_on};
+pub(crate) use bus::{Glance, hand_on, methods, refuse};
 pub use bus::{Link, Message, Port};
 pub use control::{End, Flow, Motion};
 pub use watch::{Watch, Watching};

@@ -166,10 +166,14 @@ impl Group {
         plan: &Plan,
         lane: usize,
     ) -> (&mut Lanes, &mut Buffer, impl Fn(usize) -> Moment) {
-        let Group { lanes, buffers, meter, pc, end, .. } = self;
-        let (pc, rest, meter) = (*pc, plan.toll(*pc, *end), &*meter);
+        let Group { lanes, buffers, meter, mask, pc, end, .. } = self;
+        let (pc, rest, meter, mask) = (*pc, plan.toll(*pc, *end), &*meter, *mask);
         let clocks = move |lane| if C::IS_ON { meter.clocks_before(lane, rest) } else { 0 };
-        (lanes, &mut buffers[lane], move |lane| Moment { pc, clocks: clocks(lane) })
+        let moment = move |lane: usize| {
+            debug_assert!(mask >> lane & 1 == 1, "only lanes that execute are at a word");
+            Moment { pc, clocks: clocks(lane) }
+        };
+        (lanes, &mut buffers[lane], moment)
     }
 
     /// The lanes of the block go to one word.

@@ -5,7 +5,7 @@
 use isa::Op;
 
 /// Rows whose meanings do not become vector instructions: they go from lane to lane. A row that is missing here, or here without need, costs
-/// time and nothing else.
+/// time and nothing else, as long as `super::single::rows` has it among those that go back.
 pub(super) const fn is_heavy(op: Op) -> bool {
     matches!(
         op,

@@ -2,7 +2,7 @@
 
 use super::arbiter::{Arbiter, Claims, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
-use super::reel::Reel;
+use super::reel::{Alone, Reel};
 use super::waits::Waits;
 use crate::quantity::{Clocks, Octets};
 
@@ -29,6 +29,14 @@ impl BusUse {
         self.transfers += u64::from(grant.is_last);
         self.bursts += 1;
         self.longest_wait = self.longest_wait.max(grant.waited);
+    }
+
+    #[inline(always)]
+    fn add_alone(&mut self, alone: &Alone) {
+        self.busy += alone.held;
+        self.moved += alone.octets;
+        self.transfers += alone.transfers;
+        self.bursts += alone.bursts;
     }
 }
 
@@ -263,10 +271,8 @@ impl Bus {
                 let alone = reel.roll_alone(&lengths, *burst, Clocks(arrivals[master]), limit);
                 if alone.bursts != 0 {
                     (free, *burst, arrivals[master]) = (alone.free, alone.burst, alone.arrival.0);
-                    used.busy += alone.held;
-                    used.moved += alone.octets;
-                    (used.transfers, used.bursts) = (used.transfers + alone.transfers, used.bursts + alone.bursts);
-                    waits[master].0[0] += alone.bursts;
+                    used.add_alone(&alone);
+                    waits[master].add_none(alone.bursts);
                 }
             }
         };

@@ -361,6 +361,9 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         self.observer.end();
         room.take(segments.len() % Room::PORTION);
         self.usual = segments.len().min(Room::PORTION);
+        if segments.len() < segments.capacity() / 2 {
+            segments.shrink_to_fit();
+        }
         if self.observer.origin.depends_on_core {
             return Err("a work item asks which core it runs on");
         }

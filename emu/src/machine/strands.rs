@@ -4,7 +4,7 @@ use super::kinds::Kinds;
 use super::recording::Segment;
 use super::room::Room;
 use super::station::{Access, Request};
-use crate::exec::{Link, Message};
+use crate::exec::{Link, Message, methods};
 use crate::fast::single::Wire;
 use crate::fast::{Mask, Moment, Wires, each};
 use crate::octets::{Buffer, Memory};
@@ -99,23 +99,20 @@ impl<F: Fn(usize) -> Moment> StrandLinks<'_, '_, F> {
             *begun |= self.mask;
         }
         if *keeping == Keeping::Passes {
-            kinds.add((self.moments)(0).pc, Some(request(lanes * octets)));
+            kinds.add((self.moments)(self.mask.trailing_zeros() as usize).pc, Some(request(lanes * octets)));
         }
         Ok(())
     }
 }
 
 impl<F: Fn(usize) -> Moment> Link for StrandLinks<'_, '_, F> {
+    methods! { refuse! }
+
     #[inline(always)]
     fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
         let words = self.strands.memory.words(address)?;
         self.enter(address, 4 * N as u64)?;
         Ok(words)
-    }
-
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        self.strands.memory.read_words(address, words)?;
-        self.enter(address, 4 * words.len() as u64)
     }
 }
 
@@ -191,6 +188,10 @@ impl Link for StrandLink<'_> {
         Ok(self.memory.read(from, place)?)
     }
 
+    fn store(&mut self, _: &Buffer, _: u32, _: u32, _: u32) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+
     #[inline(always)]
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         self.ask(Access::Read, address, 4 * words.len() as u32)?;
@@ -219,6 +220,14 @@ impl Link for StrandLink<'_> {
         Ok(words)
     }
 
+    fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+
+    fn fetch_add(&mut self, _: u32, _: i32) -> Result<i32, Stop> {
+        Err(Stop::Wait)
+    }
+
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         if u32::try_from(to).ok() != Some(self.main) {
             return Err(Stop::Wait);
@@ -233,5 +242,8 @@ impl Link for StrandLink<'_> {
         let message = strand.message.take().ok_or(Stop::Wait)?;
         strand.before = self.moment.clocks;
         Ok((message, self.main))
+    }
+    fn barrier(&mut self) -> Result<(), Stop> {
+        Err(Stop::Wait)
     }
 }

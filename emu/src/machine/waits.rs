@@ -26,6 +26,11 @@ impl Waits {
         self.0[column.min(Waits::COLUMNS - 1)] += 1;
     }
 
+    /// Notes grants without a wait.
+    pub fn add_none(&mut self, count: u64) {
+        self.0[0] += count;
+    }
+
     /// Number of waits.
     pub fn total(&self) -> u64 {
         self.0.iter().sum()

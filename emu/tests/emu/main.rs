@@ -1,5 +1,6 @@
 //! Programs on the machine, and what they must do, take and count.
 
+mod alike;
 mod builder;
 mod bus;
 mod engine;
@@ -11,5 +12,6 @@ mod profile;
 mod ray;
 mod replay;
 mod saturation;
+mod stack;
 mod totals;
 mod traps;

@@ -117,10 +117,13 @@ proptest! {
 
 fn why(core: impl FnOnce(&mut Builder), main: &Program) -> &'static str {
     let core = program(core);
-    match both(&Config::default(), &core, main).method {
+    let why = |cores| match both(&Config { cores, ..Config::default() }, &core, main).method {
         Method::Stepped { why } => why,
         Method::Replayed => "",
-    }
+    };
+    // A core that is alone with the main processor is played by itself.
+    assert_eq!(why(1), why(4));
+    why(4)
 }
 
 /// The end of a work item that answers with its number.

@@ -22,7 +22,7 @@ pub use driver::Driver;
 use super::plan::Plan;
 use super::{Counting, Features, Moment, Present};
 use crate::checked::{Seat, State};
-use crate::exec::{Link, Message, hand_on};
+use crate::exec::{Link, Message, methods};
 use crate::octets::Buffer;
 use crate::profile::RunObserver;
 use crate::registers::Registers;
@@ -87,6 +87,8 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     observer: &mut O,
     run: impl FnOnce(&mut Registers, Place, &mut Walk<L, O>),
 ) -> Stopped {
+    // Rows count without a look at how much there is.
+    assert_eq!((count.runs.len(), count.exits.len()), (plan.steps().len(), plan.exits()), "they are of one plan");
     let fuse = Fuse::new(state, seat, count.origin, count.is_following);
     if state.pc as usize >= plan.slots().len() {
         return Stopped::Unusual;
@@ -112,7 +114,9 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     stopped
 }
 
-hand_on! { [impl Link for Timeless<'_>] self => self.0 }
+impl Link for Timeless<'_> {
+    methods! { hand_on! self => self.0; }
+}
 
 impl Wire for Timeless<'_> {
     fn keeps_time(&self) -> bool {

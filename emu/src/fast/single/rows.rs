@@ -8,14 +8,16 @@ use crate::fast::plan::Step;
 use crate::fast::rows::is_heavy;
 use crate::registers::Registers;
 
-/// A row: it does what the step says, goes on with the rows behind it as long as they are cheap, and yields where that led to.
+/// A row: it does what the step says, goes on with the rows behind it unless it [goes back](goes_back), and yields where that led to.
 /// The last number is that of [`Place::sums`].
 type RowFunction<L, O> = unsafe fn(&mut Registers, *const Step, &mut Walk<L, O>, u64) -> Place;
 
-/// Rows whose functions keep something on the stack for what they call, so that a call in their last place does not become a jump: they go back
-/// to the loop. `is_wide` where some of the ray unit are done in a way that suits the host.
+/// Rows whose functions keep much on the stack for what they call, so that a call in their last place does not become a jump: they go back to the
+/// loop. `is_wide` for a host with vectors, where fewer do. What other rows leave there, as some do with debug assertions, is given back when a
+/// sum has come to half of its room.
 const fn goes_back(op: Op, is_wide: bool) -> bool {
-    is_heavy(op) || matches!(op, Op::rbox) || !is_wide && matches!(op, Op::rtri | Op::rexit)
+    let is_kept = !is_wide && matches!(op, Op::rtri | Op::rexit | Op::rstep);
+    is_heavy(op) || matches!(op, Op::rbox) || is_kept || cfg!(debug_assertions) && matches!(op, Op::rstep)
 }
 
 /// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
@@ -145,7 +147,7 @@ macro_rules! row {
                     Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
                 }
             }}
-            // SAFETY: as of this function.
+            // SAFETY: the step and the host are those of this function; the safe twin is `crate::checked::run`.
             unsafe { whole::<L, O, C>(registers, step, walk, sums) }
         }}
     };

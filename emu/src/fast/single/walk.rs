@@ -74,7 +74,9 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     /// The place of a step in the plan.
     #[inline(always)]
     pub fn place(&self, step: *const Step) -> u32 {
-        ((step as usize - self.steps as usize) / size_of::<Step>()) as u32
+        let place = ((step as usize).wrapping_sub(self.steps as usize) / size_of::<Step>()) as u32;
+        debug_assert!(place <= self.plan.end() + 1, "a step of these, and not of the other ones");
+        place
     }
 
     #[inline(always)]
@@ -109,7 +111,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
         let toll = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
                 run.begun += u64::from(C::IS_ON);
-                // SAFETY: there is a step for each of them. The safe twin is `Plan::steps`.
+                // SAFETY: there is a step for each of the counts, which `super::walk` has compared. The safe twin is `Plan::steps`.
                 unsafe { (*step).toll }
             }
             None => FLAG,

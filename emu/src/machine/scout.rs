@@ -21,11 +21,11 @@ use crate::profile::{Observer, Profile, RunObserver, Unobserved};
 use crate::tally::Tally;
 use crate::trap::{Fault, Stop};
 
-/// Cores that the main processor sees, and so work items in a batch.
-const LANES: u32 = 256;
+/// Cores that the main processor sees, and so work items in a batch. With fewer, host threads wait for each other more often than they work.
+const LANES: u32 = 1024;
 
-/// Segments in a batch, at most; 64 MiB of them. What is longer is stepped.
-const MOST_SEGMENTS: usize = 1 << 22;
+/// Segments in a batch, at most; 128 MiB of them. What is longer is stepped.
+const MOST_SEGMENTS: usize = 1 << 23;
 
 const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
 

@@ -299,7 +299,17 @@ impl Bus {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::super::arbiter::ArbiterKind;
+    use super::super::recording::{Recording, Segment};
+    use super::super::station::{Access, Request};
     use super::*;
+    use crate::checked::Pause;
+    use crate::exec::Message;
 
     #[test]
     fn a_burst_is_as_long_with_a_shift_as_with_a_division() {
@@ -310,6 +320,75 @@ mod tests {
                 bus.request(0, Clocks(5), Octets(octets));
                 let grant = bus.decide(Clocks(5)).expect("it is alone");
                 assert_eq!(grant.end - grant.start, config.length(Octets(octets)), "{octets_per_beat} {octets}");
+            }
+        }
+    }
+    /// A work item that reads what these segments say: clocks of computing, octets.
+    fn recording(segments: &[(u64, u64)]) -> Arc<Recording> {
+        let segment = |&(clocks, octets): &(u64, u64)| {
+            let request = Request::Transfer { address: 0, octets: Octets(octets), access: Access::Read };
+            Segment::new(clocks, 0, request, 0).expect("it fits")
+        };
+        Arc::new(Recording {
+            message: Message::new([[0; 3]]),
+            segments: segments.iter().map(segment).collect(),
+            reads: 0..64,
+            octets: Octets(0),
+            sent: Vec::new(),
+            last_clocks: 0,
+            last_pc: 0,
+            end: Pause::Halt,
+            steps: 0,
+            elementary: 0,
+            depends_on_cores: false,
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(3), ..ProptestConfig::default() })]
+
+        /// All that a bus does by itself, it does as if the arbiter had been asked each time.
+        #[test]
+        fn ranks_and_masters_alone_are_short_cuts(
+            kind in prop::sample::select(vec![ArbiterKind::FixedPriority, ArbiterKind::RoundRobin, ArbiterKind::OldestFirst]),
+            masters in 1u32..6, burst_octets in 0u64..30, setup_clocks in 0u64..4,
+            items in prop::collection::vec(
+                (0u32..6, 0u64..40, prop::collection::vec((0u64..30, 1u64..60), 1..8), 0u64..200, any::<bool>()), 1..20,
+            ),
+        ) {
+            let config = BusConfig { arbiter: kind, burst_octets, setup_clocks, ..BusConfig::default() };
+            let new = || (Bus::new(&config, masters), (0..masters).map(|_| Reel::default()).collect::<Vec<_>>());
+            let ((mut quick, mut reels), (mut plain, mut plain_reels)) = (new(), new());
+            let mut now = Clocks(0);
+            for (master, pause, segments, time, is_stopped) in items {
+                let master = master % masters;
+                let arrival = now + Clocks(pause);
+                if quick.claims.arrival(master) == NEVER {
+                    let item = recording(&segments);
+                    for (bus, reels) in [(&mut quick, &mut reels), (&mut plain, &mut plain_reels)] {
+                        let reel = &mut reels[master as usize];
+                        let _ = reel.unwind(arrival);
+                        bus.request(master, arrival, item.segments[0].octets());
+                        reel.wind(item.clone(), 1, arrival, &bus.lengths);
+                        if is_stopped {
+                            reel.stop_at(&(0..1));
+                        }
+                    }
+                }
+                now = arrival + Clocks(time);
+                loop {
+                    let grant = quick.serve(&mut reels, now);
+                    prop_assert_eq!(grant, plain.serve_by_choice(&mut plain_reels, now));
+                    prop_assert_eq!(quick.used(), plain.used());
+                    prop_assert_eq!((quick.waits(), quick.free_at), (plain.waits(), plain.free_at));
+                    prop_assert_eq!(format!("{:?}", reels), format!("{:?}", plain_reels));
+                    for master in 0..masters {
+                        prop_assert_eq!(quick.claims.arrival(master), plain.claims.arrival(master));
+                    }
+                    if grant.is_none() {
+                        break;
+                    }
+                }
             }
         }
     }

@@ -74,7 +74,7 @@ pub trait Link {
         None
     }
 
-    /// The same for a number of words that is known.
+    /// [`Link::read`] for a number of words that is known.
     ///
     /// # Errors
     /// As [`Link::read`].

@@ -21,7 +21,8 @@ use crate::profile::{Observer, Profile, RunObserver, Unobserved};
 use crate::tally::Tally;
 use crate::trap::{Fault, Stop};
 
-/// Cores that the main processor sees, and so work items in a batch. With fewer, host threads wait for each other more often than they work.
+/// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
+/// were hardly faster than one, because a thread takes its time to begin.
 const LANES: u32 = 1024;
 
 /// Segments in a batch, at most; 128 MiB of them. What is longer is stepped.

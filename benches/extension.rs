@@ -14,8 +14,8 @@ use emu::octets::Memory;
 use emu::registers::Registers;
 use emu::trap::Fault;
 use isa::Isa;
-use isa::diagnostic::Source;
 use isa::number::{Arithmetic, Nearest32, Vector};
+use messages::Source;
 
 /// Times that the loop executes each of its eight instructions.
 const PASSES: u32 = 10_000;

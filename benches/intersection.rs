@@ -7,10 +7,10 @@ use std::time::Instant;
 
 use emu::machine::{self, Config, Engine, Options, Setup};
 use emu::octets::Memory;
-use isa::diagnostic::Source;
 use isa::number::ray::{Ray, TriangleEnd, ratio, triangle};
 use isa::number::{Arithmetic, Nearest32, Vector};
 use isa::{Isa, Program};
+use messages::Source;
 
 const RAYS: usize = 64;
 const TRIANGLES: usize = 4096;

@@ -1,6 +1,6 @@
 //! How a command ends: its exit code, and what it says when it could not do its work.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 /// Exit codes of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 use scenes::generate::{self, SCENES};
 use scenes::read::{self, Loaded};
 
-use isa::diagnostic::Report;
+use messages::Report;
 
 /// Reads or generates a scene. `name` is a file (a `.dsc` with its mesh beside it or named by `mesh`, or a mesh alone);
 /// where there is no such file, it may be the name of a generated scene, which then has `size` pixels.
@@ -26,7 +26,7 @@ pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Resul
     let names = || SCENES.iter().map(|generator| generator.name);
     let near = read::load(path, None).err().and_then(|report| report.0.into_iter().next()?.hint);
     let hint = match (did_you_mean(name, names()), near) {
-        (Some(generated), _) => format!("did you mean `{generated}`?"),
+        (Some(hint), _) => hint,
         (None, Some(file)) => file,
         (None, None) => format!("the generated scenes are {}", names().collect::<Vec<_>>().join(", ")),
     };

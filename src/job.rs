@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use emu::machine::{Config, Engine};
 use isa::Isa;
-use isa::diagnostic::{Diagnostic, Report};
 use kernels::build::{Crop, Options as KernelOptions};
+use messages::{Diagnostic, Report};
 use scenes::image::Options as MemoryOptions;
 use scenes::model::{Camera, Scene, View};
 

@@ -4,9 +4,9 @@
 use emu::machine::{Config, Engine, Options, Setup};
 use emu::octets::Memory;
 use isa::Isa;
-use isa::diagnostic::Report;
 use kernels::annex::load;
 use kernels::build::Build;
+use messages::Report;
 use scenes::cadrage::Formats;
 use scenes::image::{self, Image, Kind};
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use emu::machine::Config;
 use emu::machine::preset::PRESETS;
-use isa::diagnostic::{Diagnostic, Report, did_you_mean};
+use messages::{Diagnostic, Report, did_you_mean};
 
 use crate::files;
 
@@ -23,12 +23,9 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     let is_file = path.exists() || path.extension().is_some() || name.contains(std::path::is_separator);
     if !is_file {
         let names = || PRESETS.iter().map(|preset| preset.name);
-        let hint = match did_you_mean(name, names()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => {
-                format!("presets: {}; a machine of your own is a .toml file", names().collect::<Vec<_>>().join(", "))
-            }
-        };
+        let hint = did_you_mean(name, names()).unwrap_or_else(|| {
+            format!("presets: {}; a machine of your own is a .toml file", names().collect::<Vec<_>>().join(", "))
+        });
         return Err(Diagnostic::error(format!("there is no machine `{name}`")).hint(hint).into());
     }
     let config = Config::parse(&files::source(path)?)?;
@@ -118,7 +115,7 @@ pub fn commented(name: &str, config: &Config) -> String {
 
 #[cfg(test)]
 mod tests {
-    use isa::diagnostic::Source;
+    use messages::Source;
 
     use super::*;
 

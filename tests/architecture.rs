@@ -4,8 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Crates that each crate may build on. The root package may build on all.
-const MAY_USE: [(&str, &[&str]); 5] =
-    [("isa", &[]), ("asm", &["isa"]), ("emu", &["isa"]), ("scenes", &["isa"]), ("kernels", &["isa", "asm", "scenes"])];
+const MAY_USE: [(&str, &[&str]); 6] = [
+    ("messages", &[]),
+    ("isa", &["messages"]),
+    ("asm", &["messages", "isa"]),
+    ("emu", &["messages", "isa"]),
+    ("scenes", &["messages"]),
+    ("kernels", &["messages", "isa", "asm", "scenes"]),
+];
 
 /// Crates that only tests of a crate may use besides.
 const TESTS_MAY_USE: [(&str, &[&str]); 1] = [("kernels", &["emu"])];

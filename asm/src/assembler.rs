@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use isa::diagnostic::Source;
 use isa::program::Line as ProgramLine;
 use isa::table::Op;
 use isa::{Isa, Program};
+use messages::Source;
 
 use crate::definition::Alias;
 use crate::directive::DIRECTIVES;

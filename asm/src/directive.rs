@@ -1,6 +1,6 @@
 //! The directives, as data for readers and manuals, and what each one starts.
 
-use isa::diagnostic::Severity;
+use messages::Severity;
 
 use crate::assembler::{Assembler, Section};
 use crate::conditional::Test;

@@ -39,8 +39,8 @@ mod token;
 
 use std::sync::Arc;
 
-use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
+use messages::{Report, Source};
 
 pub use disassembly::{disassemble, disassemble_program};
 pub use listing::listing;

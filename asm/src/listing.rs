@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use isa::diagnostic::{Severity, Source};
+use messages::{Severity, Source};
 
 use crate::Attempt;
 use crate::assembler::Section;
@@ -94,7 +94,7 @@ type At = (u16, u32);
 /// The messages in short, by line.
 fn line_messages(attempt: &Attempt) -> Vec<(At, String)> {
     let index = |source: &Arc<Source>| attempt.program.sources.iter().position(|other| Arc::ptr_eq(other, source));
-    let one = |message: &isa::diagnostic::Diagnostic| {
+    let one = |message: &messages::Diagnostic| {
         let at = message.place.as_ref().and_then(|(place, _)| {
             let (line, _) = place.source.line_column(place.span.start);
             Some((index(&place.source)? as u16, line as u32))

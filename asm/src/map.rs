@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use isa::diagnostic::Source;
 use isa::program::Line;
+use messages::Source;
 
 use crate::Assembled;
 use crate::assembler::Assembler;

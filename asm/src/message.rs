@@ -1,10 +1,10 @@
-//! Places in expanded text, problems, and their way into an [`isa::diagnostic::Report`] in the order of the text.
+//! Places in expanded text, problems, and their way into an [`messages::Report`] in the order of the text.
 
 use std::collections::HashSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Place, Report, Severity, Source, did_you_mean};
+use messages::{Diagnostic, Place, Report, Severity, Source, nearest, question};
 
 use crate::limits::{KEPT_MESSAGES, MESSAGES};
 
@@ -209,13 +209,13 @@ fn diagnostic<'a>(
     for call in shown_calls(problem.at.map_or(0, |at| at.context), calls) {
         message = message.also(place(call.at), call.via.label());
     }
-    let suggestion = problem.suggest.as_ref().and_then(|(name, among)| did_you_mean(name, known(*among)));
+    let suggestion = problem.suggest.as_ref().and_then(|(name, among)| nearest(name, known(*among)));
     let is_same = problem.suggest.as_ref().is_some_and(|(name, _)| suggestion == Some(name.as_str()));
     match (suggestion, problem.hint) {
         (Some(word), _) if is_same => {
             message.hint(format!("`{word}` is defined further on; it must stand above its use"))
         }
-        (Some(word), _) => message.hint(format!("did you mean `{word}`?")),
+        (Some(word), _) => message.hint(question(word)),
         (None, Some(hint)) => message.hint(hint),
         (None, None) => message,
     }

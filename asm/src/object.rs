@@ -21,8 +21,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use isa::Program;
-use isa::diagnostic::Source;
 use isa::program::{Line, Region};
+use messages::Source;
 use nom::bytes::complete::take;
 use nom::multi::length_data;
 use nom::number::complete::{le_i64, le_u8, le_u16, le_u32};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use asm::{Options, assemble};
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 
 fn report(name: &str, text: &str) -> Report {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/errors");

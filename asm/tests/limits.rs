@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use asm::{Options, assemble, limits};
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 
 fn report(text: &str) -> Report {
     let include = |name: &str, _: &str| -> Result<Arc<Source>, String> {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use asm::object::{ObjectError, read, write};
 use asm::{Attempt, Options, attempt, listing, symbol_map};
-use isa::diagnostic::Source;
 use isa::{Isa, Program};
+use messages::Source;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRng, TestRunner};
 

@@ -2,10 +2,10 @@
 //! brings the assembler down.
 
 use asm::{Options, assemble, disassemble};
-use isa::diagnostic::{Report, Source};
 use isa::row::Kind;
 use isa::table::Op;
 use isa::{Isa, Program};
+use messages::{Report, Source};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRng, TestRunner};
 

@@ -8,8 +8,8 @@
 use std::fmt;
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, Place};
 use isa::{Counts, Fields, Isa, Kind, Op, Program, Row};
+use messages::{Diagnostic, Place};
 
 use crate::meaning::{self, Meaning};
 use crate::quantity::Clocks;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use isa::Program;
-use isa::diagnostic::{Diagnostic, Place};
+use messages::{Diagnostic, Place};
 
 use crate::code::Code;
 

@@ -7,12 +7,12 @@ use emu::meaning::conformance::{self, Trial};
 use emu::meaning::{Call, Ending, Meaning, attach};
 use emu::trap::Fault;
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
 use isa::number::Arithmetic;
 use kernels::Function;
 use lancer::drawing::{self, Comparison};
 use lancer::failure::Failure;
 use lancer::job::Job;
+use messages::{Report, Source};
 use scenes::generate;
 
 const ROW: &str = include_str!("reciprocal.isa");

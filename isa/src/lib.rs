@@ -1,7 +1,5 @@
 //! What an instruction is, and its arithmetic.
 
-pub mod diagnostic;
-
 pub mod class;
 pub mod extension;
 mod isa;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
+use messages::{Report, Source};
 use scenes::cadrage::Formats;
 use scenes::image::Image;
 use scenes::model::{Scene, View};

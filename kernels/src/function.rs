@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 use scenes::layout::Layout;
 
 use crate::prelude::Walk;
@@ -285,9 +285,6 @@ impl FromStr for Function {
 /// The error for a name that is none of `known`.
 pub(crate) fn unknown(what: &str, name: &str, known: impl IntoIterator<Item = &'static str>) -> Box<Diagnostic> {
     let known: Vec<&str> = known.into_iter().collect();
-    let hint = match did_you_mean(name, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("known are {}", known.join(", ")),
-    };
+    let hint = did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("known are {}", known.join(", ")));
     Box::new(Diagnostic::error(format!("`{name}` is no {what}")).hint(hint))
 }

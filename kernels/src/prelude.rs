@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::sync::Arc;
 
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 use scenes::camera::RawCamera;
 use scenes::image::{Image, Kind};
 use scenes::layout::{Layout, Structure};

@@ -4,7 +4,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use crate::function::{Profile, unknown};
 

@@ -1,7 +1,7 @@
 //! The report's *cadrage* (5.6): how many fraction bits each quantity has in a word. The formats are chosen from scene and word length, and
 //! each can be set by the user. Where the scene lies on the grid is decided in [`crate::grid`].
 
-use isa::diagnostic::{Diagnostic, Report, did_you_mean};
+use messages::{Diagnostic, Report, did_you_mean};
 use serde::Serialize;
 
 use crate::grid::Grid;
@@ -69,10 +69,8 @@ impl Overrides {
             "weight" => &mut self.weight,
             "colour" => &mut self.colour,
             _ => {
-                let hint = match did_you_mean(name, Overrides::NAMES) {
-                    Some(known) => format!("did you mean `{known}`?"),
-                    None => format!("the quantities are {}", Overrides::NAMES.join(", ")),
-                };
+                let hint = did_you_mean(name, Overrides::NAMES)
+                    .unwrap_or_else(|| format!("the quantities are {}", Overrides::NAMES.join(", ")));
                 return Err(Diagnostic::error(format!("`{name}` is no quantity with a format")).hint(hint).into());
             }
         };

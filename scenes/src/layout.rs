@@ -6,7 +6,7 @@ mod manual;
 use std::fmt;
 use std::str::FromStr;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 
 pub use self::manual::manual;
 
@@ -191,10 +191,7 @@ impl FromStr for Layout {
     fn from_str(name: &str) -> Result<Layout, Box<Diagnostic>> {
         Layout::ALL.into_iter().find(|layout| layout.name() == name).ok_or_else(|| {
             let names = Layout::ALL.map(Layout::name);
-            let hint = match did_you_mean(name, names) {
-                Some(known) => format!("did you mean `{known}`?"),
-                None => format!("the layouts are {}", names.join(" and ")),
-            };
+            let hint = did_you_mean(name, names).unwrap_or_else(|| format!("the layouts are {}", names.join(" and ")));
             Box::new(Diagnostic::error(format!("`{name}` is no memory layout")).hint(hint))
         })
     }

@@ -1,6 +1,6 @@
 //! A scene as its files describe it, in double precision and in the user's units. Nothing here knows of grids or formats.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 /// Position, direction or colour in double precision.
 pub type Vec3 = [f64; 3];

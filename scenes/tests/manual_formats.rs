@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 use scenes::read::{dsc, obj, off, ply, stl};
 
 /// The example of a format.

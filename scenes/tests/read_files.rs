@@ -4,7 +4,7 @@ mod shown;
 
 use std::fmt::Write;
 
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 use scenes::read::{self, dsc, off};
 
 use self::shown::{all_read, all_refused, files, folder};

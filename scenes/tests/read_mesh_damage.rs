@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use isa::diagnostic::Report;
+use messages::Report;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use scenes::read::mesh::Mesh;

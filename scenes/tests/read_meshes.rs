@@ -5,7 +5,7 @@ mod shown;
 
 use std::fs;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use scenes::read::{mesh::Mesh, obj, ply, stl};
 
 use self::shown::{all_read, all_refused, folder};

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use isa::diagnostic::Source;
+use messages::Source;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use scenes::read::{dsc, off};

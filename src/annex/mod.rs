@@ -10,9 +10,9 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use emu::profile::{Profile, RegionProfile};
-use isa::diagnostic::{Diagnostic, Report};
 use isa::{Class, Counts, Isa, Program};
 use kernels::annex::{Row, rows};
+use messages::{Diagnostic, Report};
 
 use crate::failure::Failure;
 use result::Try;

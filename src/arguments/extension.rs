@@ -6,7 +6,7 @@ use std::sync::Arc;
 use asm::extension::{self, Loaded};
 use clap::Args;
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 
 use crate::files;
 

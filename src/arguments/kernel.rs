@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use isa::diagnostic::Diagnostic;
 use kernels::{Function, Profile};
+use messages::Diagnostic;
 
 use super::ExtensionArguments;
 

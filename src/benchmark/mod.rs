@@ -6,11 +6,11 @@ use std::time::{Duration, Instant};
 
 use emu::code::Code;
 use emu::machine::{self, Engine, Options, Setup};
-use isa::diagnostic::Diagnostic;
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::Features;
 use kernels::twin::Twin;
+use messages::Diagnostic;
 use rayon::prelude::*;
 use scenes::reference::{Method, Reference};
 use schemars::JsonSchema;

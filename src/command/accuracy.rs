@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use isa::diagnostic::Diagnostic;
 use isa::number::Quantization;
 use kernels::Profile;
+use messages::Diagnostic;
 use scenes::layout::Layout;
 use scenes::model::View;
 use schemars::JsonSchema;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use asm::Attempt;
 use clap::Args;
-use isa::diagnostic::{Diagnostic, Report, Source};
 use isa::{Isa, Program};
+use messages::{Diagnostic, Report, Source};
 
 use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};

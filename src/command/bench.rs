@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use clap::Args;
 use emu::fast::Features;
-use isa::diagnostic::Diagnostic;
 use kernels::Profile;
+use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
 

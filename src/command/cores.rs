@@ -172,7 +172,7 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, F
             None => whole = Some(scaling),
         }
     }
-    whole.ok_or_else(|| isa::diagnostic::Diagnostic::error("no machine was named").into())
+    whole.ok_or_else(|| messages::Diagnostic::error("no machine was named").into())
 }
 
 fn job(arguments: &CoresArguments, machine: &str) -> JobArguments {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 use scenes::generate;
 
 use super::render::{draw, write_maps};

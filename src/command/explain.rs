@@ -2,7 +2,7 @@
 
 use asm::explain::{CODES, find};
 use clap::Args;
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
@@ -31,7 +31,7 @@ pub(super) fn execute(arguments: &ExplainArguments, terminal: &mut Terminal) -> 
     let Some(code) = find(name) else {
         let message = Diagnostic::error(format!("`{name}` is no code of the assembler's messages"));
         return Err(match did_you_mean(name, CODES.iter().map(|code| code.code)) {
-            Some(near) => message.hint(format!("did you mean `{near}`? `lancer explain` lists all")),
+            Some(hint) => message.hint(format!("{hint} `lancer explain` lists all")),
             None => message.hint("`lancer explain` lists all"),
         }
         .into());

@@ -7,8 +7,8 @@ use emu::code::Code;
 use emu::fast::Features;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
-use isa::diagnostic::{Diagnostic, Report};
 use isa::{Isa, Program};
+use messages::{Diagnostic, Report};
 
 use super::assemble::{self, SourceArguments};
 use super::run_arguments::{Dump, RegisterValue, memory_file};

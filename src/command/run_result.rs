@@ -8,7 +8,7 @@ use emu::machine::single::SingleRun;
 use emu::profile::Profile;
 use emu::registers::Registers;
 use isa::Class;
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 

@@ -1,7 +1,7 @@
 //! `lancer skips`: what is left out where a scene does not need it, and what that saves.
 
 use clap::Args;
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use crate::failure::{Exit, Failure};
 use crate::job::{Job, JobArguments};

@@ -7,7 +7,7 @@ use clap::Args;
 use emu::machine::trace::Window;
 use emu::machine::{self, Config, Frame, Options};
 use emu::quantity::Clocks;
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use crate::failure::{Exit, Failure};
 use crate::job::{Job, JobArguments, result_name};

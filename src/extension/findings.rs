@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use asm::extension::Loaded;
-use isa::diagnostic::Diagnostic;
 use isa::extension::{Act, Body, Summary};
 use isa::{Class, Counts, Isa};
+use messages::Diagnostic;
 
 /// What is likely a mistake in an instruction that was loaded, or should be known before one is built.
 pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {

@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Report, Source};
+use messages::{Diagnostic, Report, Source};
 use tempfile::{Builder, NamedTempFile};
 
 /// Octets of the largest file that is read: sources, programs, machines, memory.

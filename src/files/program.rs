@@ -7,7 +7,7 @@ use std::sync::Arc;
 use asm::limits::WORDS;
 use asm::object;
 use isa::Program;
-use isa::diagnostic::{Diagnostic, Place, Report, Source};
+use messages::{Diagnostic, Place, Report, Source};
 
 use super::{read, text};
 use crate::table::grouped;

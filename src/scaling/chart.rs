@@ -1,6 +1,6 @@
 //! A scaling as a chart: speed-up by cores above, how busy the bus was below.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 

@@ -142,7 +142,7 @@ pub fn measure(
 }
 
 fn no_machine() -> Failure {
-    Failure::usage(isa::diagnostic::Diagnostic::error("no machine was named"))
+    Failure::usage(messages::Diagnostic::error("no machine was named"))
 }
 
 fn share(part: u64, whole: u64) -> f64 {

@@ -13,7 +13,7 @@ mod target;
 
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 use serde::{Deserialize, Serialize};
 
 pub use tally::Tally;
@@ -272,10 +272,8 @@ pub static CASES: &[Case] = &[
 pub fn find(name: &str) -> Result<&'static Case, Box<Diagnostic>> {
     CASES.iter().find(|case| case.name == name).ok_or_else(|| {
         let names = CASES.iter().map(|case| case.name);
-        let hint = match did_you_mean(name, names.clone()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("the cases are {}", names.collect::<Vec<_>>().join(", ")),
-        };
+        let hint = did_you_mean(name, names.clone())
+            .unwrap_or_else(|| format!("the cases are {}", names.collect::<Vec<_>>().join(", ")));
         Box::new(Diagnostic::error(format!("there is no case `{name}`")).hint(hint))
     })
 }

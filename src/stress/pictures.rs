@@ -39,7 +39,7 @@ fn shifted(scene: &Scene) -> View {
 
 /// The pixels that the kernels of the profile `ray` draw, by their native twin.
 fn drawn(scene: &Scene, view: &View) -> Result<(Image, Vec<Vector>), String> {
-    let refused = |report: isa::diagnostic::Report| report.render(false);
+    let refused = |report: messages::Report| report.render(false);
     let image = image::build(scene, view, &image::Options::default()).map_err(refused)?;
     let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
     let (width, height) = view.size;

@@ -9,7 +9,7 @@ use fst_writer::{
     FstBodyWriter, FstFileType, FstHeaderWriter, FstInfo, FstScopeType, FstSignalId, FstSignalType, FstVarDirection,
     FstVarType,
 };
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use super::{Scene, address};
 

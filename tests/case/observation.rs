@@ -5,8 +5,8 @@ use emu::fast::Features;
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
-use isa::diagnostic::{Report, Severity, Source};
 use isa::{Counts, Isa, Program};
+use messages::{Report, Severity, Source};
 
 use super::Case;
 use super::claim::{Claim, Subject};
@@ -86,7 +86,7 @@ pub fn observe(case: &Case, engine: &Engine) -> Observation {
 }
 
 fn said(report: &Report) -> Vec<Said> {
-    let one = |message: &isa::diagnostic::Diagnostic| {
+    let one = |message: &messages::Diagnostic| {
         let kind = if message.severity == Severity::Error { "error" } else { "warning" };
         let head = message.code.map_or(kind.to_owned(), |code| format!("{kind} {code}"));
         let line = message.place.as_ref().map_or(0, |(place, _)| place.source.line_column(place.span.start).0);

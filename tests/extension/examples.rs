@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::machine::{self, Engine, Frame, Options};
-use isa::diagnostic::Source;
 use kernels::{Function, Profile};
 use lancer::job::Job;
 use lancer::load::Load;
+use messages::Source;
 use scenes::generate;
 
 /// A kernel of an example: the function that it serves, and its text.

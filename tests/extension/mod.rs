@@ -15,8 +15,8 @@ use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
-use isa::diagnostic::Source;
 use isa::{Isa, Program};
+use messages::Source;
 
 /// The table with the instructions of a file.
 pub fn isa_of(text: &str) -> (Isa, Vec<Loaded>) {

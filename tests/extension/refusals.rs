@@ -2,7 +2,7 @@
 
 use asm::extension::{load, source};
 use isa::Isa;
-use isa::diagnostic::{Report, Source};
+use messages::{Report, Source};
 
 /// A file with one instruction, the row given without its mnemonic `bad`, the body by its lines.
 fn file(row: &str, body: &str) -> String {

@@ -15,9 +15,9 @@ use emu::machine::config::ArithmeticConfig;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
-use isa::diagnostic::Source;
 use isa::number::{Modes, Overflow, Quantization};
 use isa::{Class, Counts, Isa, Kind, Operand, Program, Row};
+use messages::Source;
 
 use super::random::Random;
 

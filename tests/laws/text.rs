@@ -2,7 +2,7 @@
 
 use asm::{Options, assemble, disassemble};
 use isa::Isa;
-use isa::diagnostic::Source;
+use messages::Source;
 use proptest::prelude::*;
 
 use super::drawing::{Drawing, all};

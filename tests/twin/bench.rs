@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use emu::machine::single::{Single, run};
 use emu::octets::Memory;
-use isa::diagnostic::Source;
 use isa::{Isa, Program};
 use kernels::Function;
 use kernels::build::Crop;
 use kernels::prelude;
+use messages::Source;
 
 use super::Subject;
 

@@ -10,11 +10,11 @@ mod report;
 mod surfaces;
 mod vectors;
 
-use isa::diagnostic::Report;
 use isa::number::Modes;
 use kernels::build::{Features, Options};
 use kernels::twin::Twin;
 use kernels::{Profile, Skips};
+use messages::Report;
 use scenes::image::{self, Image};
 use scenes::model::{Scene, View};
 

@@ -4,10 +4,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use isa::Isa;
-use isa::diagnostic::{Diagnostic, Place, Report, Source};
 use isa::extension::{Act, Body, Defect, Step, Summary, registers};
 use isa::row::Row;
 use isa::table::Op;
+use messages::{Diagnostic, Place, Report, Source};
 
 use super::template::{Template, letter_name, register_name};
 use crate::frame::{Frame, Origin};

@@ -4,10 +4,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use isa::Isa;
-use isa::diagnostic::{Diagnostic, Place, Report, Source};
 use isa::extension::Summary;
 use isa::row::Row;
 use isa::table::Op;
+use messages::{Diagnostic, Place, Report, Source};
 
 use super::row::{Drawn, parse};
 use super::{Loaded, MOST_INSTRUCTIONS, body, error};

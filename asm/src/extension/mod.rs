@@ -11,9 +11,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use isa::Isa;
-use isa::diagnostic::{Diagnostic, Place, Report, Source};
 use isa::extension::Summary;
 use isa::table::Op;
+use messages::{Diagnostic, Place, Report, Source};
 
 pub(crate) use template::Template;
 

@@ -3,10 +3,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Source, did_you_mean};
 use isa::picture::{CUSTOM, LETTERS, Picture, PictureError};
 use isa::row::{Exit, Kind, Operand, Row, RowError};
 use isa::{Class, Counts};
+use messages::{Diagnostic, Source, did_you_mean};
 
 use super::{MOST_COST, error};
 use crate::explain;
@@ -150,10 +150,7 @@ fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
         let (kind_text, kind_at) = scanner.word("the kind of the operand")?;
         let Some(kind) = Kind::from_name(kind_text) else {
             let names = Kind::ALL.map(Kind::name);
-            let hint = match did_you_mean(kind_text, names) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("there are {}", names.join(", ")),
-            };
+            let hint = did_you_mean(kind_text, names).unwrap_or_else(|| format!("there are {}", names.join(", ")));
             let message = format!("`{kind_text}` is no kind of operand");
             return Err(Box::new(scanner.wrong(message, kind_at, "not known").hint(hint)));
         };
@@ -260,7 +257,7 @@ fn misfit(
                 None => format!("draw it with as many `{letter}` as it has bits"),
             };
             let message = scanner.wrong(message, at.clone(), "this operand");
-            Box::new(message.also(isa::diagnostic::Place::new(scanner.source, picture_at), "the picture").hint(hint))
+            Box::new(message.also(messages::Place::new(scanner.source, picture_at), "the picture").hint(hint))
         }
         RowError::Spare => {
             let spare = picture.fields().iter().find(|field| of(field.letter).is_none());
@@ -334,12 +331,9 @@ fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -
         }
         let Some(class) = Class::from_name(class_text) else {
             let names = Class::ALL.iter().map(|class| class.name());
-            let hint = match did_you_mean(class_text, names.clone()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => {
-                    format!("there are {}, and `body` for the sum of the body", names.collect::<Vec<_>>().join(", "))
-                }
-            };
+            let hint = did_you_mean(class_text, names.clone()).unwrap_or_else(|| {
+                format!("there are {}, and `body` for the sum of the body", names.collect::<Vec<_>>().join(", "))
+            });
             let message = format!("`{class_text}` is no class of operations");
             return Err(Box::new(scanner.wrong(message, class_at, "not known").hint(hint)));
         };

@@ -2,7 +2,7 @@
 
 use asm::{Options, assemble};
 use isa::Isa;
-use isa::diagnostic::Source;
+use messages::Source;
 
 use super::{code, program};
 

@@ -5,8 +5,8 @@ mod macros;
 use std::collections::HashMap;
 
 use asm::{Options, assemble, disassemble};
-use isa::diagnostic::Source;
 use isa::{Isa, Program};
+use messages::Source;
 
 fn options_with(defines: &[(&str, i64)], formats: &[(&str, i64)]) -> Options<'static> {
     let own = |pairs: &[(&str, i64)]| pairs.iter().map(|&(name, value)| (name.to_string(), value)).collect();

@@ -32,10 +32,10 @@ pub mod waits;
 use std::fmt;
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, Report, did_you_mean};
 use isa::number::Modes;
 use isa::number::Nearest32;
 use isa::{Isa, Program};
+use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
 pub use count::{Count, compute, count};
@@ -257,10 +257,8 @@ fn check(setup: &Setup) -> Result<(), Failure> {
     let mut names = setup.kinds.iter().map(|(_, kind)| kind.as_str());
     if cache.octets != 0 && !setup.kinds.is_empty() && !names.clone().any(|kind| kind == cache.kind) {
         let message = Diagnostic::error(format!("`cache.kind` is `{}`, but no data are called so", cache.kind));
-        let hint = match did_you_mean(&cache.kind, names.clone()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("there are {}", names.by_ref().collect::<Vec<_>>().join(", ")),
-        };
+        let hint = did_you_mean(&cache.kind, names.clone())
+            .unwrap_or_else(|| format!("there are {}", names.by_ref().collect::<Vec<_>>().join(", ")));
         return Err(Report::from(message.hint(hint)).into());
     }
     Ok(())

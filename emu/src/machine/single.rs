@@ -1,8 +1,8 @@
 //! One program on one core with a memory of its own: no main processor, no other cores, a bus without rivals.
 
-use isa::diagnostic::{Diagnostic, Report};
 use isa::number::{Modes, Nearest32};
 use isa::{Isa, Program};
+use messages::{Diagnostic, Report};
 
 use super::config::Config;
 use super::processor::Processor;

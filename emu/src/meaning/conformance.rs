@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use isa::diagnostic::Diagnostic;
 use isa::number::Vector;
 use isa::table::Op;
 use isa::{Isa, Kind, Program, Row, register_name};
+use messages::Diagnostic;
 
 use crate::code::Code;
 use crate::machine::Config;

@@ -28,8 +28,8 @@ use std::{fmt, ops::Range};
 
 use dyn_clone::DynClone;
 use isa::Isa;
-use isa::diagnostic::{Diagnostic, did_you_mean};
 use isa::table::Op;
+use messages::{Diagnostic, did_you_mean};
 
 pub use call::{Call, Operands};
 pub use numbers::Numbers;
@@ -136,10 +136,9 @@ pub fn attach(isa: &mut Isa, name: &str, meaning: impl Meaning + Clone) -> Resul
         None => {
             let message = Diagnostic::error(format!("there is no instruction `{name}`"));
             let names: Vec<&str> = isa.extensions().map(|op| &*isa.row(op).name).collect();
-            return Err(Box::new(match did_you_mean(name, names) {
-                Some(near) => message.hint(format!("did you mean `{near}`?")),
-                None => message.hint("load the file that declares it first"),
-            }));
+            return Err(Box::new(message.hint(
+                did_you_mean(name, names).unwrap_or_else(|| "load the file that declares it first".to_owned()),
+            )));
         }
     };
     if isa.row(op).exits.iter().any(|exit| exit.is_body) {

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use isa::diagnostic::Source;
 use isa::program::{Line, Region};
 use isa::{Isa, Op, Program};
+use messages::Source;
 
 /// A place in a program that branches lead to.
 #[derive(Clone, Copy)]

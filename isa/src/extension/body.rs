@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::diagnostic::{Place, Source};
 use crate::isa::Instruction;
+use messages::{Place, Source};
 
 /// A number in a step that may depend on an immediate of the row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

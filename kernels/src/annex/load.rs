@@ -1,8 +1,8 @@
 //! The report's estimate of a pixel as a load for the machine: 203,000 clocks of computing and 49,600 of transfers, in 20 equal parts.
 //! Report 6.1.
 
-use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
+use messages::{Report, Source};
 
 use crate::prelude;
 

@@ -4,8 +4,8 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use isa::diagnostic::{Report, Source};
 use isa::{Isa, Program};
+use messages::{Report, Source};
 use scenes::image::{self, Image};
 use scenes::layout::Layout;
 use scenes::model::{Light, Material, Scene, Triangle, View};

@@ -1,7 +1,7 @@
 //! The two cameras: which ray belongs to a pixel, in double precision and as the raw integers that the dispatch kernel starts from.
 //! Rays are made here; where they go is not known here.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use crate::cadrage::Formats;
 use crate::kdtree::Bounds;

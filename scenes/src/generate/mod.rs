@@ -13,7 +13,7 @@ mod triangle;
 
 use std::ops::RangeInclusive;
 
-use isa::diagnostic::{Diagnostic, Report, did_you_mean};
+use messages::{Diagnostic, Report, did_you_mean};
 
 use crate::model::Scene;
 
@@ -125,10 +125,8 @@ pub static SCENES: &[Generator] = &[
 pub fn scene(name: &str, options: &Options) -> Result<Scene, Report> {
     let Some(generator) = SCENES.iter().find(|generator| generator.name == name) else {
         let names: Vec<&str> = SCENES.iter().map(|generator| generator.name).collect();
-        let hint = match did_you_mean(name, names.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("the scenes are: {}", names.join(", ")),
-        };
+        let hint = did_you_mean(name, names.iter().copied())
+            .unwrap_or_else(|| format!("the scenes are: {}", names.join(", ")));
         return Err(Diagnostic::error(format!("there is no generated scene `{name}`")).hint(hint).into());
     };
     let (width, height) = options.size;

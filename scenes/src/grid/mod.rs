@@ -7,7 +7,7 @@
 //! power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
 //! gives the same raw integers.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use crate::camera::{self, Corners};
 use crate::kdtree::Bounds;

@@ -1,6 +1,6 @@
 //! From tree, triangles and tables to octets. Nothing here chooses a number; that is done before.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use super::{HEADER, Kind, Regions, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};

@@ -8,7 +8,7 @@ mod tests;
 
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use crate::cadrage::{self, Formats, Overrides};
 use crate::camera::{self, RawCamera, Rays};

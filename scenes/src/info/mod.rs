@@ -5,7 +5,7 @@ mod precision;
 
 use std::borrow::Cow;
 
-use isa::diagnostic::Report;
+use messages::Report;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 

@@ -11,7 +11,7 @@ mod statistics;
 mod tests;
 mod tree;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 pub(crate) use grown::{Grown, Placed};
 use growth::TooMany;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use super::words::counted;
 use crate::model::{Material, Vec3};

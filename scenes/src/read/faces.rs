@@ -1,7 +1,7 @@
 //! From the faces of a file to the triangles of a mesh, the same for every mesh format. Where corners and colours come
 //! from is not known here.
 
-use isa::diagnostic::{Diagnostic, Place, Report};
+use messages::{Diagnostic, Place, Report};
 
 use super::colour::{FaceColours, Spec};
 use super::mesh::{Mesh, census};

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use isa::diagnostic::{Diagnostic, Report, did_you_mean};
+use messages::{Diagnostic, Report, nearest, question};
 
 use super::format::SCENES;
 
@@ -44,7 +44,7 @@ fn refusal(path: &Path, error: &std::io::Error) -> Report {
             let missing = Diagnostic::error(format!("there is no file {shown}"));
             let there = path.parent().map(|folder| scene_files(folder, &SCENES)).unwrap_or_default();
             match near(path, &SCENES) {
-                Some(near) => missing.hint(format!("did you mean `{}`?", near.display())),
+                Some(near) => missing.hint(question(&near.display().to_string())),
                 None if there.is_empty() => missing,
                 None => missing.hint(format!("scene files there: {}", listed(&there))),
             }
@@ -64,7 +64,7 @@ pub(super) fn near(path: &Path, extensions: &[&str]) -> Option<PathBuf> {
     let longer: Vec<String> = extensions.iter().map(|extension| format!("{wanted}.{extension}")).collect();
     let near = match longer.iter().find(|longer| names.contains(longer)) {
         Some(longer) => longer.as_str(),
-        None => did_you_mean(&wanted, names.iter().map(String::as_str))?,
+        None => nearest(&wanted, names.iter().map(String::as_str))?,
     };
     Some(folder.join(near))
 }

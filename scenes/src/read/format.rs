@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use super::stl;
 

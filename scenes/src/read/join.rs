@@ -1,6 +1,6 @@
 //! A mesh and what is said about it become a scene.
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use super::Loaded;
 use super::dsc::Description;

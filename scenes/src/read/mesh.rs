@@ -1,6 +1,6 @@
 //! What every mesh format is read into, and the account of what is odd in it. Nothing here knows of a file format.
 
-use isa::diagnostic::{Diagnostic, Place, Report};
+use messages::{Diagnostic, Place, Report};
 
 use super::words::counted;
 use crate::model::{Material, Vec3};

@@ -17,7 +17,7 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report, question};
 
 use self::format::Format;
 use self::mesh::Mesh;
@@ -132,7 +132,7 @@ fn beside(path: &Path) -> Result<PathBuf, Report> {
     let wanted = &candidates[0];
     let error = Diagnostic::error(format!("{} has no mesh: {} is not there", path.display(), wanted.display()));
     let hint = match file::near(wanted, &meshes) {
-        Some(near) => format!("did you mean `--mesh {}`?", near.display()),
+        Some(near) => question(&format!("--mesh {}", near.display())),
         None => "put it beside the .dsc, as .off, .obj, .ply or .stl, or name another by `--mesh`".to_string(),
     };
     Err(error.hint(hint).into())

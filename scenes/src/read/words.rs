@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Place, Report, Severity, Source};
+use messages::{Diagnostic, Place, Report, Severity, Source};
 use nom::branch::alt;
 use nom::bytes::complete::{take_till, take_while1};
 use nom::character::complete::char;

@@ -8,7 +8,7 @@ mod tests;
 mod triangle;
 mod whitted;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use rayon::prelude::*;
 use serde::Serialize;
 

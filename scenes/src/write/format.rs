@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::str::FromStr;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 
 use super::{mtl, obj, off_coloured, ply, stl};
 use crate::model::Scene;
@@ -50,10 +50,7 @@ impl FromStr for MeshFormat {
         let lower = name.to_ascii_lowercase();
         MeshFormat::ALL.into_iter().find(|format| format.name() == lower).ok_or_else(|| {
             let names = MeshFormat::ALL.map(MeshFormat::name);
-            let hint = match did_you_mean(name, names) {
-                Some(known) => format!("did you mean `{known}`?"),
-                None => format!("the formats are {}", names.join(", ")),
-            };
+            let hint = did_you_mean(name, names).unwrap_or_else(|| format!("the formats are {}", names.join(", ")));
             Box::new(Diagnostic::error(format!("`{name}` is no format of meshes that is written")).hint(hint))
         })
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use super::MeshFormat;
 use crate::model::{Material, Scene};

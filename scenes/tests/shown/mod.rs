@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use isa::diagnostic::Report;
+use messages::Report;
 use scenes::read::mesh::Mesh;
 
 /// One of the folders in `files/`.

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use isa::diagnostic::Report;
 use isa::{Class, Counts, Isa};
+use messages::Report;
 
 use crate::arguments;
 use crate::extension::findings;

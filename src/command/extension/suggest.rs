@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use asm::extension;
 use clap::Args;
-use isa::diagnostic::{Diagnostic, Source};
 use isa::table::Op;
+use messages::{Diagnostic, Source};
 
 use crate::command::render;
 use crate::drawing::Comparison;

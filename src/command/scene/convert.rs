@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use scenes::model::Scene;
 use scenes::write::{self, MeshFormat};
 

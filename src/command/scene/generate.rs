@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use scenes::generate::{self, Options, SCENES};
 use scenes::write;
 

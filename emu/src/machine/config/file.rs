@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use isa::Class;
-use isa::diagnostic::{Diagnostic, Place, Report, Source, did_you_mean};
+use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 use toml::de::{DeTable, DeValue};
 
 use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES};
@@ -25,9 +25,9 @@ impl Config {
             let mut quoted = first_line.split('`').skip(1).step_by(2);
             if first_line.contains("unknown")
                 && let Some(wrong) = quoted.next()
-                && let Some(near) = did_you_mean(wrong, quoted)
+                && let Some(hint) = did_you_mean(wrong, quoted)
             {
-                message = message.hint(format!("did you mean `{near}`?"));
+                message = message.hint(hint);
             }
             Report::from(message)
         })?;

@@ -3,8 +3,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::diagnostic::Source;
 use crate::number::{Arithmetic, Flags, Modes, Overflow, Quantization};
+use messages::Source;
 
 fn signed(word: u32, integer: i32) -> Format {
     Format { is_signed: true, word, integer }

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::operation::{Format, Number, Operation, Outcome, operate};
-use crate::diagnostic::{Diagnostic, Place, Report, Source, did_you_mean};
 use crate::number::{Overflow, Quantization};
+use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 
 /// The first line of a file of vectors: the names of its columns.
 ///
@@ -163,10 +163,8 @@ impl Field<'_> {
         of: impl Fn(&str) -> Option<T>,
     ) -> Result<T, Box<Diagnostic>> {
         of(self.text).ok_or_else(|| {
-            let hint = match did_you_mean(self.text, known.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("known are {}", known.join(", ")),
-            };
+            let hint = did_you_mean(self.text, known.iter().copied())
+                .unwrap_or_else(|| format!("known are {}", known.join(", ")));
             Box::new(self.error(format!("`{}` in column {} is no {what}", self.text, self.name), "").hint(hint))
         })
     }

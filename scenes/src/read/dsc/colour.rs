@@ -1,6 +1,6 @@
 //! The colours of a `.dsc` file: in 0..1, or all of them in 0..255 when any component exceeds 1.
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use super::super::words::{Word, Words};
 

@@ -5,7 +5,7 @@ mod colour;
 
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Place, Report, Source};
+use messages::{Diagnostic, Place, Report, Source};
 
 use self::colour::Colours;
 use super::words::{Word, Words, counted};

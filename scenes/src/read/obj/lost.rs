@@ -1,6 +1,6 @@
 //! Statements of OBJ that have no counterpart in a scene: which they are, and what is said about each kind.
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, nearest, question};
 
 use super::super::words::{Word, Words, counted, shortened};
 
@@ -105,9 +105,9 @@ impl<'a> Lost<'a> {
         let warning = Diagnostic::warning(message).at(place, "not known");
         let known = USED.iter().chain(KINDS.iter().flat_map(|kind| kind.keywords)).copied();
         // A letter too many is more likely a statement of some program's own than a slip.
-        let near = did_you_mean(&text, known).filter(|near| near.len() > 1);
+        let near = nearest(&text, known).filter(|near| near.len() > 1);
         words.complain(match near {
-            Some(near) => warning.hint(format!("did you mean `{near}`?")),
+            Some(near) => warning.hint(question(near)),
             None => warning,
         });
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use isa::diagnostic::{Diagnostic, Report, Source};
+use messages::{Diagnostic, Report, Source};
 
 use super::super::mesh::GREY;
 use super::super::words::{Word, Words, counted, shortened};

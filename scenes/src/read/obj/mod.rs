@@ -9,7 +9,7 @@ mod statement;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 
 use self::lost::Lost;
 use super::colour::Spec;

@@ -1,7 +1,7 @@
 //! The statements of `.obj` and `.mtl` texts: a keyword and its arguments on one line, or on several where each but the
 //! last ends in a backslash.
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use super::super::words::{Word, Words};
 

@@ -1,7 +1,7 @@
 //! The binary form of OFF: after the line of the header, 32-bit integers and floating-point numbers, the most
 //! significant octet first. Each face is followed by the number of its colour components.
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 use nom::number::complete::{be_f32, be_u32};
 use nom::{IResult, Parser};
 

@@ -1,6 +1,6 @@
 //! The first words of an OFF file: `[ST][C][N][4][n]OFF`, a dimension, `BINARY`. What follows them is not read here.
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 use nom::branch::alt;
 use nom::bytes::complete::tag;
 use nom::combinator::value;
@@ -150,7 +150,7 @@ fn refuse<T>(words: &mut Words<'_>, word: Word<'_>) -> Option<T> {
     // The comparison takes time and memory in proportion to the word, which may be a whole file.
     let near = (word.text.len() <= 16).then(|| did_you_mean(word.text, known.iter().map(String::as_str))).flatten();
     let hint = match near {
-        Some(near) => format!("did you mean `{near}`?"),
+        Some(near) => near,
         None if word.text == "DSC" => "this looks like a scene description: its name should end in .dsc".to_string(),
         None => "an OFF file starts with `OFF`, after letters of ST, C, N, 4, n for what its vertices have".to_string(),
     };

@@ -7,7 +7,7 @@ mod text;
 
 use std::borrow::Cow;
 
-use isa::diagnostic::Report;
+use messages::Report;
 
 use self::header::Header;
 use super::mesh::Mesh;

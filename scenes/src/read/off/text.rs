@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 
 use super::super::colour::{Spec, Writing};
 use super::super::faces::Faces;

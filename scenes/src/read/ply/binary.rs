@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, ErrorKind};
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::Encoding;
 

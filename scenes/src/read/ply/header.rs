@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use isa::diagnostic::{Diagnostic, did_you_mean};
+use messages::{Diagnostic, did_you_mean};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType, ScalarType};
 
@@ -201,10 +201,9 @@ fn refuse(words: &mut Words<'_>, keyword: Word<'_>, line: Word<'_>) {
             if let Some(word) = unknown {
                 let message = format!("`{}` is no type of PLY", shortened(word.text));
                 let error = Diagnostic::error(message).at(words.place(word.span()), "not a type");
-                words.complain(match did_you_mean(&shortened(word.text), TYPES) {
-                    Some(near) => error.hint(format!("did you mean `{near}`?")),
-                    None => error.hint(format!("the types are {}", TYPES[..8].join(", "))),
-                });
+                let hint = did_you_mean(&shortened(word.text), TYPES)
+                    .unwrap_or_else(|| format!("the types are {}", TYPES[..8].join(", ")));
+                words.complain(error.hint(hint));
                 return;
             }
             "a property is `property type name`, or `property list type type name`".to_string()
@@ -213,7 +212,7 @@ fn refuse(words: &mut Words<'_>, keyword: Word<'_>, line: Word<'_>) {
             let message = format!("`{}` starts no line of a PLY header", shortened(text));
             let error = Diagnostic::error(message).at(words.place(keyword.span()), "not known");
             words.complain(match did_you_mean(&shortened(text), KEYWORDS) {
-                Some(near) => error.hint(format!("did you mean `{near}`?")),
+                Some(hint) => error.hint(hint),
                 None => error,
             });
             return;

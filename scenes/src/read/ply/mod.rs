@@ -8,7 +8,7 @@ mod text;
 
 use std::borrow::Cow;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use ply_rs_bw::ply::Encoding;
 
 use self::header::{Element, Role};

@@ -1,6 +1,6 @@
 //! The text form of PLY: one element a line.
 
-use isa::diagnostic::Diagnostic;
+use messages::Diagnostic;
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::ScalarType;
 

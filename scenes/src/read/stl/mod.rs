@@ -7,7 +7,7 @@ mod text;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use isa::diagnostic::{Diagnostic, Report};
+use messages::{Diagnostic, Report};
 use stl_io::Triangle;
 
 use super::colour::Spec;

@@ -1,0 +1,48 @@
+//! The part of a source line that a message shows, with carets below the place.
+
+use annotate_snippets::{AnnotationKind, Group, Snippet};
+
+use crate::Place;
+use crate::source::floor_boundary;
+
+/// Longest part of a source line that a message shows, in octets; longer lines are cut around the place.
+const SHOWN: usize = 160;
+
+/// What stands where a line was cut.
+const CUT: &str = "...";
+
+/// Marks the name of a file whose line was cut; nobody's text has this character of the private area.
+const STAND_IN: char = '\u{f8fd}';
+
+/// The group with a part of a source, and what to replace in the text that is made of it by what.
+pub(crate) fn with_snippet<'a>(
+    group: Group<'a>,
+    place: &'a Place,
+    label: &'a str,
+    kind: AnnotationKind,
+) -> (Group<'a>, Option<(String, String)>) {
+    let text = &place.source.text;
+    let from = floor_boundary(text, place.span.start);
+    let line_start = text[..from].rfind('\n').map_or(0, |at| at + 1);
+    let line_end = text[from..].find('\n').map_or(text.len(), |at| from + at);
+    let cut_start = if from - line_start > SHOWN / 2 { floor_boundary(text, from - SHOWN / 2) } else { line_start };
+    let cut_end = floor_boundary(text, line_end.min(cut_start + SHOWN)).max(from);
+    let to = floor_boundary(text, place.span.end.clamp(from, cut_end)).max(from);
+    let line = text[..line_start].bytes().filter(|&octet| octet == b'\n').count() + 1;
+    let shown = text[cut_start..cut_end].trim_end_matches('\r');
+    let before = if cut_start > line_start { CUT } else { "" };
+    let behind = if cut_end < line_end { CUT } else { "" };
+    let clamp = |at: usize| before.len() + (at - cut_start).min(shown.len());
+    let name = place.source.name.as_str();
+    let snippet = Snippet::source(format!("{before}{shown}{behind}"))
+        .line_start(line)
+        .annotation(kind.span(clamp(from)..clamp(to)).label(label));
+    if before.is_empty() {
+        return (group.element(snippet.path(name)), None);
+    }
+    // The renderer knows the part alone: its column becomes that of the file afterwards.
+    let column = |start: usize| text[start..from].chars().count() + 1;
+    let wrong = format!("{name}{STAND_IN}:{line}:{}", before.len() + column(cut_start));
+    let right = format!("{name}:{line}:{}", column(line_start));
+    (group.element(snippet.path(format!("{name}{STAND_IN}"))), Some((wrong, right)))
+}

@@ -9,10 +9,10 @@ use isa::{Class, Isa, Kind, Row};
 
 /// What the letters and kinds of operands mean; the kinds' own rows are generated.
 const OPERANDS: &str = "\
-Each instruction is a line: name, operands, the 32-bit word as a picture, and the ways in which it ends with what each costs.
+Each instruction is a line: name, operands, the 32-bit word as a bit pattern, and the ways in which it ends with what each costs.
 
 The letter of an operand says what happens to it: `d e` are written, `x y` read and written, `a b c` read, `i j` are immediate. In the
-picture, `0` and `1` are fixed bits, a letter is a bit of that operand's field, and `-` is 0; a word with another bit there is illegal.
+pattern, `0` and `1` are fixed bits, a letter is a bit of that operand's field, and `-` is 0; a word with another bit there is illegal.
 ";
 
 const REGISTERS: &str = "\

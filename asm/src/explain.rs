@@ -223,7 +223,7 @@ an instruction.
 
     .equ mask, 1 << -1";
     ROW "E038" "malformed row of an extension"
-"A file of extensions has rows as the table of instructions has them: mnemonic, operands, the 32-bit word as a picture, and the ways in
+"A file of extensions has rows as the table of instructions has them: mnemonic, operands, the 32-bit word as a bit pattern, and the ways in
 which the instruction ends with what each costs. Words stand in the major opcodes custom0 to custom3.
 
     .extension slab

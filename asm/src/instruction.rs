@@ -124,7 +124,7 @@ impl Assembler<'_> {
         let isa = self.isa;
         let row = isa.row(op);
         let Some(mut arguments) = self.arguments(row, operands, at) else {
-            self.emit(row.picture.value, cursor.line);
+            self.emit(row.pattern.value, cursor.line);
             return;
         };
         let pc = self.program.words.len();
@@ -153,7 +153,7 @@ impl Assembler<'_> {
                     }
                     self.fixups.push(Fixup::Instruction { op, arguments, pc });
                 }
-                row.picture.value
+                row.pattern.value
             }
         };
         self.emit(word, cursor.line);
@@ -251,7 +251,7 @@ impl Assembler<'_> {
                 }
                 Value::Expression(expression) => self.evaluate(expression),
             };
-            let width = row.picture.field(operand.letter).map_or(32, |field| field.width);
+            let width = row.pattern.field(operand.letter).map_or(32, |field| field.width);
             let (least, most) = operand.kind.range(width);
             match value {
                 Err(failure) => failures.push(failure),

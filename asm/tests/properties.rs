@@ -28,7 +28,7 @@ fn operands(isa: &Isa, op: Op) -> BoxedStrategy<Vec<i64>> {
         .operands
         .iter()
         .map(|operand| {
-            let width = row.picture.field(operand.letter).unwrap().width;
+            let width = row.pattern.field(operand.letter).unwrap().width;
             let (least, most) = operand.kind.range(width);
             prop_oneof![Just(least), Just(most), least..=most].boxed()
         })
@@ -95,7 +95,7 @@ fn every_operand_out_of_range_is_refused() {
     for op in isa.ops() {
         let row = isa.row(op);
         for (place, operand) in row.operands.iter().enumerate() {
-            let width = row.picture.field(operand.letter).unwrap().width;
+            let width = row.pattern.field(operand.letter).unwrap().width;
             let (least, most) = operand.kind.range(width);
             for wrong in [least - 1, most + 1] {
                 if operand.kind.register_file().is_some() && wrong < 0 {

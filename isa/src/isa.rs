@@ -111,9 +111,9 @@ impl Isa {
     }
 
     fn enter(&mut self, op: Op) {
-        let picture = self.row(op).picture;
+        let pattern = self.row(op).pattern;
         for major in 0..64u32 {
-            if (major << 26 ^ picture.value) & picture.mask >> 26 << 26 == 0 {
+            if (major << 26 ^ pattern.value) & pattern.mask >> 26 << 26 == 0 {
                 self.by_major[major as usize].push(op);
             }
         }
@@ -125,7 +125,7 @@ impl Isa {
     /// The row whose name or word it would take.
     pub fn extend(&mut self, row: Row) -> Result<Op, Op> {
         if let Some(other) =
-            self.ops().find(|&op| self.row(op).name == row.name || self.row(op).picture.overlaps(&row.picture))
+            self.ops().find(|&op| self.row(op).name == row.name || self.row(op).pattern.overlaps(&row.pattern))
         {
             return Err(other);
         }
@@ -214,11 +214,11 @@ impl Isa {
 
     /// Decodes a word; `None` when no row matches or a register or lane does not exist.
     pub fn decode(&self, word: u32) -> Option<Instruction> {
-        let op = self.by_major[(word >> 26) as usize].iter().copied().find(|&op| self.row(op).picture.matches(word))?;
+        let op = self.by_major[(word >> 26) as usize].iter().copied().find(|&op| self.row(op).pattern.matches(word))?;
         let row = self.row(op);
         let mut fields = Fields::default();
         for operand in row.operands.iter() {
-            let field = row.picture.field(operand.letter)?;
+            let field = row.pattern.field(operand.letter)?;
             let raw = i64::from(word >> field.shift) & ((1 << field.width) - 1);
             let is_negative = operand.kind.is_signed() && raw >> (field.width - 1) == 1;
             let value = if is_negative { raw - (1 << field.width) } else { raw };
@@ -240,9 +240,9 @@ impl Isa {
         if operands.len() != row.operands.len() {
             return Err(EncodeError::Operands { expected: row.operands.len() });
         }
-        let mut word = row.picture.value;
+        let mut word = row.pattern.value;
         for (place, (operand, &value)) in row.operands.iter().zip(operands).enumerate() {
-            let field = row.picture.field(operand.letter).expect("Row::check gave every operand a field");
+            let field = row.pattern.field(operand.letter).expect("Row::check gave every operand a field");
             let (least, most) = operand.kind.range(field.width);
             if value < least || value > most {
                 return Err(EncodeError::Range { operand: place, value, least, most });

@@ -4,7 +4,7 @@ pub mod class;
 pub mod extension;
 mod isa;
 pub mod number;
-pub mod picture;
+pub mod pattern;
 pub mod program;
 pub mod row;
 pub mod table;

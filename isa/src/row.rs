@@ -1,10 +1,10 @@
-//! What a row of the instruction table says: operands, picture, exits and their costs. Built-in rows are constants,
+//! What a row of the instruction table says: operands, pattern, exits and their costs. Built-in rows are constants,
 //! rows of extensions are owned values of the same type.
 
 use std::borrow::Cow;
 
 use crate::class::Counts;
-use crate::picture::Picture;
+use crate::pattern::BitPattern;
 
 /// What an operand is, and what its field's number means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -189,8 +189,8 @@ pub struct Row {
     /// Operands in the order of the assembly text.
     pub operands: Cow<'static, [Operand]>,
     /// The word.
-    pub picture: Picture,
-    /// The picture as written.
+    pub pattern: BitPattern,
+    /// The pattern as written.
     pub drawn: Cow<'static, str>,
     /// The ways in which it ends; at least one.
     pub exits: Cow<'static, [Exit]>,
@@ -201,7 +201,7 @@ pub struct Row {
 pub enum RowError {
     /// The operand of this letter has no field, or not as wide as its kind needs.
     Field(u8),
-    /// The picture has a field without an operand.
+    /// The pattern has a field without an operand.
     Spare,
     /// A letter is used by two operands.
     Twice(u8),
@@ -212,8 +212,8 @@ pub enum RowError {
 }
 
 impl Row {
-    /// Whether operands, picture and exits fit together.
-    pub const fn check(operands: &[Operand], picture: &Picture, exits: usize) -> Result<(), RowError> {
+    /// Whether operands, pattern and exits fit together.
+    pub const fn check(operands: &[Operand], pattern: &BitPattern, exits: usize) -> Result<(), RowError> {
         let mut at = 0;
         while at < operands.len() {
             let Operand { letter, kind } = operands[at];
@@ -227,7 +227,7 @@ impl Row {
             if (letter == b'i' || letter == b'j') != kind.register_file().is_none() {
                 return Err(RowError::Letter(letter));
             }
-            match picture.field(letter) {
+            match pattern.field(letter) {
                 None => return Err(RowError::Field(letter)),
                 Some(field) => {
                     if let Some(width) = kind.width()
@@ -239,7 +239,7 @@ impl Row {
             }
             at += 1;
         }
-        if picture.field_count() != operands.len() {
+        if pattern.field_count() != operands.len() {
             return Err(RowError::Spare);
         }
         if exits == 0 {
@@ -258,7 +258,7 @@ impl Row {
         self.exits.iter().position(|exit| exit.name == name)
     }
 
-    /// The row line as it stands in the table: operands, picture, exits.
+    /// The row line as it stands in the table: operands, pattern, exits.
     pub fn line(&self) -> String {
         let operands: Vec<String> =
             self.operands.iter().map(|o| format!("{}: {}", o.letter as char, o.kind.name())).collect();

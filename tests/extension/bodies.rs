@@ -129,7 +129,7 @@ fn fields(isa: &Isa, name: &str) -> BoxedStrategy<Vec<i64>> {
                 (0..=i64::from(count - operand.kind.registers())).boxed()
             }
             None => {
-                let (least, most) = operand.kind.range(row.picture.field(operand.letter).unwrap().width);
+                let (least, most) = operand.kind.range(row.pattern.field(operand.letter).unwrap().width);
                 (least.max(0)..=most.min(40)).boxed()
             }
         })

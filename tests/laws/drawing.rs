@@ -1,8 +1,8 @@
-//! Words read off the drawn pictures alone: the model that encoder and decoder are compared with.
+//! Words read off the drawn bit patterns alone: the model that encoder and decoder are compared with.
 
 use isa::Row;
 
-/// A row's picture, character by character.
+/// A row's bit pattern, character by character.
 pub struct Drawing<'a> {
     /// The row.
     pub row: &'a Row,
@@ -33,7 +33,7 @@ impl<'a> Drawing<'a> {
         1 << self.fields[operand].len()
     }
 
-    /// The word that the picture shows when each letter stands for its operand's bits.
+    /// The word that the bit pattern shows when each letter stands for its operand's bits.
     pub fn word(&self, operands: &[i64]) -> u32 {
         let fixed = (0..32).filter(|&place| self.bits[place] == '1').fold(0, |word, place| word | 1 << place);
         self.fields.iter().zip(operands).fold(fixed, |word, (field, &value)| {

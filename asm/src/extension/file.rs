@@ -258,7 +258,7 @@ fn name(source: &Arc<Source>, place: &Place, is_late: bool) -> Result<String, Bo
 
 /// Adds a row without its body.
 fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension: &str) -> Result<Loaded, Report> {
-    let Drawn { mut row, name_at, picture_at, exits_at, start, end, .. } = drawn;
+    let Drawn { mut row, name_at, pattern_at, exits_at, start, end, .. } = drawn;
     row.room = extension.to_owned().into();
     row.doc = doc.into();
     let place = Place::new(source, start..end);
@@ -281,7 +281,7 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
     }
     let op = match isa.extend(row.clone()) {
         Ok(op) => op,
-        Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, picture_at).into()),
+        Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, pattern_at).into()),
     };
     let exits = exits_at.into_iter().map(|span| Place::new(source, span)).collect();
     let (summary, is_rust) = (Summary::default(), false);
@@ -295,7 +295,7 @@ fn clash(
     other: Op,
     taken: Diagnostic,
     source: &Arc<Source>,
-    picture_at: std::ops::Range<usize>,
+    pattern_at: std::ops::Range<usize>,
 ) -> Diagnostic {
     let other = isa.row(other);
     if other.name == row.name {
@@ -303,9 +303,9 @@ fn clash(
     }
     let message = format!("`{}` and `{}` have words in common", row.name, other.name);
     let label = format!("`{}` is \"{}\"", other.name, other.drawn);
-    let is_free = |major: u32| isa.extensions().all(|op| isa.row(op).picture.value >> 26 != major);
-    let free = (0x3c..0x40).find(|&major| is_free(major)).map(|major| isa::picture::CUSTOM[major as usize - 0x3c].0);
-    error(explain::TAKEN, message, source, picture_at, &label).hint(match free {
+    let is_free = |major: u32| isa.extensions().all(|op| isa.row(op).pattern.value >> 26 != major);
+    let free = (0x3c..0x40).find(|&major| is_free(major)).map(|major| isa::pattern::CUSTOM[major as usize - 0x3c].0);
+    error(explain::TAKEN, message, source, pattern_at, &label).hint(match free {
         Some(name) => format!("`{name}` is free; or tell them apart by bits that are 0 in one and 1 in the other"),
         None => "tell them apart by bits that are 0 in one and 1 in the other".to_owned(),
     })

@@ -31,7 +31,7 @@ impl Assembler<'_> {
     /// Least and largest value of an immediate of the row.
     fn letter_range(&self, letter: u8) -> (i64, i64) {
         let row = self.body.as_ref().map(|template| &template.row);
-        let operand = row.and_then(|row| Some((row.operand(letter)?, row.picture.field(letter)?)));
+        let operand = row.and_then(|row| Some((row.operand(letter)?, row.pattern.field(letter)?)));
         operand.map_or((0, 0), |(operand, field)| operand.kind.range(field.width))
     }
 

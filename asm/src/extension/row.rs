@@ -1,9 +1,9 @@
-//! The text of a row: mnemonic, operands, picture, exits with their costs, as a row of the table has them.
+//! The text of a row: mnemonic, operands, pattern, exits with their costs, as a row of the table has them.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use isa::picture::{CUSTOM, LETTERS, Picture, PictureError};
+use isa::pattern::{BitPattern, CUSTOM, LETTERS, PatternError};
 use isa::row::{Exit, Kind, Operand, Row, RowError};
 use isa::{Class, Counts};
 use messages::{Diagnostic, Source, did_you_mean};
@@ -16,7 +16,7 @@ use crate::token::{continues_name, starts_name};
 pub(super) struct Drawn {
     pub row: Row,
     pub name_at: Range<usize>,
-    pub picture_at: Range<usize>,
+    pub pattern_at: Range<usize>,
     pub exits_at: Vec<Range<usize>>,
     /// Where a cost for each unit stands, if one does.
     pub each_at: Option<Range<usize>>,
@@ -113,23 +113,23 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
         return Err(Box::new(scanner.wrong(message, name_at, "small letters, digits and `_`")));
     }
     let operands = operands(&mut scanner)?;
-    let (picture, drawn, picture_at) = picture(&mut scanner, &operands)?;
+    let (pattern, drawn, pattern_at) = pattern(&mut scanner, &operands)?;
     let mut each_at = None;
     let (exits, exits_at) = exits(&mut scanner, &mut each_at)?;
     let only: Vec<Operand> = operands.iter().map(|(operand, _)| *operand).collect();
-    if let Err(wrong) = Row::check(&only, &picture, exits.len()) {
-        return Err(misfit(&scanner, wrong, &operands, &picture, picture_at));
+    if let Err(wrong) = Row::check(&only, &pattern, exits.len()) {
+        return Err(misfit(&scanner, wrong, &operands, &pattern, pattern_at));
     }
     let row = Row {
         name: name.to_owned().into(),
         doc: "".into(),
         room: "".into(),
         operands: only.into(),
-        picture,
+        pattern,
         drawn: drawn.to_owned().into(),
         exits: exits.into(),
     };
-    Ok(Drawn { row, name_at, picture_at, exits_at, each_at, start, end: scanner.at })
+    Ok(Drawn { row, name_at, pattern_at, exits_at, each_at, start, end: scanner.at })
 }
 
 fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
@@ -175,36 +175,36 @@ fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
     }
 }
 
-fn picture<'a>(
+fn pattern<'a>(
     scanner: &mut Scanner<'a>,
     operands: &[(Operand, Range<usize>)],
-) -> Read<(Picture, &'a str, Range<usize>)> {
-    scanner.expect("\"").map_err(|_| scanner.expected("the word as a picture, in quotation marks"))?;
+) -> Read<(BitPattern, &'a str, Range<usize>)> {
+    scanner.expect("\"").map_err(|_| scanner.expected("the word as a bit pattern, in quotation marks"))?;
     let rest = scanner.rest();
     let length = rest.find(['"', '\n']).filter(|&end| rest[end..].starts_with('"'));
     let Some(length) = length else {
         let start = scanner.at - 1;
         return Err(Box::new(scanner.wrong(
-            "the picture has no closing quotation mark",
+            "the pattern has no closing quotation mark",
             start..start + 1,
             "opened here",
         )));
     };
     let (text, span) = (&rest[..length], scanner.at..scanner.at + length);
     scanner.at = span.end + 1;
-    let picture = Picture::parse(text).map_err(|wrong| {
+    let pattern = BitPattern::parse(text).map_err(|wrong| {
         let at = |octet: usize| {
             span.start + octet..span.start + octet + text[octet..].chars().next().map_or(1, char::len_utf8)
         };
         let (place, hint) = match wrong {
-            PictureError::Character(octet) => {
+            PatternError::Character(octet) => {
                 (at(octet), String::from("0 and 1 are fixed bits, a letter is a bit of its operand, `-` is 0"))
             }
-            PictureError::Split(letter) => {
+            PatternError::Split(letter) => {
                 let last = text.rfind(letter as char).unwrap_or(0);
                 (at(last), "the bits of a field stand side by side".to_owned())
             }
-            PictureError::Length(bits) => {
+            PatternError::Length(bits) => {
                 let has_major = CUSTOM.iter().any(|(name, _)| text.starts_with(name));
                 let rule = if has_major { "`custom0` stands for 6 bits; " } else { "" };
                 let change = match bits < 32 {
@@ -213,64 +213,64 @@ fn picture<'a>(
                 };
                 (span.clone(), format!("{rule}{change}"))
             }
-            PictureError::TooManyFields => (span.clone(), "leave out operands".to_owned()),
+            PatternError::TooManyFields => (span.clone(), "leave out operands".to_owned()),
         };
         Box::new(scanner.wrong(wrong.to_string(), place, "cannot be read").hint(hint))
     })?;
-    if !picture.is_custom() {
+    if !pattern.is_custom() {
         let wide: u32 =
-            operands.iter().filter_map(|(operand, _)| picture.field(operand.letter)).map(|f| u32::from(f.width)).sum();
+            operands.iter().filter_map(|(operand, _)| pattern.field(operand.letter)).map(|f| u32::from(f.width)).sum();
         let message = "the word stands outside of the opcodes kept for extensions";
         let majors: Vec<String> = CUSTOM.iter().map(|(name, bits)| format!("{name} ({bits})")).collect();
         let hint = format!(
-            "begin the picture with one of {}; 26 bits are left, of which operands take {wide}",
+            "begin the pattern with one of {}; 26 bits are left, of which operands take {wide}",
             majors.join(", ")
         );
         let first = span.start..span.start + text.len().min(6);
         return Err(Box::new(scanner.wrong(message, first, "the major opcode").hint(hint)));
     }
-    Ok((picture, text, span))
+    Ok((pattern, text, span))
 }
 
 fn misfit(
     scanner: &Scanner,
     wrong: RowError,
     operands: &[(Operand, Range<usize>)],
-    picture: &Picture,
-    picture_at: Range<usize>,
+    pattern: &BitPattern,
+    pattern_at: Range<usize>,
 ) -> Box<Diagnostic> {
     let of = |letter: u8| operands.iter().find(|(operand, _)| operand.letter == letter);
     match wrong {
         RowError::Field(letter) => {
             let Some((operand, at)) = of(letter) else {
-                return Box::new(scanner.wrong("a field without an operand", picture_at, "here"));
+                return Box::new(scanner.wrong("a field without an operand", pattern_at, "here"));
             };
             let (letter, kind) = (letter as char, operand.kind);
-            let message = match (picture.field(operand.letter), kind.width()) {
+            let message = match (pattern.field(operand.letter), kind.width()) {
                 (Some(field), Some(width)) => {
                     format!("the field `{letter}` has {} bits, but `{}` needs {width}", field.width, kind.name())
                 }
-                _ => format!("the picture has no field for operand `{letter}`"),
+                _ => format!("the pattern has no field for operand `{letter}`"),
             };
             let hint = match kind.width() {
                 Some(width) => format!("draw it as {}", (letter.to_string()).repeat(width.into())),
                 None => format!("draw it with as many `{letter}` as it has bits"),
             };
             let message = scanner.wrong(message, at.clone(), "this operand");
-            Box::new(message.also(messages::Place::new(scanner.source, picture_at), "the picture").hint(hint))
+            Box::new(message.also(messages::Place::new(scanner.source, pattern_at), "the pattern").hint(hint))
         }
         RowError::Spare => {
-            let spare = picture.fields().iter().find(|field| of(field.letter).is_none());
+            let spare = pattern.fields().iter().find(|field| of(field.letter).is_none());
             let letter = spare.map_or('?', |field| field.letter as char);
-            let message = format!("the picture has a field `{letter}`, but the row no such operand");
+            let message = format!("the pattern has a field `{letter}`, but the row no such operand");
             let hint = format!(
                 "add an operand such as `{letter}: {}`, or draw the bits as `-`",
                 if matches!(letter, 'i' | 'j') { "Un" } else { "S" }
             );
-            Box::new(scanner.wrong(message, picture_at, "in this picture").hint(hint))
+            Box::new(scanner.wrong(message, pattern_at, "in this pattern").hint(hint))
         }
         RowError::Twice(_) | RowError::Letter(_) | RowError::NoExit => {
-            Box::new(scanner.wrong("the row cannot be read", picture_at, "here"))
+            Box::new(scanner.wrong("the row cannot be read", pattern_at, "here"))
         }
     }
 }

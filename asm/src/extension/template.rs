@@ -243,7 +243,7 @@ impl Assembler<'_> {
         let mut immediates = [Immediate::Number(0); 2];
         let mut failures = Vec::new();
         for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
-            let width = row.picture.field(operand.letter).map_or(32, |field| field.width);
+            let width = row.pattern.field(operand.letter).map_or(32, |field| field.width);
             let range = operand.kind.range(width);
             let place = usize::from(operand.letter == b'j');
             let number = match &argument.value {

@@ -163,7 +163,7 @@ impl Case {
         let fields: Vec<i64> = (row.operands.iter())
             .map(|operand| {
                 let (least, most) =
-                    operand.kind.range(row.picture.field(operand.letter).map_or(5, |field| field.width));
+                    operand.kind.range(row.pattern.field(operand.letter).map_or(5, |field| field.width));
                 let fixed = trial.immediates.iter().find(|(letter, _)| *letter == operand.letter as char);
                 match operand.kind {
                     _ if fixed.is_some() => fixed.map_or(0, |&(_, value)| value.clamp(least, most)),

@@ -182,7 +182,7 @@ fn words() -> impl Strategy<Value = Vec<u32>> {
     let instruction = instruction.prop_map(move |(number, numbers)| {
         let row = rows[number];
         let operand = |(operand, number): (&isa::Operand, i64)| {
-            let width = row.picture.field(operand.letter).map_or(1, |field| field.width);
+            let width = row.pattern.field(operand.letter).map_or(1, |field| field.width);
             let (least, most) = operand.kind.range(width);
             // Near targets and small registers, so that programs do something.
             let (least, most) = if operand.kind == isa::Kind::Rel { (-9, 9) } else { (least, most.min(5).max(least)) };

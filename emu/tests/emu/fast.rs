@@ -122,7 +122,7 @@ fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &Row) {
         p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::iaddi, &[4, 4, base]);
     }
     let operand = |random: &mut Random, letter: u8, kind: Kind| {
-        let width = row.picture.fields().iter().find(|field| field.letter == letter).map_or(5, |field| field.width);
+        let width = row.pattern.fields().iter().find(|field| field.letter == letter).map_or(5, |field| field.width);
         let (least, most) = kind.range(width);
         match kind {
             Kind::A | Kind::S if has_address && (kind == Kind::A || letter == b'x') => 4,

@@ -32,7 +32,7 @@ pub struct Extension {
 ///
 /// 0 is `s0`; numbers from [`registers::hidden`] on are temporaries; those from [`registers::OPERANDS`] on are operands of the row.
 pub mod registers {
-    use crate::picture::LETTERS;
+    use crate::pattern::LETTERS;
 
     /// The number of the first operand; [`operand`] has the others.
     pub const OPERANDS: u8 = 64;
@@ -47,7 +47,7 @@ pub mod registers {
 
     /// The number of register `offset` of the operand of a letter.
     pub fn operand(letter: u8, offset: u8) -> u8 {
-        let place = LETTERS.iter().position(|&other| other == letter).expect("operands have letters of pictures");
+        let place = LETTERS.iter().position(|&other| other == letter).expect("operands have letters of patterns");
         OPERANDS + 8 * place as u8 + offset
     }
 

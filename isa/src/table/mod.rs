@@ -1,5 +1,5 @@
 //! The table of instructions: its rooms put together, once, and what is stamped from it: the opcode enum, the rows as
-//! data, an exit type a row. A wrong row (overlapping picture, operand without field, unknown class) does not compile.
+//! data, an exit type a row. A wrong row (overlapping pattern, operand without field, unknown class) does not compile.
 
 mod control;
 mod integer;
@@ -12,7 +12,7 @@ mod wide;
 use std::borrow::Cow;
 
 use crate::class::Counts;
-use crate::picture::Picture;
+use crate::pattern::BitPattern;
 use crate::row::{Exit, Kind, Operand, Room, Row};
 
 /// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
@@ -170,9 +170,9 @@ macro_rules! stamp {
             doc: Cow::Borrowed(concat!($($doc, "\n"),*)),
             room: Cow::Borrowed(stringify!($room)),
             operands: Cow::Borrowed(&[$(Operand { letter: stringify!($letter).as_bytes()[0], kind: Kind::$kind }),*]),
-            picture: match Picture::parse($drawn) {
-                Ok(picture) => picture,
-                Err(_) => panic!(concat!("the picture of `", stringify!($name), "` cannot be read")),
+            pattern: match BitPattern::parse($drawn) {
+                Ok(pattern) => pattern,
+                Err(_) => panic!(concat!("the pattern of `", stringify!($name), "` cannot be read")),
             },
             drawn: Cow::Borrowed($drawn),
             exits: Cow::Borrowed(&[$(Exit {
@@ -185,9 +185,9 @@ macro_rules! stamp {
 
         $($(const _: () = {
             const OPERANDS: &[Operand] = &[$(Operand { letter: stringify!($letter).as_bytes()[0], kind: Kind::$kind }),*];
-            let Ok(picture) = Picture::parse($drawn) else { panic!() };
-            assert!(!picture.is_custom(), concat!("`", stringify!($name), "` stands in an opcode kept for extensions"));
-            assert!(Row::check(OPERANDS, &picture, 1).is_ok(), concat!("operands and picture of `", stringify!($name), "` do not fit"));
+            let Ok(pattern) = BitPattern::parse($drawn) else { panic!() };
+            assert!(!pattern.is_custom(), concat!("`", stringify!($name), "` stands in an opcode kept for extensions"));
+            assert!(Row::check(OPERANDS, &pattern, 1).is_ok(), concat!("operands and pattern of `", stringify!($name), "` do not fit"));
         };)*)*
 
         /// An exit type a row, in a module of the row's name.
@@ -207,7 +207,7 @@ const _: () = {
     while at < TABLE.len() {
         let mut other = 0;
         while other < at {
-            assert!(!TABLE[at].picture.overlaps(&TABLE[other].picture), "two pictures overlap");
+            assert!(!TABLE[at].pattern.overlaps(&TABLE[other].pattern), "two patterns overlap");
             other += 1;
         }
         at += 1;

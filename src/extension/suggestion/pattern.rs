@@ -84,7 +84,7 @@ impl Pattern {
         let wides =
             operands.iter().filter(|(letter, kind)| "dexy".contains(*letter) && kind.register_file() == Some('w'));
         let hidden = temporaries[2] + wides.map(|(_, kind)| kind.registers()).sum::<u8>();
-        if width > MOST_BITS || operands.len() > isa::picture::MAX_FIELDS || hidden > 8 || operands.is_empty() {
+        if width > MOST_BITS || operands.len() > isa::pattern::MAX_FIELDS || hidden > 8 || operands.is_empty() {
             return None;
         }
         let name = |file: char, number: u8| -> String {

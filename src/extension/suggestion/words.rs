@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use isa::Isa;
-use isa::picture::CUSTOM;
+use isa::pattern::CUSTOM;
 
 use super::pattern::{MOST_BITS, Pattern};
 
@@ -23,7 +23,7 @@ impl Majors {
     pub fn new(isa: &Isa) -> Majors {
         let is_free = |bits: &str| {
             let major = u32::from_str_radix(bits, 2).unwrap_or(0);
-            isa.extensions().all(|op| isa.row(op).picture.value >> 26 != major)
+            isa.extensions().all(|op| isa.row(op).pattern.value >> 26 != major)
         };
         Majors {
             free: CUSTOM.iter().rev().filter(|(_, bits)| is_free(bits)).map(|(name, _)| *name).collect(),
@@ -43,7 +43,7 @@ impl Majors {
         let mut picture = String::new();
         let mut fields: Vec<(char, u8)> =
             pattern.operands.iter().map(|&(letter, kind)| (letter, kind.width().unwrap_or(0))).collect();
-        fields.sort_by_key(|(letter, _)| isa::picture::LETTERS.iter().position(|&other| other == *letter as u8));
+        fields.sort_by_key(|(letter, _)| isa::pattern::LETTERS.iter().position(|&other| other == *letter as u8));
         for (letter, width) in fields {
             let _ = write!(picture, " {}", letter.to_string().repeat(width.into()));
         }

@@ -1,9 +1,9 @@
-//! The 32-bit word of an instruction as a picture: `0` and `1` are fixed, a letter is a bit of that operand's field,
+//! The 32-bit word of an instruction as a bit pattern: `0` and `1` are fixed, a letter is a bit of that operand's field,
 //! `-` encodes as 0 and must be 0, spaces are ignored. One parser serves built-in rows, at compile time, and extensions.
 
 use std::fmt;
 
-/// Most fields that a picture may have.
+/// Most fields that a pattern may have.
 pub const MAX_FIELDS: usize = 6;
 
 /// Letters that may name an operand: written, read and written, read, immediate.
@@ -20,9 +20,9 @@ pub struct Field {
     pub width: u8,
 }
 
-/// A parsed picture.
+/// A parsed pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub struct BitPattern {
     /// The fixed bits.
     pub value: u32,
     /// Which bits are fixed, those drawn `-` included.
@@ -31,12 +31,12 @@ pub struct Picture {
     count: u8,
 }
 
-/// Why a picture cannot be read.
+/// Why a pattern cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureError {
+pub enum PatternError {
     /// Not 32 bits but this many.
     Length(usize),
-    /// A character, at this octet, that means nothing in a picture.
+    /// A character, at this octet, that means nothing in a pattern.
     Character(usize),
     /// The field of this letter is in several pieces.
     Split(u8),
@@ -44,15 +44,15 @@ pub enum PictureError {
     TooManyFields,
 }
 
-impl fmt::Display for PictureError {
+impl fmt::Display for PatternError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            PictureError::Length(bits) => write!(f, "the picture has {bits} bits instead of 32"),
-            PictureError::Character(at) => {
-                write!(f, "character {} of the picture is none of 0, 1, -, {}", at + 1, LETTERS.escape_ascii())
+            PatternError::Length(bits) => write!(f, "the pattern has {bits} bits instead of 32"),
+            PatternError::Character(at) => {
+                write!(f, "character {} of the pattern is none of 0, 1, -, {}", at + 1, LETTERS.escape_ascii())
             }
-            PictureError::Split(letter) => write!(f, "the field `{}` is in several pieces", *letter as char),
-            PictureError::TooManyFields => write!(f, "the picture has more than {MAX_FIELDS} fields"),
+            PatternError::Split(letter) => write!(f, "the field `{}` is in several pieces", *letter as char),
+            PatternError::TooManyFields => write!(f, "the pattern has more than {MAX_FIELDS} fields"),
         }
     }
 }
@@ -61,18 +61,18 @@ impl fmt::Display for PictureError {
 pub const CUSTOM: [(&str, &str); 4] =
     [("custom0", "111100"), ("custom1", "111101"), ("custom2", "111110"), ("custom3", "111111")];
 
-impl Picture {
-    /// Reads a picture.
-    pub const fn parse(text: &str) -> Result<Picture, PictureError> {
+impl BitPattern {
+    /// Reads a pattern.
+    pub const fn parse(text: &str) -> Result<BitPattern, PatternError> {
         let text = text.as_bytes();
         let empty = Field { letter: 0, shift: 0, width: 0 };
-        let mut picture = Picture { value: 0, mask: 0, fields: [empty; MAX_FIELDS], count: 0 };
+        let mut pattern = BitPattern { value: 0, mask: 0, fields: [empty; MAX_FIELDS], count: 0 };
         let mut bits = 0;
         let mut at = 0;
         let mut last = 0;
         if let Some(value) = custom_major(text) {
-            picture.value = value << 26;
-            picture.mask = 0x3f << 26;
+            pattern.value = value << 26;
+            pattern.mask = 0x3f << 26;
             bits = 6;
             at = CUSTOM[0].0.len();
         }
@@ -89,30 +89,30 @@ impl Picture {
             let shift = 32 - bits as u8;
             match c {
                 b'0' | b'1' | b'-' => {
-                    picture.mask |= 1 << shift;
-                    picture.value |= ((c == b'1') as u32) << shift;
+                    pattern.mask |= 1 << shift;
+                    pattern.value |= ((c == b'1') as u32) << shift;
                 }
                 _ if is_letter(c) => {
                     if c == last {
-                        let field = &mut picture.fields[picture.count as usize - 1];
+                        let field = &mut pattern.fields[pattern.count as usize - 1];
                         field.shift = shift;
                         field.width += 1;
                     } else {
-                        if picture.field(c).is_some() {
-                            return Err(PictureError::Split(c));
+                        if pattern.field(c).is_some() {
+                            return Err(PatternError::Split(c));
                         }
-                        if picture.count as usize == MAX_FIELDS {
-                            return Err(PictureError::TooManyFields);
+                        if pattern.count as usize == MAX_FIELDS {
+                            return Err(PatternError::TooManyFields);
                         }
-                        picture.fields[picture.count as usize] = Field { letter: c, shift, width: 1 };
-                        picture.count += 1;
+                        pattern.fields[pattern.count as usize] = Field { letter: c, shift, width: 1 };
+                        pattern.count += 1;
                     }
                 }
-                _ => return Err(PictureError::Character(at - 1)),
+                _ => return Err(PatternError::Character(at - 1)),
             }
             last = c;
         }
-        if bits == 32 { Ok(picture) } else { Err(PictureError::Length(bits)) }
+        if bits == 32 { Ok(pattern) } else { Err(PatternError::Length(bits)) }
     }
 
     /// The field of an operand.
@@ -137,12 +137,12 @@ impl Picture {
         self.count as usize
     }
 
-    /// Whether some word matches both pictures.
-    pub const fn overlaps(&self, other: &Picture) -> bool {
+    /// Whether some word matches both patterns.
+    pub const fn overlaps(&self, other: &BitPattern) -> bool {
         (self.value ^ other.value) & self.mask & other.mask == 0
     }
 
-    /// Whether `word` has the fixed bits of this picture.
+    /// Whether `word` has the fixed bits of this pattern.
     pub const fn matches(&self, word: u32) -> bool {
         word & self.mask == self.value
     }

@@ -16,7 +16,7 @@ pattern, `0` and `1` are fixed bits, a letter is a bit of that operand's field, 
 ";
 
 const REGISTERS: &str = "\
-A core has 32 scalar registers `s0` to `s31` (`s0` reads zero and ignores writes), 32 vector registers `v0` to `v31` of three lanes, and
+A core has 32 scalar registers `s0` to `s31` (`s0` reads zero and ignores writes), 32 vector registers `v0` to `v31` of three components, and
 8 wide accumulators `w0` to `w7` of twice the word. They hold raw integers; which format a number has is the program's business.
 
 *Numeric* rows compute exactly and quantize once: to the word, under the machine's rounding and overflow modes (IEEE 1666; by default to

@@ -38,7 +38,7 @@ pub(crate) fn describe(kind: Kind) -> &'static str {
         Kind::Un => "an unsigned number",
         Kind::Off => "an offset in octets",
         Kind::Rel => "a label or a word address",
-        Kind::Lane => "a lane: 0, 1, 2 or x, y, z",
+        Kind::Lane => "a component: 0, 1, 2 or x, y, z",
         _ => match (kind.register_file(), kind.registers()) {
             (Some('v'), 2) => "the first of two vector registers",
             (Some('v'), 3) => "the first of three vector registers",
@@ -184,8 +184,8 @@ impl Assembler<'_> {
                     continue;
                 }
                 Written::Register((file, number)) if kind.register_file() == Some(*file) => found.push(known(*number)),
-                _ if kind == Kind::Lane && operand.lane.is_some() => {
-                    found.push(known(operand.lane.unwrap_or(0) as u8));
+                _ if kind == Kind::Lane && operand.component.is_some() => {
+                    found.push(known(operand.component.unwrap_or(0) as u8));
                 }
                 Written::Number(expression) if kind.register_file().is_none() => {
                     found.push(Argument { value: Value::Expression(expression.clone()), at: operand.at });

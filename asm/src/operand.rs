@@ -26,14 +26,14 @@ pub(crate) enum Written {
 pub(crate) struct Operand {
     pub written: Written,
     pub at: At,
-    /// Set where the operand is one of the names of lanes, whatever else that name stands for.
-    pub lane: Option<i64>,
+    /// Set where the operand is one of the names of components, whatever else that name stands for.
+    pub component: Option<i64>,
 }
 
 impl Operand {
     /// An operand that is not in the text.
     pub fn made(written: Written, at: At) -> Operand {
-        Operand { written, at, lane: None }
+        Operand { written, at, component: None }
     }
 
     /// A number as an operand.
@@ -109,14 +109,14 @@ impl Assembler<'_> {
 
     fn operand(&mut self, cursor: &mut Cursor) -> Parsed<Operand> {
         let first = cursor.position;
-        let lane = cursor.peek().and_then(|token| match cursor.text(token) {
+        let component = cursor.peek().and_then(|token| match cursor.text(token) {
             "x" => Some(0),
             "y" => Some(1),
             "z" => Some(2),
             _ => None,
         });
         if let Some((register, _)) = self.register_here(cursor)? {
-            return Ok(Operand { written: Written::Register(register), at: cursor.since(first), lane });
+            return Ok(Operand { written: Written::Register(register), at: cursor.since(first), component });
         }
         if cursor.is_mark("(") {
             let mut ahead = *cursor;
@@ -128,7 +128,7 @@ impl Assembler<'_> {
                 return Ok(Operand {
                     written: Written::Memory(zero, register, at),
                     at: cursor.since(first),
-                    lane: None,
+                    component: None,
                 });
             }
         }
@@ -143,10 +143,10 @@ impl Assembler<'_> {
             };
             cursor.expect(")")?;
             let at_all = cursor.since(first);
-            return Ok(Operand { written: Written::Memory(expression, register, at), at: at_all, lane: None });
+            return Ok(Operand { written: Written::Memory(expression, register, at), at: at_all, component: None });
         }
-        let lane = lane.filter(|_| expression.symbol().is_some());
-        Ok(Operand { written: Written::Number(expression), at: cursor.since(first), lane })
+        let component = component.filter(|_| expression.symbol().is_some());
+        Ok(Operand { written: Written::Number(expression), at: cursor.since(first), component })
     }
 
     fn register_here(&self, cursor: &mut Cursor) -> Parsed<Option<(Register, At)>> {

@@ -104,9 +104,9 @@ pseudos! {
     "bwgt" ('a': W, 'b': W, 'i': LABEL) always!["bwlt b, a, i"], "Branches when the wide `a > b`.";
     "j" ('i': LABEL) always!["jump i"], "Jumps.";
     "szero" ('d': S) always!["mov d, s0"], "Zero in a scalar register.";
-    "vzero" ('d': V) always!["vsplat d, s0"], "Zero in all lanes.";
+    "vzero" ('d': V) always!["vsplat d, s0"], "Zero in all components.";
     "vset" ('d': V, 'x': Part::Number, 'y': Part::Number, 'z': Part::Number, 'e': S) VECTOR,
-        "Three constants in the lanes of `d`, through the scalar register `e`: one word for three zeros, two or three for equal numbers, else six to nine.";
+        "Three constants in the components of `d`, through the scalar register `e`: one word for three zeros, two or three for equal numbers, else six to nine.";
 }
 
 /// The pseudo-instruction of a name.

@@ -212,7 +212,7 @@ impl Isa {
         self.ops().find(|&op| self.row(op).name == name)
     }
 
-    /// Decodes a word; `None` when no row matches or a register or lane does not exist.
+    /// Decodes a word; `None` when no row matches or a register or component does not exist.
     pub fn decode(&self, word: u32) -> Option<Instruction> {
         let op = self.by_major[(word >> 26) as usize].iter().copied().find(|&op| self.row(op).pattern.matches(word))?;
         let row = self.row(op);

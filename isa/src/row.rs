@@ -11,7 +11,7 @@ use crate::pattern::BitPattern;
 pub enum Kind {
     /// Scalar register `s0` to `s31`; `s0` reads zero and ignores writes.
     S,
-    /// Vector register `v0` to `v31`, three lanes.
+    /// Vector register `v0` to `v31`, three components.
     V,
     /// Wide accumulator `w0` to `w7`, twice the word.
     W,
@@ -35,7 +35,7 @@ pub enum Kind {
     Off,
     /// Signed distance in words from this instruction to a label.
     Rel,
-    /// Lane of a vector: 0, 1 or 2.
+    /// Component of a vector: 0, 1 or 2.
     Lane,
 }
 

@@ -28,7 +28,7 @@ Examples:
   lancer run first.s --flags                    # what lost bits or did not fit, line by line
   lancer run first.o                            # as lancer assemble -o first.o has written it
 
-Registers hold raw integers: s0 to s31 one word, v0 to v31 three lanes, w0 to w7 64 bits.
+Registers hold raw integers: s0 to s31 one word, v0 to v31 three components, w0 to w7 64 bits.
 Exit codes: 0 the program halted, 1 errors in the source, 2 usage, 3 it trapped, 5 step limit.";
 
 /// Assembles a program, or takes an assembled one, and runs it on one core of the machine.

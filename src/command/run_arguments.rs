@@ -39,9 +39,9 @@ impl FromStr for RegisterValue {
             Some(('s', 0)) => Err("s0 is always zero".into()),
             Some(('s', number)) => Ok(RegisterValue::Scalar(number, word(value)?)),
             Some(('v', number)) => {
-                let lanes: Vec<&str> = value.split(':').collect();
-                let &[x, y, z] = lanes.as_slice() else {
-                    return Err(format!("`{name}` has three lanes, such as {name}=1:2:3"));
+                let components: Vec<&str> = value.split(':').collect();
+                let &[x, y, z] = components.as_slice() else {
+                    return Err(format!("`{name}` has three components, such as {name}=1:2:3"));
                 };
                 Ok(RegisterValue::Vector(number, [word(x)?, word(y)?, word(z)?]))
             }
@@ -128,8 +128,8 @@ mod tests {
             ("s0=1", "always zero"),
             ("s32=1", "no register"),
             ("x=1", "no register"),
-            ("v1=1:2", "three lanes"),
-            ("v1=1:2:3:4", "three lanes"),
+            ("v1=1:2", "three components"),
+            ("v1=1:2:3:4", "three components"),
             ("s1=4294967296", "does not fit 32 bits"),
             ("s1=-2147483649", "does not fit 32 bits"),
             ("s1=1.5", "no whole number"),

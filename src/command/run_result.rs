@@ -182,9 +182,10 @@ impl RunResult {
             let (value, digits) = match contents {
                 RegisterContents::One(value) if name.starts_with('w') => (value.to_string(), format!("{value:016x}")),
                 RegisterContents::One(value) => (value.to_string(), format!("{:08x}", *value as i32)),
-                RegisterContents::Three(lanes) => {
-                    (lanes.map(|lane| lane.to_string()).join(" : "), lanes.map(|lane| format!("{lane:08x}")).join(" "))
-                }
+                RegisterContents::Three(components) => (
+                    components.map(|component| component.to_string()).join(" : "),
+                    components.map(|component| format!("{component:08x}")).join(" "),
+                ),
             };
             vec![name.clone(), value, digits]
         }));

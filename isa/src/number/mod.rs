@@ -11,7 +11,7 @@ pub use modes::{Flags, Modes, Overflow, Quantization};
 pub use nearest::Nearest32;
 pub use root::square_root;
 
-/// Three raw lanes.
+/// Three raw components.
 pub type Vector = [i32; 3];
 
 /// The machine's word length and modes. All operations take exact integers and round once.
@@ -76,11 +76,11 @@ pub const fn magnitude_bits(value: i128) -> u32 {
     128 - (if value < 0 { !value } else { value }).leading_zeros()
 }
 
-/// The shift right (negative: left) after which the largest lane lies in [2^(word-3), 2^(word-2)); 0 for a zero vector.
+/// The shift right (negative: left) after which the largest component lies in [2^(word-3), 2^(word-2)); 0 for a zero vector.
 ///
-/// Rounding may then bring the largest lane to 2^(word-2) exactly.
-pub fn normalizing_shift(lanes: [i128; 3], word: u32) -> i32 {
-    let largest = lanes.map(i128::unsigned_abs).into_iter().max().unwrap_or(0);
+/// Rounding may then bring the largest component to 2^(word-2) exactly.
+pub fn normalizing_shift(components: [i128; 3], word: u32) -> i32 {
+    let largest = components.map(i128::unsigned_abs).into_iter().max().unwrap_or(0);
     if largest == 0 { 0 } else { (128 - largest.leading_zeros()) as i32 - (word as i32 - 2) }
 }
 

@@ -123,13 +123,13 @@ mod tests {
         #[test]
         fn sums_equal_those_of_the_modes(
             a: i64, b: i64, words in prop::array::uniform6(prop::sample::select(vec![i32::MIN, i32::MIN + 1, -3, -1, 0, 1, 2, i32::MAX])),
-            lanes: [i32; 6], drawn in prop::array::uniform6(any::<bool>()), shift in 0u32..64,
+            components: [i32; 6], drawn in prop::array::uniform6(any::<bool>()), shift in 0u32..64,
         ) {
             let (fast, slow) = (Nearest32, Modes::default());
             prop_assert_eq!(fast.widen64(a), slow.widen64(a));
             prop_assert_eq!(fast.widen_sum(a, b), slow.widen_sum(a, b));
             prop_assert_eq!(fast.widen_difference(a, b), slow.widen_difference(a, b));
-            let word = |k: usize| i64::from(if drawn[k] { lanes[k] } else { words[k] });
+            let word = |k: usize| i64::from(if drawn[k] { components[k] } else { words[k] });
             let products = [0, 1, 2].map(|k| word(k) * word(k + 3));
             prop_assert_eq!(fast.widen_products(products), slow.widen_products(products));
             prop_assert_eq!(fast.narrow_products(products, shift), slow.narrow_products(products, shift));

@@ -11,7 +11,7 @@ macro_rules! ray_rows {
             ///
             /// Tests, in this order, that the determinant is not 0, u >= 0, v >= 0, u + v <= 1, t > 0, all exactly. t, scaled by 2^i,
             /// u and v are exact quotients, rounded once; a t beyond the word saturates in every mode. Each edge that the ray meets
-            /// exactly is decided by the sign of the first lane other than 0 of its normal, the cross product of its ends as the
+            /// exactly is decided by the sign of the first component other than 0 of its normal, the cross product of its ends as the
             /// origin sees them.
             rtri (d: S, e: V, a: V2, b: V3, i: Sh) "010010 ddddd eeeee aaaaa bbbbb iiiiii" [
                 Parallel(add 2, sub 9, mul 9, cmp 1),

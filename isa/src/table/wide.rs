@@ -51,9 +51,9 @@ macro_rules! wide_rows {
             whigh (d: S, a: W)                "010001 ddddd aaa-- ----- ------ 10100"  [Done(move 1)];
             /// Pattern of 64 bits with `a` as its high and `b` as its low half.
             wjoin (d: W, a: S, b: S)          "010001 ddd-- aaaaa bbbbb ------ 10101"  [Done(move 1)];
-            /// Exact cross product `a x b`, one wide lane a register.
+            /// Exact cross product `a x b`, one wide component a register.
             wcross (d: W3, a: V, b: V)        "010001 ddd-- aaaaa bbbbb ------ 10110"  [Done(sub 3, mul 6)];
-            /// Exact dot product of wide lanes and a vector, shifted right by `i`, rounded once: with `wcross`, a determinant.
+            /// Exact dot product of wide components and a vector, shifted right by `i`, rounded once: with `wcross`, a determinant.
             wmixed (d: W, a: W3, b: V, i: Sh) "010001 ddd-- aaa-- bbbbb iiiiii 10111"  [Done(add 2, mul 3)];
         }
     ] $($rest)* } };

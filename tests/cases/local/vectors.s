@@ -1,4 +1,4 @@
-; Three words in the order of the lanes.
+; Three words in the order of the components.
         movi s1, 2
         lv   v1, 1(s1)          ; v1 = 0x04030201, -1, 0x7fffffff
         sv   v1, 14(s1)         ; buffer[15] = 0, 1, 2, 3, 4, 255, 255, 255, 255, 255, 255, 255, 127, 0

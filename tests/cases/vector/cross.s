@@ -1,4 +1,4 @@
-; Each lane is one rounding of the exact difference of two products.
+; Each component is one rounding of the exact difference of two products.
         vset v1, 1, 0, 0, s1
         vset v2, 0, 1, 0, s1
         vcross v3, v1, v2, 0    ; v3 = 0, 0, 1

@@ -1,4 +1,4 @@
-; The lane of the largest absolute value, of equal ones the first.
+; The component of the largest absolute value, of equal ones the first.
         vset v1, 5, -5, 5, s1
         vmajor s2, v1           ; s2 = 0
         vset v1, 4, -5, 5, s1

@@ -1,4 +1,4 @@
-; A bit a lane, lane 0 lowest.
+; A bit a component, component 0 lowest.
         vset v1, 1, 2, 3, s1
         vset v2, 2, 2, 2, s1
         vlt  s2, v1, v2         ; s2 = 1

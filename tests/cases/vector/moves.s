@@ -1,4 +1,4 @@
-; Copies take raw bits. Lanes are 0, 1, 2; lane 3 reads zero and is nowhere.
+; Copies take raw bits. Components are 0, 1, 2; component 3 reads zero and is nowhere.
         vset v1, 10, 20, 30, s1
         vmov v2, v1             ; v2 = 10, 20, 30
         movi s2, -7

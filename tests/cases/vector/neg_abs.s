@@ -1,4 +1,4 @@
-; The least number saturates in each lane.
+; The least number saturates in each component.
         vset v1, -0x80000000, 0, 9, s1
         vset v2, -1, 0x7fffffff, -0x7fffffff, s1
         vneg v3, v1             ; v3 = 0x7fffffff, 0, -9

@@ -1,4 +1,4 @@
-; The largest lane gets 29 or 30 bits; the second result is the shift to the right.
+; The largest component gets 29 or 30 bits; the second result is the shift to the right.
         vset v1, 1, 0, -3, s1
         vnorm v2, s2, v1        ; v2 = 1 << 28, 0, -3 << 28; s2 = -28
         vset v3, -0x80000000, 3, 5, s1

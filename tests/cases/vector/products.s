@@ -1,4 +1,4 @@
-; Lane by lane, or by one scalar; each lane is rounded once.
+; Component by component, or by one scalar; each component is rounded once.
         .format dir, 30
         vset v1, 3, -3, 0x7fffffff, s1
         vset v2, 1, 1, 0x7fffffff, s1

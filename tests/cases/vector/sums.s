@@ -1,4 +1,4 @@
-; Saturates, one lane at a time.
+; Saturates, one component at a time.
         .format pos, 16
         vset v1, 32767.5:pos, 0, -32768:pos, s1
         vset v2, 1:pos, 0, -1:pos, s1

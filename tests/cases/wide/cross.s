@@ -1,4 +1,4 @@
-; Three exact lanes.
+; Three exact components.
         vset v1, 2, 3, 5, s1
         vset v2, 7, 11, 13, s1
         wcross w1, v1, v2       ; w1 = -16; w2 = 9; w3 = 1; w4 = 0

@@ -1,4 +1,4 @@
-; A dot product of wide lanes and a vector: the exact sum, shifted and rounded once.
+; A dot product of wide components and a vector: the exact sum, shifted and rounded once.
         vset v1, 2, 3, 5, s1
         vset v2, 7, 11, 13, s1
         vset v3, 1, -2, 4, s1

@@ -5,11 +5,11 @@ use super::triangle::{Meeting, TriangleEnd, exact_triangle};
 use super::{Difference, Ray, difference};
 use crate::number::Vector;
 
-/// Bound on the error of a determinant of three vectors, in units of the product of their largest lanes.
+/// Bound on the error of a determinant of three vectors, in units of the product of their largest components.
 ///
-/// With e = 2^-53 the relative error of one operation and m the product of the largest lanes of the first two vectors: a lane of the cross
-/// product is off by 2 e m from its two products and 2 e m from their difference, all but terms of e^2; with |lane| <= 2 m its product
-/// with a lane of at most r is off by 6 e m r, three of them by 18 e m r, and the two additions add 4 e m r and 6 e m r. 28 e with the terms of
+/// With e = 2^-53 the relative error of one operation and m the product of the largest components of the first two vectors: a component of the cross
+/// product is off by 2 e m from its two products and 2 e m from their difference, all but terms of e^2; with |component| <= 2 m its product
+/// with a component of at most r is off by 6 e m r, three of them by 18 e m r, and the two additions add 4 e m r and 6 e m r. 28 e with the terms of
 /// e^2 is below 29 e; the bound is 32 e, and the error of computing it, 3 e of itself, is far below the rest.
 const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;
 
@@ -59,11 +59,11 @@ fn surely_missed(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Option<TriangleEnd> 
 
 /// Differences of 33 bits, which doubles hold exactly.
 fn exact(difference: Difference) -> [f64; 3] {
-    difference.map(|lane| lane as f64)
+    difference.map(|component| component as f64)
 }
 
-fn largest(lanes: [f64; 3]) -> f64 {
-    lanes[0].abs().max(lanes[1].abs()).max(lanes[2].abs())
+fn largest(components: [f64; 3]) -> f64 {
+    components[0].abs().max(components[1].abs()).max(components[2].abs())
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {

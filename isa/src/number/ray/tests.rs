@@ -26,7 +26,7 @@ const STEP: i128 = 1 << 28;
 
 /// The direction moved by (e, e^2, e^3), times STEP^3.
 fn moved(direction: Vector) -> Wide {
-    let [x, y, z] = direction.map(|lane| i128::from(lane) * STEP.pow(3));
+    let [x, y, z] = direction.map(|component| i128::from(component) * STEP.pow(3));
     [x + STEP.pow(2), y + STEP, z + 1]
 }
 
@@ -53,7 +53,7 @@ fn end_of_moved(ray: &Ray, vertices: [Vector; 3]) -> TriangleEnd {
     end_by_signs(ray, vertices, |edge| dot(edge, moved(ray.direction)).signum())
 }
 
-/// The end by the first sign that is not 0 of the product with the direction and of the three lanes; any coordinates.
+/// The end by the first sign that is not 0 of the product with the direction and of the three components; any coordinates.
 fn end_in_order(ray: &Ray, vertices: [Vector; 3]) -> TriangleEnd {
     end_by_signs(ray, vertices, |edge| {
         let all = [dot(edge, ray.direction.map(i128::from)), edge[0], edge[1], edge[2]];
@@ -61,8 +61,8 @@ fn end_in_order(ray: &Ray, vertices: [Vector; 3]) -> TriangleEnd {
     })
 }
 
-fn vector(lane: impl Strategy<Value = i32> + Clone) -> impl Strategy<Value = Vector> {
-    prop::array::uniform3(lane)
+fn vector(component: impl Strategy<Value = i32> + Clone) -> impl Strategy<Value = Vector> {
+    prop::array::uniform3(component)
 }
 
 /// Coordinates so small that rays meet edges, vertices and planes exactly, again and again.
@@ -75,8 +75,8 @@ fn any_size() -> impl Strategy<Value = i32> + Clone {
     prop_oneof![6 => numbers, 1 => prop::sample::select(vec![i32::MIN, i32::MIN + 1, -1, 0, 1, i32::MAX])]
 }
 
-fn ray(lane: impl Strategy<Value = i32> + Clone) -> impl Strategy<Value = Ray> {
-    prop::array::uniform2(vector(lane)).prop_map(Ray::from)
+fn ray(component: impl Strategy<Value = i32> + Clone) -> impl Strategy<Value = Ray> {
+    prop::array::uniform2(vector(component)).prop_map(Ray::from)
 }
 
 /// A triangle of large coordinates and a ray that is aimed at a vertex, at a point of an edge or of the plane, all but exactly or exactly.
@@ -98,7 +98,7 @@ fn aimed() -> impl Strategy<Value = (Ray, [Vector; 3])> {
         |(a, edges, origin, weights, miss, stretch)| {
             let at = |edge: Vector| std::array::from_fn(|k| a[k] + 4 * edge[k]);
             // The third vertex of a sliver lies almost on the line of the others.
-            let far = if stretch < -10 { edges[0].map(|lane| 17 * lane + 1) } else { edges[1] };
+            let far = if stretch < -10 { edges[0].map(|component| 17 * component + 1) } else { edges[1] };
             let vertices = [a, at(edges[0]), at(far)];
             let target = |k: usize| (0..3).map(|n| weights[n] * vertices[n][k]).sum::<i32>() / 4;
             let towards = |k: usize| target(k) - origin[k] + miss[k];

@@ -58,7 +58,7 @@ fn dot(a: [i128; 3], b: Difference) -> i128 {
 
 /// Whether an edge function has the sign of the determinant.
 ///
-/// One that is 0 gets the sign by which it would change if the direction moved by (e, e^2, e^3): that of the first lane other than 0 of its
+/// One that is 0 gets the sign by which it would change if the direction moved by (e, e^2, e^3): that of the first component other than 0 of its
 /// gradient, the normal of the plane through the origin and the edge. Both triangles of an edge see the same normal with opposite signs. A
 /// normal of 0, of an edge whose line goes through the origin, is outside.
 fn is_inside(edge: i128, is_positive: bool, ray: &Ray, [from, to]: [Vector; 2], ties: &mut u32) -> bool {
@@ -67,7 +67,7 @@ fn is_inside(edge: i128, is_positive: bool, ray: &Ray, [from, to]: [Vector; 2], 
     }
     *ties += 1;
     let normal = cross(difference(from, ray.origin), difference(to, ray.origin));
-    normal.into_iter().find(|&lane| lane != 0).is_some_and(|lane| (lane > 0) == is_positive)
+    normal.into_iter().find(|&component| component != 0).is_some_and(|component| (component > 0) == is_positive)
 }
 
 /// Ray against triangle on exact integers, without a shortcut.

@@ -87,10 +87,7 @@ lancer() { # form, engine, name
 }
 {
     lancer rtri fast "lancer, ray-triangle instruction"
-    lancer rtri "fast, not counted" "lancer, the same, nothing counted"
-    lancer rtri lockstep "lancer, the same, in lock-step"
     lancer branchy fast "lancer, branchy"
-    lancer branchy lockstep "lancer, branchy, in lock-step"
     lancer branchy native "native code, branchy"
     printf 'qemu-riscv64, branchy\t%s\t%s\n' "$(median < "$folder/riscv.times")" "$(riscv 1)"
     printf 'wasmi, branchy\t%s\t%s\n' "$(median < "$folder/wasm.times")" "$(wasm 1)"

@@ -1,7 +1,7 @@
 //! Which machine runs.
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use emu::machine::Engine;
 use scenes::layout::Layout;
 
@@ -26,10 +26,17 @@ pub struct MachineArguments {
 /// The engine is chosen.
 const AUTO: &str = "auto";
 
+/// Engine that is no more; whoever asks for it is told which one to take.
+const LOCKSTEP: &str = "lockstep";
+
 /// Names of the engines.
 pub fn engine() -> impl TypedValueParser<Value = Engine> {
-    let names = PossibleValuesParser::new([AUTO].into_iter().chain(Engine::ALL.map(Engine::name)));
-    names.map(|name| Engine::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default())
+    let names = [AUTO].into_iter().chain(Engine::ALL.map(Engine::name)).map(PossibleValue::new);
+    let names = PossibleValuesParser::new(names.chain([PossibleValue::new(LOCKSTEP).hide(true)]));
+    names.try_map(|name| match name == LOCKSTEP {
+        true => Err("lock-step was removed, because it was slower than `fast`; use `--engine fast`"),
+        false => Ok(Engine::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default()),
+    })
 }
 
 /// Names of the layouts.

@@ -29,12 +29,8 @@ use crate::result::Formats;
 pub enum Runner {
     /// Work items one after the other, counted by runs.
     Fast,
-    /// The same without counting.
-    FastUncounted,
     /// Counted, with the clocks of the machine.
     FastClocks,
-    /// Work items in lock-step, counted.
-    Lockstep,
     /// The interpreter, counted.
     Checked,
     /// The profile's functions in Rust, on the same tree and the same rays.
@@ -45,23 +41,13 @@ pub enum Runner {
 
 impl Runner {
     /// All, in the order of results.
-    pub const ALL: [Runner; 7] = [
-        Runner::Fast,
-        Runner::FastUncounted,
-        Runner::FastClocks,
-        Runner::Lockstep,
-        Runner::Checked,
-        Runner::Twin,
-        Runner::Reference,
-    ];
+    pub const ALL: [Runner; 5] = [Runner::Fast, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
 
     /// Name in tables.
     pub const fn name(self) -> &'static str {
         match self {
             Runner::Fast => "fast",
-            Runner::FastUncounted => "fast, uncounted",
             Runner::FastClocks => "fast, clocks",
-            Runner::Lockstep => "lockstep",
             Runner::Checked => "checked",
             Runner::Twin => "native twin",
             Runner::Reference => "native f64",
@@ -76,7 +62,7 @@ pub struct Measured {
     pub scene: String,
     /// Profile of the kernels.
     pub profile: &'static str,
-    /// Who computed it: `fast`, `fast-uncounted`, `fast-clocks`, `lockstep`, `checked`, `twin` or `reference`.
+    /// Who computed it: `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Bits of a word and fraction bits of each quantity.
@@ -91,8 +77,6 @@ pub struct Measured {
     pub instructions: Option<f64>,
     /// Millions of rays a second: camera, secondary and shadow rays.
     pub rays: f64,
-    /// Share of the lanes that had work while groups ran, in [0, 1]; null for others than lock-step.
-    pub lanes: Option<f64>,
 }
 
 /// Measures a picture, each runner in turn, so that whatever else the host does disturbs all alike.
@@ -107,28 +91,22 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let modes = job.machine.arithmetic.modes();
     let reference = Reference::new(&job.scene, &job.view, Method::Hierarchy)?;
     let crop = load.build.crop;
-    let known = |count: Result<Result<machine::Count, &str>, machine::Failure>| -> Result<machine::Count, Failure> {
-        count?.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
+    let count = |setup: &Setup| -> Result<machine::Count, Failure> {
+        let count = machine::count(setup, &load.memory)?;
+        count.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };
-    let count = |setup: &Setup| known(machine::count(setup, &load.memory));
     let counted = count(&setup(Engine::Fast))?;
     let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
     let instructions = counted.tally.instructions();
     let pixels = u64::from(crop.width) * u64::from(crop.height);
     let own_packet = load.build.cores.symbols.get(Function::OwnPacket.name());
     let other_rays = own_packet.map_or(0, |&pc| counted.tally.word(&code, pc as u32).instructions);
-    let rounds = count(&setup(Engine::Lockstep))?.rounds;
-    let lanes = (rounds != 0).then(|| instructions as f64 / (rounds * emu::fast::LANES as u64) as f64);
 
     let mut times: [Vec<f64>; Runner::ALL.len()] = Default::default();
     for _ in 0..runs {
         for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
             let time = match runner {
                 Runner::Fast => timed(|| count(&setup(Engine::Fast)).map(drop))?,
-                Runner::FastUncounted => {
-                    timed(|| known(machine::compute(&setup(Engine::Fast), &load.memory)).map(drop))?
-                }
-                Runner::Lockstep => timed(|| count(&setup(Engine::Lockstep)).map(drop))?,
                 Runner::Checked => timed(|| count(&setup(Engine::Checked)).map(drop))?,
                 Runner::FastClocks => {
                     let run = || machine::run(&setup(Engine::Fast), load.memory.clone(), &mut |_| {});
@@ -166,7 +144,6 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 of_twin: median / twin,
                 instructions: (!is_native).then(|| instructions as f64 / median / 1e6),
                 rays: (pixels + other_rays) as f64 / median / 1e6,
-                lanes: lanes.filter(|_| runner == Runner::Lockstep),
             }
         })
         .collect())

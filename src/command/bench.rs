@@ -19,7 +19,7 @@ use crate::terminal::Terminal;
 use crate::{files, input, result};
 
 /// Version of what `--json` prints.
-pub(super) const SCHEMA: &str = "lancer-bench-1";
+pub(super) const SCHEMA: &str = "lancer-bench-2";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -29,8 +29,8 @@ Examples:
 
 /// Measures how fast the engines compute pictures, beside native code.
 ///
-/// All take turns, and ratios are those of medians. `fast`, `lockstep` and `checked` compute and count the cores' work, `fast, uncounted`
-/// only computes it, `fast, clocks` puts it on the machine's clocks as well. The native twin is the profile's functions in Rust on the same tree and the same
+/// All take turns, and ratios are those of medians. `fast` and `checked` compute and count the cores' work,
+/// `fast, clocks` puts it on the machine's clocks as well. The native twin is the profile's functions in Rust on the same tree and the same
 /// rays, native f64 the reference picture in double precision.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -76,7 +76,7 @@ pub(super) struct Benches {
     runs: u32,
     /// Host threads.
     threads: u32,
-    /// Vector instructions of the host that the fast engine uses: baseline, avx2 or avx512.
+    /// Vector instructions of the host that the fast engine uses: baseline or avx2.
     features: &'static str,
     /// What was measured, scene by scene.
     measured: Vec<Measured>,
@@ -117,8 +117,7 @@ pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Re
 }
 
 fn text(benches: &Benches) -> String {
-    let mut rows =
-        vec![row(["scene", "profile", "by", "ns a pixel", "of twin", "M instructions/s", "M rays/s", "lanes"])];
+    let mut rows = vec![row(["scene", "profile", "by", "ns a pixel", "of twin", "M instructions/s", "M rays/s"])];
     let number = |value: Option<f64>| value.map_or_else(|| "-".into(), |value| format!("{value:.1}"));
     for one in &benches.measured {
         rows.push(vec![
@@ -129,7 +128,6 @@ fn text(benches: &Benches) -> String {
             format!("{:.2}", one.of_twin),
             number(one.instructions),
             format!("{:.2}", one.rays),
-            one.lanes.map_or_else(|| "-".into(), |share| format!("{:.0} %", 100.0 * share)),
         ]);
     }
     let Benches { width, height, runs, threads, features, .. } = benches;

@@ -107,7 +107,7 @@ pub struct Render {
     pub method: &'static str,
     /// Why it could not be replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
-    /// What executed the cores' program: fast, lockstep or checked. Nothing else depends on it.
+    /// What executed the cores' program: fast or checked. Nothing else depends on it.
     pub engine: &'static str,
     /// Where the clocks of each core went.
     pub cores: Vec<Processor>,

@@ -28,7 +28,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("extension compare half.isa --scene triangle --size 4x3", "lancer-extension-1"),
     ("extension suggest cornell --size 4x3", "lancer-suggestion-1"),
     ("extension suggest empty --size 4x3", "lancer-suggestion-1"),
-    ("bench triangle --size 4x3 --runs 1", "lancer-bench-1"),
+    ("bench triangle --size 4x3 --runs 1", "lancer-bench-2"),
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];
 

@@ -233,17 +233,15 @@ fn every_word_of_an_extension_survives_text() {
 }
 
 #[test]
-fn instructions_of_extensions_run_quickly_and_never_in_lock_step() {
+fn instructions_of_extensions_run_quickly() {
     let (isa, _) = isa_of(
         ".extension short\n.instr turn (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    neg d, a\n.end\n",
     );
     let (core, main) = (program("turn s1, s2\n turn s3, s1\n halt", &isa), program("halt", &isa));
     let config = emu::machine::Config::default();
-    for engine in [Engine::Fast, Engine::Lockstep] {
-        let options = Options { engine, ..Options::default() };
-        let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
-        assert_eq!(setup.engine(), Engine::Fast, "one step stands for each word");
-    }
+    let setup =
+        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options: Options::default() };
+    assert_eq!(setup.engine(), Engine::Fast, "one step stands for each word");
 }
 
 #[test]

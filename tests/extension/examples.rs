@@ -87,8 +87,7 @@ fn all_ways_to_run_an_example_agree() {
             let run = if steps { machine::step } else { machine::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
-        let lockstep = Options { engine: Engine::Lockstep, ..Options::default() };
-        assert_eq!(load.setup(&job.machine, lockstep).engine(), Engine::Fast, "{}", folder.display());
+        assert_eq!(load.setup(&job.machine, Options::default()).engine(), Engine::Fast, "{}", folder.display());
         let frame = run(Engine::Fast, false);
         assert_eq!(frame.method.name(), "replayed");
         let stepped = run(Engine::Checked, true);

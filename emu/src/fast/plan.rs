@@ -1,4 +1,4 @@
-//! A program cut into basic blocks and runs: where each ends, and what it takes. What the instructions do is not known here. Words, and what
+//! A program cut into runs: where each ends, and what it takes. What the instructions do is not known here. Words, and what
 //! bodies of extensions have beside them, stand in one [`Order`]; where there are no bodies, a place in it is a word.
 
 use std::ops::Range;
@@ -10,17 +10,6 @@ use crate::code::{Code, ExitCost, Slot};
 use crate::independence::Mark;
 use crate::order::{Order, Stage};
 use crate::registers::Registers;
-
-/// What the engine knows of a place beside its slot.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Place {
-    /// End of the block that begins here: the place behind its last one.
-    pub end: u32,
-    /// [`Toll::share`] of the most that the block may take.
-    pub most: u32,
-    /// Tolls of the places up to here, without what depends on exits: differences are those of blocks.
-    pub before: Toll,
-}
 
 /// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
 #[derive(Clone, Copy, Debug)]
@@ -73,14 +62,14 @@ pub(super) const fn padded<T: Copy, const N: usize>(rows: [T; N]) -> [T; 256] {
     padded
 }
 
-/// A program as blocks and runs. A block begins anywhere and ends behind a control row, or before a place that a branch leads to; a run ends
-/// behind a control row only.
+/// A program as runs. A run begins anywhere and ends behind a control row, or at the end of the program.
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
     /// The program.
     pub code: &'a Code<'a>,
     order: Order,
-    places: Vec<Place>,
+    /// Tolls of the places up to each, and up to the end, without what depends on exits: differences are those of runs.
+    before: Vec<Toll>,
     /// By exit: the pass of the program.
     passes: Vec<u32>,
     has_inner_steps: bool,
@@ -88,7 +77,7 @@ pub struct Plan<'a> {
     pub words: u32,
     /// Whether their places are their numbers.
     is_in_order: bool,
-    /// By exit: what it adds to the block's toll; 0 where all exits of the slot take the same.
+    /// By exit: what it adds to the toll of its run; 0 where all exits of the slot take the same.
     extra: Vec<Toll>,
     marks: Vec<Mark>,
     /// The steps, and one behind them; then, where registers may hold the number of cores, the same for an item in which one does.
@@ -100,14 +89,13 @@ pub struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Finds the blocks and runs; `None` for timings with which an instruction takes so long that tolls do not fit.
+    /// Finds the runs; `None` for timings with which an instruction takes so long that tolls do not fit.
     pub fn new(code: &'a Code<'a>) -> Option<Plan<'a>> {
         let order = Order::new(code);
         let stages = order.stages();
         let mut passes = Vec::with_capacity(code.costs().len());
         let mut firsts = Vec::with_capacity(stages.len());
-        let mut is_target = vec![false; stages.len() + 1];
-        for (place, &stage) in stages.iter().enumerate() {
+        for &stage in stages {
             firsts.push(passes.len());
             match stage {
                 Stage::Slot(slot) => {
@@ -116,18 +104,14 @@ impl<'a> Plan<'a> {
                 }
                 Stage::Hop(_) => passes.push(NO_PASS),
             }
-            is_target[place + 1] |= ends_run(code, stage);
-            if let Some(target) = target(code, &order, stage) {
-                is_target[target as usize] = true;
-            }
         }
         firsts.push(passes.len());
-        let mut places = vec![Place::default(); stages.len() + 1];
+        let mut sums = Vec::with_capacity(stages.len() + 1);
         let mut extra = vec![Toll::default(); passes.len()];
         let mut before = Toll::default();
         let mut most = vec![Toll::default(); stages.len()];
         for (place, stage) in stages.iter().enumerate() {
-            places[place].before = before;
+            sums.push(before);
             let exits = firsts[place]..firsts[place + 1];
             if let Stage::Hop(_) = stage {
                 continue;
@@ -146,18 +130,14 @@ impl<'a> Plan<'a> {
             // Differences of sums that wrap are still right.
             before = Toll(before.0.wrapping_add(whole.0));
         }
-        places[stages.len()].before = before;
+        sums.push(before);
         let mut run_ends = vec![stages.len() as u32; stages.len() + 1];
-        let (mut of_block, mut of_run) = (Toll::default(), Toll::default());
+        let mut of_run = Toll::default();
         for place in (0..stages.len()).rev() {
-            let is_last = is_target[place + 1] || place + 1 == stages.len();
-            places[place].end = if is_last { place as u32 + 1 } else { places[place + 1].end };
-            of_block = if is_last { most[place] } else { of_block.plus(most[place]) };
-            places[place].most = of_block.share();
             let is_end = ends_run(code, stages[place]);
             run_ends[place] = if is_end { place as u32 + 1 } else { run_ends[place + 1] };
             of_run = if is_end { most[place] } else { of_run.plus(most[place]) };
-            if !of_run.is_small() || !of_block.is_small() {
+            if !of_run.is_small() {
                 return None;
             }
         }
@@ -167,21 +147,21 @@ impl<'a> Plan<'a> {
         };
         let marks: Vec<Mark> = stages.iter().map(mark).collect();
         let held = marks.iter().fold(0, |held, mark| held | mark.counts());
-        let sums = |matters: &dyn Fn(&Mark) -> bool| {
+        let counted = |matters: &dyn Fn(&Mark) -> bool| {
             let places = marks.iter().scan(0, |sum, mark| {
                 *sum += u32::from(matters(mark));
                 Some(*sum)
             });
             std::iter::once(0).chain(places).collect()
         };
-        let asking = [sums(&Mark::asks), sums(&|mark| mark.asks() || mark.touches(held))];
+        let asking = [counted(&Mark::asks), counted(&|mark| mark.asks() || mark.touches(held))];
         let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
         let mut plan = Plan {
             code,
             is_in_order: order.stages().len() == words as usize,
             order,
-            places,
+            before: sums,
             passes,
             has_inner_steps,
             words,
@@ -215,11 +195,6 @@ impl<'a> Plan<'a> {
     #[inline]
     pub fn has_inner_steps(&self) -> bool {
         self.has_inner_steps
-    }
-
-    /// Whether all instructions are rows of the table.
-    pub fn is_plain(&self) -> bool {
-        (0..self.code.words()).all(|word| !matches!(self.code.op(word), Some(Op::Ext(_))))
     }
 
     /// What a run takes, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
@@ -284,7 +259,7 @@ impl<'a> Plan<'a> {
     /// The place behind the program.
     #[inline(always)]
     pub fn end(&self) -> u32 {
-        self.places.len() as u32 - 1
+        self.before.len() as u32 - 1
     }
 
     /// The place of a slot; that behind the program for what is none.
@@ -293,19 +268,7 @@ impl<'a> Plan<'a> {
         if self.is_in_order { slot.min(self.words) } else { self.order.place(slot) }
     }
 
-    /// What is known of a place; `None` outside the program.
-    #[inline(always)]
-    pub fn place(&self, place: u32) -> Option<&Place> {
-        self.places[..self.end() as usize].get(place as usize)
-    }
-
-    /// Toll of the places from one to before another one of the same block or run, without what depends on exits.
-    #[inline(always)]
-    pub fn toll(&self, from: u32, to: u32) -> Toll {
-        Toll(self.places[to as usize].before.0.wrapping_sub(self.places[from as usize].before.0))
-    }
-
-    /// What an exit adds to the toll of its block.
+    /// What an exit adds to the toll of its run.
     #[inline(always)]
     pub fn extra(&self, exit: usize) -> Toll {
         self.extra[exit]
@@ -337,13 +300,13 @@ impl<'a> Plan<'a> {
     /// The steps by their places, and one behind them.
     #[inline(always)]
     pub fn steps(&self) -> &[Step] {
-        &self.steps[..self.places.len()]
+        &self.steps[..self.before.len()]
     }
 
     /// The same for an item in which a register holds the number of cores, or in which none does.
     #[inline(always)]
     pub fn steps_of(&self, is_held: bool) -> &[Step] {
-        match self.steps.get(self.places.len()..) {
+        match self.steps.get(self.before.len()..) {
             Some(steps) if is_held && !steps.is_empty() => steps,
             _ => self.steps(),
         }
@@ -369,7 +332,8 @@ impl<'a> Plan<'a> {
     /// What a run takes, without what depends on exits.
     #[inline(always)]
     pub fn run_toll(&self, place: u32) -> Toll {
-        self.toll(place, self.run_end(place))
+        let [from, to] = [place, self.run_end(place)].map(|place| self.before[place as usize].0);
+        Toll(to.wrapping_sub(from))
     }
 
     /// The decoded words.

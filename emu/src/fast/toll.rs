@@ -1,4 +1,4 @@
-//! What runs and blocks take: four numbers that are added up as one.
+//! What runs take: four numbers that are added up as one.
 
 use crate::code::ExitCost;
 
@@ -21,7 +21,7 @@ const fn half((start, bits): (u32, u32)) -> u64 {
 pub struct Toll(pub u64);
 
 impl Toll {
-    /// What fills [`Toll::share`].
+    /// Half of the room for steps: what a sum of them may come to before it is looked at.
     pub const WHOLE: u32 = 1 << 14;
 
     /// The toll of a step through an exit that costs as much; of a number that is too large, what makes the plan be refused.
@@ -81,13 +81,6 @@ impl Toll {
     #[inline(always)]
     pub const fn elementary(self) -> u64 {
         self.part(ELEMENTARY)
-    }
-
-    /// Of what half a field holds, the share that the largest number takes, in parts of [`Toll::WHOLE`], rounded up.
-    pub(super) fn share(self) -> u32 {
-        let share =
-            |(start, bits): (u32, u32)| (self.part((start, bits)) * u64::from(Toll::WHOLE)).div_ceil(1 << (bits - 1));
-        FIELDS.into_iter().map(share).max().unwrap_or(0) as u32
     }
 }
 

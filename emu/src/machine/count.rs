@@ -23,8 +23,6 @@ pub struct Count {
     pub kinds: Kinds,
     /// Number of work items.
     pub item_count: u64,
-    /// Words that groups of work items executed in lock-step, each once for all of its lanes; 0 where the interpreter ran.
-    pub rounds: u64,
 }
 
 /// Runs the work items of a frame on all host threads and puts nothing on a clock.
@@ -34,32 +32,22 @@ pub struct Count {
 /// result: the frame traps, or what its work items do depends on time, which [`super::run`] finds out about.
 pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
     check(setup)?;
-    Ok(choose(setup, Counting { setup, memory, keeping: Keeping::Passes }))
-}
-
-/// As [`count`], but the fast engine counts nothing: for measuring what counting costs.
-///
-/// # Errors
-/// As [`count`].
-pub fn compute(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
-    check(setup)?;
-    Ok(choose(setup, Counting { setup, memory, keeping: Keeping::Nothing }))
+    Ok(choose(setup, Counting { setup, memory }))
 }
 
 struct Counting<'a> {
     setup: &'a Setup<'a>,
     memory: &'a Memory,
-    keeping: Keeping,
 }
 
 impl Work for Counting<'_> {
     type Result = Result<Count, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
-        let Counting { setup, memory, keeping } = self;
+        let Counting { setup, memory } = self;
         replay::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);
-        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), keeping, &mut |batch| {
+        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Passes, &mut |batch| {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {
@@ -82,7 +70,6 @@ impl Work for Counting<'_> {
                 profile: survey.profile,
                 kinds: survey.kinds,
                 item_count,
-                rounds: survey.rounds,
             }),
         }
     }

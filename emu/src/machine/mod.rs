@@ -38,7 +38,7 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
-pub use count::{Count, compute, count};
+pub use count::{Count, count};
 pub use frame::{Frame, Item, KindUse, Method, ProcessorUse};
 pub use recorded::Recorded;
 
@@ -75,21 +75,18 @@ pub enum Engine {
     /// One work item after the other, a run of instructions at a time: [`crate::fast::single`].
     #[default]
     Fast,
-    /// Many work items in lock-step, with the host's vector instructions: [`crate::fast`].
-    Lockstep,
     /// The interpreter, one instruction after the other: [`crate::checked`].
     Checked,
 }
 
 impl Engine {
     /// All.
-    pub const ALL: [Engine; 3] = [Engine::Fast, Engine::Lockstep, Engine::Checked];
+    pub const ALL: [Engine; 2] = [Engine::Fast, Engine::Checked];
 
     /// Name in options and results.
     pub const fn name(self) -> &'static str {
         match self {
             Engine::Fast => "fast",
-            Engine::Lockstep => "lockstep",
             Engine::Checked => "checked",
         }
     }
@@ -99,12 +96,11 @@ impl Setup<'_> {
     /// The engine that runs the cores' program: the one that is asked for, or the interpreter where that one does not suit the arithmetic, the
     /// program or what is recorded.
     pub fn engine(&self) -> Engine {
-        let Options { engine, has_profile, has_losses, .. } = self.options;
+        let Options { engine, has_losses, .. } = self.options;
         let code = Code::new(self.core, self.isa, self.config.timing());
         match Plan::new(&code) {
             None => Engine::Checked,
             Some(_) if watching(self.config, has_losses).is_some() => Engine::Checked,
-            Some(plan) if engine == Engine::Lockstep && (has_profile || !plan.is_plain()) => Engine::Fast,
             Some(_) => engine,
         }
     }

@@ -4,13 +4,13 @@ use super::kinds::Kinds;
 use super::recording::{Reason, Recording, Segment, reads};
 use super::room::Room;
 use super::station::{Access, Request};
-use super::strands::{Keeping, Strand, StrandLink, Strands};
+use super::strands::{Keeping, Strand, StrandLink};
 use super::{Engine, Setup};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Message, Watch};
 use crate::fast::single::{self, Count, Stopped};
-use crate::fast::{self, Counted, Features, Group, LANES, Mask, Moment, Plan, Present, Uncounted, Unusual};
+use crate::fast::{Features, Moment, Plan, Present};
 use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, RunObserver, Unobserved};
@@ -124,7 +124,6 @@ pub struct Recorder<'a, T, O> {
     pub kinds: Kinds,
     /// Who watches them.
     pub observer: Independence<O>,
-    lockstep: Option<Lockstep<'a>>,
     single: Option<One<'a>>,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
@@ -137,19 +136,7 @@ struct One<'a> {
     features: Present,
 }
 
-/// What a core needs to record many items at once.
-struct Lockstep<'a> {
-    plan: Plan<'a>,
-    group: Box<Group>,
-    features: Present,
-    /// Words that groups executed, each for as many lanes as there were.
-    rounds: u64,
-}
-
 impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
-    /// Work items that may be recorded at once.
-    pub const AT_ONCE: usize = LANES;
-
     /// A core that has recorded nothing.
     pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, keeping: Keeping) -> Self {
         let config = setup.config;
@@ -158,19 +145,9 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let (engine, features) =
             (setup.options.engine, setup.options.features.unwrap_or_else(Features::best).present());
         let plan = (engine != Engine::Checked && !T::IS_WATCHING).then(|| Plan::new(code)).flatten();
-        // Who watches each instruction has to see them one after the other.
-        let suits = |plan: &Plan| engine == Engine::Lockstep && !O::IS_ACTIVE && plan.is_plain();
-        let (lockstep, single) = if plan.as_ref().is_some_and(suits) { (plan, None) } else { (None, plan) };
-        let lockstep = lockstep.map(|plan| Lockstep {
-            group: Box::new(Group::new(&plan, seat, &initial)),
-            plan,
-            features,
-            rounds: 0,
-        });
         Recorder {
-            lockstep,
             usual: 0,
-            single: single.map(|plan| One { count: Count::new(&plan, true), plan, features }),
+            single: plan.map(|plan| One { count: Count::new(&plan, true), plan, features }),
             keeping,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
@@ -217,71 +194,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
     }
 
-    /// Runs work items from reset to their ends, at most [`Recorder::AT_ONCE`], in the order of their messages.
-    ///
-    /// # Errors
-    /// Why one cannot be replayed.
-    pub fn record_all(&mut self, messages: &[Message], room: &Room) -> Vec<Result<Recording, Reason>> {
-        match self.record_group(messages, room) {
-            Ok(recordings) => recordings.into_iter().map(Ok).collect(),
-            Err(Unusual) => messages.iter().map(|&message| self.record(message, room)).collect(),
-        }
-    }
-
-    /// The same in lock-step.
-    fn record_group(&mut self, messages: &[Message], room: &Room) -> Result<Vec<Recording>, Unusual> {
-        let Some(Lockstep { plan, group, features, rounds }) = &mut self.lockstep else { return Err(Unusual) };
-        group.begin(plan, &self.initial, Mask::MAX >> (LANES - messages.len()));
-        let strands = messages.iter().map(|&message| Strand { message: Some(message), ..Strand::default() }).collect();
-        let mut kinds = self.kinds.clone();
-        kinds.clear();
-        let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
-        let mut strands = Strands { memory, main, room, kinds, strands, keeping, begun: 0 };
-        let ended = match self.keeping {
-            Keeping::Nothing => fast::run::<_, Uncounted>(*features, plan, group, &mut strands),
-            Keeping::Passes | Keeping::Segments => fast::run::<_, Counted>(*features, plan, group, &mut strands),
-        };
-        let all = &strands.strands;
-        let is_unfit =
-            |(lane, strand): (usize, &Strand)| strand.message.is_some() || group.origins.lane(lane).depends_on_core;
-        if ended.is_err() || all.iter().enumerate().any(is_unfit) {
-            let portions: usize = all.iter().map(|strand| strand.segments.len() / Room::PORTION).sum();
-            room.give_back(portions * Room::PORTION);
-            return Err(Unusual);
-        }
-        group.meter.keep();
-        *rounds += group.steps;
-        self.kinds.merge(strands.kinds.totals());
-        let recording = |(lane, (strand, &message)): (usize, (Strand, &Message))| {
-            room.take(strand.segments.len() % Room::PORTION);
-            let total = group.total(lane);
-            Recording {
-                message,
-                reads: reads(&strand.segments),
-                segments: strand.segments,
-                octets: strand.octets,
-                sent: strand.sent,
-                last_clocks: total.clocks - strand.before,
-                last_pc: group.halted_at[lane],
-                end: Pause::Halt,
-                steps: total.steps,
-                elementary: total.elementary,
-                depends_on_cores: group.origins.lane(lane).depends_on_cores,
-            }
-        };
-        Ok(strands.strands.into_iter().zip(messages).enumerate().map(recording).collect())
-    }
-
-    /// Words that groups executed, each for as many lanes as there were.
-    pub fn rounds(&self) -> u64 {
-        self.lockstep.as_ref().map_or(0, |lockstep| lockstep.rounds)
-    }
-
     /// The passes of all items.
     pub fn take_tally(&mut self) -> Tally {
-        if let Some(Lockstep { plan, group, .. }) = &mut self.lockstep {
-            group.meter.fold(plan, &mut self.tally);
-        }
         if let Some(One { plan, count, .. }) = &mut self.single {
             count.fold(plan, &mut self.tally);
         }
@@ -296,16 +210,11 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, keeping, moment };
         count.origin = self.observer.origin;
         let (seat, state, observer) = (self.seat, &mut self.state, &mut self.observer.inner);
-        let stopped = match keeping {
-            Keeping::Nothing if !O::IS_ACTIVE => {
-                single::run::<_, _, Uncounted>(*features, plan, seat, state, &mut link, count, &mut Unobserved)
-            }
-            _ if !O::IS_ACTIVE => {
-                single::run::<_, _, Counted>(*features, plan, seat, state, &mut link, count, &mut Unobserved)
-            }
-            _ => {
+        let stopped = match O::IS_ACTIVE {
+            false => single::run(*features, plan, seat, state, &mut link, count, &mut Unobserved),
+            true => {
                 let link: &mut &mut dyn single::Wire = &mut (&mut link as _);
-                single::run::<_, _, Counted>(*features, plan, seat, state, link, count, observer)
+                single::run(*features, plan, seat, state, link, count, observer)
             }
         };
         self.observer.origin = count.origin;
@@ -316,7 +225,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     ///
     /// # Errors
     /// Why it cannot be replayed.
-    fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
+    pub fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
         let segments = Vec::with_capacity(self.usual);

@@ -22,11 +22,6 @@ impl Room {
         self.taken.load(Ordering::Relaxed) > self.most
     }
 
-    /// Gives back what a group had taken.
-    pub(super) fn give_back(&self, segments: usize) {
-        self.taken.fetch_sub(segments, Ordering::Relaxed);
-    }
-
     /// Takes room for segments; false when there is none.
     pub(super) fn take(&self, segments: usize) -> bool {
         self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most

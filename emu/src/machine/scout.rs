@@ -28,6 +28,9 @@ const LANES: u32 = 1024;
 /// Segments in a batch, at most; 128 MiB of them. What is longer is stepped.
 const MOST_SEGMENTS: usize = 1 << 23;
 
+/// Work items that a host thread takes at a time.
+const AT_ONCE: usize = 32;
+
 const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
 
 /// Instructions that the main processor may take between two batches.
@@ -91,13 +94,12 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
     let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
     let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Recording, Reason>)>| {
-        let most = Recorder::<T, O>::AT_ONCE;
         while !room.is_full()
-            && let at = next.fetch_add(most, Ordering::Relaxed)
-            && let Some(group) = work.get(at..).filter(|group| !group.is_empty())
+            && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
+            && let Some(rest) = work.get(at..).filter(|rest| !rest.is_empty())
         {
-            let messages: Vec<Message> = group.iter().take(most).map(|(_, message)| *message).collect();
-            found.extend((at..).zip(recorder.record_all(&messages, &room)));
+            let portion = rest.iter().take(AT_ONCE);
+            found.extend((at..).zip(portion).map(|(at, (_, message))| (at, recorder.record(*message, &room))));
         }
     };
     // Threads of their own: this may itself be a thread of a pool in which all others wait.
@@ -130,8 +132,6 @@ pub struct Survey {
     pub profile: Option<Profile>,
     /// Global memory, with all answers in it where all of them came.
     pub memory: Memory,
-    /// Words that groups of items executed in lock-step; 0 where they were not.
-    pub rounds: u64,
     /// How the main processor's program ended.
     pub end: Pause,
 }
@@ -174,17 +174,10 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
             break pause;
         }
     };
-    let mut survey = Survey {
-        tally: Tally::new(&core_code),
-        kinds: Kinds::new(&setup.kinds),
-        profile: None,
-        memory,
-        rounds: 0,
-        end,
-    };
+    let mut survey =
+        Survey { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None, memory, end };
     for mut recorder in recorders {
         let tally = recorder.take_tally();
-        survey.rounds += recorder.rounds();
         survey.tally.merge(&tally);
         survey.kinds.merge(recorder.kinds.totals());
         match (&mut survey.profile, recorder.observer.into_profile(&core_code, &tally)) {

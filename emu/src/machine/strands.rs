@@ -1,12 +1,12 @@
-//! The links of work items that are recorded by the fast engines, and what they do.
+//! The links of work items that are recorded by the fast engine, and what they do.
 
 use super::kinds::Kinds;
 use super::recording::Segment;
 use super::room::Room;
 use super::station::{Access, Request};
-use crate::exec::{Link, Message, methods};
+use crate::exec::{Link, Message};
+use crate::fast::Moment;
 use crate::fast::single::Wire;
-use crate::fast::{Mask, Moment, Wires, each};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::Octets;
 use crate::trap::Stop;
@@ -18,23 +18,9 @@ pub enum Keeping {
     Segments,
     /// Passes; segments not, as far as that saves time.
     Passes,
-    /// Nothing, as far as that saves time.
-    Nothing,
 }
 
-/// The work items of a group that is recorded in lock-step.
-pub(super) struct Strands<'a> {
-    pub memory: &'a Memory,
-    pub main: u32,
-    pub room: &'a Room,
-    pub kinds: Kinds,
-    pub strands: Vec<Strand>,
-    pub keeping: Keeping,
-    /// Lanes of which it is known that they have taken their message.
-    pub begun: Mask,
-}
-
-/// One of them.
+/// A work item that is recorded.
 #[derive(Debug, Default)]
 pub(super) struct Strand {
     pub message: Option<Message>,
@@ -44,7 +30,7 @@ pub(super) struct Strand {
     pub before: u64,
 }
 
-/// The link of one of them: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
+/// The link of a work item: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
 pub(super) struct StrandLink<'s> {
     pub memory: &'s Memory,
     pub main: u32,
@@ -53,67 +39,6 @@ pub(super) struct StrandLink<'s> {
     pub strand: &'s mut Strand,
     pub keeping: Keeping,
     pub moment: Moment,
-}
-
-impl Strands<'_> {
-    #[inline(always)]
-    fn one(&mut self, lane: usize, moment: Moment) -> StrandLink<'_> {
-        let Strands { memory, main, room, kinds, strands, keeping, begun: _ } = self;
-        StrandLink { memory, main: *main, room, kinds, strand: &mut strands[lane], keeping: *keeping, moment }
-    }
-}
-
-impl<'a> Wires for Strands<'a> {
-    #[inline(always)]
-    fn link(&mut self, lane: usize, moment: Moment) -> impl Link {
-        self.one(lane, moment)
-    }
-
-    #[inline(always)]
-    fn links(&mut self, mask: Mask, moments: impl Fn(usize) -> Moment) -> impl Link {
-        StrandLinks { strands: self, mask, moments }
-    }
-}
-
-/// The link of some of them that read the same.
-struct StrandLinks<'s, 'a, F> {
-    strands: &'s mut Strands<'a>,
-    mask: Mask,
-    moments: F,
-}
-
-impl<F: Fn(usize) -> Moment> StrandLinks<'_, '_, F> {
-    #[inline(always)]
-    fn enter(&mut self, address: u32, octets: u64) -> Result<(), Stop> {
-        let Strands { kinds, strands, keeping, begun, .. } = &mut *self.strands;
-        let lanes = u64::from(self.mask.count_ones());
-        let request = |octets| Request::Transfer { address, octets: Octets(octets), access: Access::Read };
-        if *keeping == Keeping::Segments {
-            return each(self.mask)
-                .try_for_each(|lane| self.strands.one(lane, (self.moments)(lane)).enter(request(octets)));
-        }
-        if self.mask & !*begun != 0 {
-            if each(self.mask).any(|lane| strands[lane].message.is_some()) {
-                return Err(Stop::Wait);
-            }
-            *begun |= self.mask;
-        }
-        if *keeping == Keeping::Passes {
-            kinds.add((self.moments)(self.mask.trailing_zeros() as usize).pc, Some(request(lanes * octets)));
-        }
-        Ok(())
-    }
-}
-
-impl<F: Fn(usize) -> Moment> Link for StrandLinks<'_, '_, F> {
-    methods! { refuse! }
-
-    #[inline(always)]
-    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        let words = self.strands.memory.words(address)?;
-        self.enter(address, 4 * N as u64)?;
-        Ok(words)
-    }
 }
 
 impl Wire for StrandLink<'_> {
@@ -135,7 +60,6 @@ impl StrandLink<'_> {
             return Err(Stop::Wait);
         }
         match self.keeping {
-            Keeping::Nothing => {}
             Keeping::Passes => self.kinds.add(self.moment.pc, Some(request)),
             Keeping::Segments => return self.keep(request),
         }
@@ -205,7 +129,6 @@ impl Link for StrandLink<'_> {
             return None;
         }
         match self.keeping {
-            Keeping::Nothing => {}
             Keeping::Passes => self.kinds.add_known(self.moment.pc, address, octets)?,
             Keeping::Segments => self.keep_at_once(address, octets)?,
         }

@@ -15,7 +15,7 @@ const MEMORY: i64 = 2000;
 /// Where work items read.
 const DATA: i64 = 400;
 
-/// Items of a frame: a whole group and one that is not full.
+/// Items of a frame: more than a host thread takes at a time.
 const ITEMS: i32 = 45;
 
 /// Scalars that generated instructions may use; the rest are counters, links and the item's number.
@@ -36,12 +36,10 @@ fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
     let checked = run(Engine::Checked, None);
     for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
-        for engine in [Engine::Fast, Engine::Lockstep] {
-            let fast = run(engine, Some(features));
-            if fast != checked {
-                let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
-                panic!("{name}, {engine:?} with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
-            }
+        let fast = run(Engine::Fast, Some(features));
+        if fast != checked {
+            let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
+            panic!("{name}, with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
         }
     }
     checked
@@ -64,7 +62,7 @@ impl Random {
     }
 }
 
-/// The item's number goes everywhere, changed a little each time, so that lanes differ.
+/// The item's number goes everywhere, changed a little each time, so that items differ.
 fn scatter(p: &mut Builder, random: &mut Random) {
     p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::mov, &[1, NUMBER]);
     for register in 2..=FREE {
@@ -152,7 +150,7 @@ fn straight(p: &mut Builder, random: &mut Random, isa: &Isa, count: i64) {
     }
 }
 
-/// Instructions with branches on what the lanes hold, loops whose length they choose, and calls.
+/// Instructions with branches on what registers hold, loops whose length they choose, and calls.
 fn structured(p: &mut Builder, random: &mut Random, isa: &Isa, depth: i64) {
     for _ in 0..3 {
         straight(p, random, isa, 4);
@@ -199,30 +197,6 @@ fn structured(p: &mut Builder, random: &mut Random, isa: &Isa, depth: i64) {
             }
         }
     }
-}
-
-/// Whether the items of a program really ran in lock-step, each instruction for several.
-#[test]
-fn groups_run_together() {
-    let isa = Isa::base();
-    let core = program(|p| {
-        scatter(p, &mut Random(7));
-        straight(p, &mut Random(8), &isa, 30);
-        gather(p);
-    });
-    let (config, main) = (Config::default(), dispatch(ITEMS));
-    let setup = |engine| {
-        let options = Options { engine, ..Options::default() };
-        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
-    };
-    let memory = Memory::new(vec![3; MEMORY as usize]);
-    let count = |engine| machine::count(&setup(engine), &memory).expect("it runs").expect("it is counted");
-    let (fast, checked) = (count(Engine::Lockstep), count(Engine::Checked));
-    assert_eq!((&fast.memory, &fast.tally, checked.rounds), (&checked.memory, &checked.tally, 0));
-    // Without a branch all of a group are always together: 45 items are two groups.
-    assert_eq!(fast.rounds * ITEMS as u64, 2 * fast.tally.instructions());
-    let plain = machine::compute(&setup(Engine::Lockstep), &memory).expect("it runs").expect("it is computed");
-    assert_eq!((&plain.memory, plain.tally.instructions()), (&fast.memory, 0));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use super::{Count, Stopped, Timeless, Wire};
 use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
 use crate::exec::{Link, Watch};
-use crate::fast::{Counted, Features, Plan, Present};
+use crate::fast::{Features, Plan, Present};
 use crate::profile::RunObserver;
 use crate::tally::Tally;
 
@@ -44,7 +44,7 @@ impl<'a> Driver<'a> {
     ) -> Pause {
         if let Some((plan, count)) = self.quick.as_mut().filter(|_| !T::IS_WATCHING) {
             let link: &mut &mut dyn Wire = &mut (&mut Timeless(link) as _);
-            match super::run::<_, O, Counted>(self.features, plan, seat, state, link, count, observer) {
+            match super::run::<_, O>(self.features, plan, seat, state, link, count, observer) {
                 Stopped::Halt => return Pause::Halt,
                 Stopped::Wait => return Pause::Wait,
                 Stopped::Fault(fault) => return Pause::Fault(fault),

@@ -20,7 +20,7 @@ pub use count::Count;
 pub use driver::Driver;
 
 use super::plan::Plan;
-use super::{Counting, Features, Moment, Present};
+use super::{Features, Moment, Present};
 use crate::checked::{Seat, State};
 use crate::exec::{Link, Message, methods};
 use crate::octets::Buffer;
@@ -54,7 +54,7 @@ pub enum Stopped {
 }
 
 /// Runs until the program halts, waits or comes to something unusual, with the features given. The results are the same with all of them.
-pub fn run<L: Wire, O: RunObserver, C: Counting>(
+pub fn run<L: Wire, O: RunObserver>(
     Present(features): Present,
     plan: &Plan,
     seat: Seat,
@@ -67,18 +67,18 @@ pub fn run<L: Wire, O: RunObserver, C: Counting>(
     if features >= Features::Avx2 {
         let run = |registers: &mut Registers, first: Place, walk: &mut Walk<L, O>| {
             // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
-            unsafe { rows::avx2::run::<L, O, C>(registers, first, walk) }
+            unsafe { rows::avx2::run::<L, O>(registers, first, walk) }
         };
-        return walk::<L, O, C>(plan, seat, state, link, count, observer, run);
+        return walk::<L, O>(plan, seat, state, link, count, observer, run);
     }
     let _ = features;
     // Hosts without vector instructions are few: one function serves all links there.
     let mut link: &mut dyn Wire = link;
-    let run = rows::baseline::run::<&mut dyn Wire, O, C>;
-    walk::<_, O, C>(plan, seat, state, &mut link, count, observer, run)
+    let run = rows::baseline::run::<&mut dyn Wire, O>;
+    walk::<_, O>(plan, seat, state, &mut link, count, observer, run)
 }
 
-fn walk<L: Wire, O: RunObserver, C: Counting>(
+fn walk<L: Wire, O: RunObserver>(
     plan: &Plan,
     seat: Seat,
     state: &mut State,
@@ -99,12 +99,12 @@ fn walk<L: Wire, O: RunObserver, C: Counting>(
     let steps = plan.steps_of(fuse.is_held()).as_ptr();
     let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuse, steps, from, stop };
     let sums = walk.fuse.begin(plan);
-    let first = walk.begin::<C>(from, sums);
+    let first = walk.begin(from, sums);
     run(registers, first, &mut walk);
     let Ended { stopped, place, sums, is_cut } = walk.stop;
     let rest = is_cut.then(|| plan.run_toll(place));
     if is_cut {
-        walk.count.runs[place as usize].cut += u64::from(C::IS_ON);
+        walk.count.runs[place as usize].cut += 1;
         if O::IS_ACTIVE {
             walk.observer.walked(walk.from..place);
         }

@@ -5,7 +5,6 @@ use isa::Op;
 
 use super::walk::{Place, Walk};
 use crate::fast::plan::Step;
-use crate::fast::rows::is_heavy;
 use crate::registers::Registers;
 
 /// A row: it does what the step says, goes on with the rows behind it unless it [goes back](goes_back), and yields where that led to.
@@ -20,16 +19,41 @@ const fn goes_back(op: Op, is_wide: bool) -> bool {
     is_heavy(op) || matches!(op, Op::rbox) || is_kept || cfg!(debug_assertions) && matches!(op, Op::rstep)
 }
 
+/// Rows that do so much that the compiler keeps part of it in functions of their own.
+const fn is_heavy(op: Op) -> bool {
+    matches!(
+        op,
+        Op::div
+            | Op::lshift
+            | Op::scale
+            | Op::vdiv
+            | Op::vcrossn
+            | Op::vnorm
+            | Op::wmulw
+            | Op::wextend
+            | Op::wscale
+            | Op::wdiv
+            | Op::wsqrt
+            | Op::wmixed
+    )
+}
+
+/// Rows that read global memory and nothing else of the machine: mostly what they read is in reach at once. A row that is missing here costs
+/// time and nothing else.
+const fn is_read(op: Op) -> bool {
+    matches!(op, Op::ldw | Op::ldwide | Op::ldv3)
+}
+
 /// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
 macro_rules! thread {
-    ($place:expr, ($registers:ident $walk:ident $L:ident $O:ident $C:ident)) => {{
+    ($place:expr, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
         let place: Place = $place;
         #[cfg(threaded)]
         {
             // SAFETY: the step is one of the plan's, and the host has the features that all rows of this module are compiled for.
             unsafe {
                 let row = usize::from((*place.step).row);
-                (const { &All::<$L, $O, $C>::FUNCTIONS }[row])($registers, place.step, $walk, place.sums)
+                (const { &All::<$L, $O>::FUNCTIONS }[row])($registers, place.step, $walk, place.sums)
             }
         }
         #[cfg(not(threaded))]
@@ -39,13 +63,13 @@ macro_rules! thread {
 
 /// On to another run.
 macro_rules! turn {
-    ($way:expr, $sums:ident, ($registers:ident $walk:ident $L:ident $O:ident $C:ident)) => {{
+    ($way:expr, $sums:ident, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
         let way: Way = $way;
         let after = $sums.wrapping_add(way.toll);
         if after & LOOK != 0 {
-            return $walk.look::<$C>(way.step, way.toll, $sums);
+            return $walk.look(way.step, way.toll, $sums);
         }
-        thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O $C))
+        thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O))
     }};
 }
 
@@ -64,12 +88,12 @@ macro_rules! finish {
 /// The function of a row, and the names of what it has.
 macro_rules! function {
     ($features:tt $name:ident
-        ($registers:ident $step:ident $walk:ident $sums:ident $now:ident $fields:ident $L:ident $O:ident $C:ident) $body:block
+        ($registers:ident $step:ident $walk:ident $sums:ident $now:ident $fields:ident $L:ident $O:ident) $body:block
     ) => {
         # $features
         #[inline(never)]
         #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<$L: Wire, $O: RunObserver, $C: Counting>(
+        unsafe fn $name<$L: Wire, $O: RunObserver>(
             $registers: &mut Registers,
             $step: *const Step,
             $walk: &mut Walk<$L, $O>,
@@ -86,18 +110,18 @@ macro_rules! function {
 /// One row. A straight row goes on with the next word; a control row begins the next run. See [`goes_back`].
 macro_rules! row {
     ({ $features:tt $ray:ident pure RayRoom $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        function! { $features $name (registers step walk sums now fields L O C) {
+        function! { $features $name (registers step walk sums now fields L O) {
             let exit: exit::$name::Exit = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
-            let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
+            let sums = walk.pass::<exit::$name::Exit>(now, sums, exit);
             let next = walk.go_on(Place { step, sums });
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
             }
-            thread!(next, (registers walk L O C))
+            thread!(next, (registers walk L O))
         }}
     };
     ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        function! { $features $name (registers step walk sums now fields L O C) {
+        function! { $features $name (registers step walk sums now fields L O) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
             let _: exit::$name::Exit = finish!(registers fields, result, $written);
@@ -105,11 +129,11 @@ macro_rules! row {
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
             }
-            thread!(next, (registers walk L O C))
+            thread!(next, (registers walk L O))
         }}
     };
     ({ $features:tt $ray:ident local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        function! { $features $name (registers step walk sums now fields L O C) {
+        function! { $features $name (registers step walk sums now fields L O) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
             match $trait::$name(&mut *walk.buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
@@ -118,29 +142,27 @@ macro_rules! row {
                 Err(_) => return walk.stop_before(Stopped::Unusual, Place { step, sums }),
             }
             let next = walk.go_on(Place { step, sums });
-            thread!(next, (registers walk L O C))
+            thread!(next, (registers walk L O))
         }}
     };
     ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        function! { $features $name (registers step walk sums now fields L O C) {
+        function! { $features $name (registers step walk sums now fields L O) {
             const { assert!(exit::$name::Exit::EXITS == 1) };
-            if C::IS_ON {
-                walk.note(Place { step, sums }, now);
-            }
+            walk.note(Place { step, sums }, now);
             if is_read(Op::$name) {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Glance(&mut *walk.link) };
                 if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     let _: exit::$name::Exit = finish!(registers fields, result, $written);
                     let next = walk.go_on(Place { step, sums });
-                    return thread!(next, (registers walk L O C));
+                    return thread!(next, (registers walk L O));
                 }
             }
-            function! { $features whole (registers step walk sums now fields L O C) {
+            function! { $features whole (registers step walk sums now fields L O) {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
                 match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     Ok(result) => {
                         let exit: exit::$name::Exit = finish!(registers fields, result, $written);
-                        let sums = walk.pass::<C, exit::$name::Exit>(now, sums, exit);
+                        let sums = walk.pass::<exit::$name::Exit>(now, sums, exit);
                         walk.go_on(Place { step, sums })
                     }
                     Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
@@ -148,11 +170,11 @@ macro_rules! row {
                 }
             }}
             // SAFETY: the step and the host are those of this function; the safe twin is `crate::checked::run`.
-            unsafe { whole::<L, O, C>(registers, step, walk, sums) }
+            unsafe { whole::<L, O>(registers, step, walk, sums) }
         }}
     };
     ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-        function! { $features $name (registers step walk sums now fields L O C) {
+        function! { $features $name (registers step walk sums now fields L O) {
             const { assert!(exit::$name::Exit::EXITS <= 2) };
             let mut flow = Flow::new(now.slot, now.slot + 1, walk.seat.core, walk.seat.cores);
             let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
@@ -165,7 +187,7 @@ macro_rules! row {
             if let Some(End::Halt) = flow.end {
                 return walk.halt(Place { step, sums });
             }
-            turn!(walk.turn::<C, exit::$name::Exit>(has_target, now, step, flow, exit), sums, (registers walk L O C))
+            turn!(walk.turn::<exit::$name::Exit>(has_target, now, step, flow, exit), sums, (registers walk L O))
         }}
     };
 }
@@ -213,7 +235,6 @@ macro_rules! stamp {
         pub(super) mod $module {
             use super::super::Wire;
             use super::super::walk::{Place, Walk};
-            use crate::fast::group::Counting;
             use crate::profile::RunObserver;
             use crate::registers::Registers;
 
@@ -227,15 +248,13 @@ macro_rules! stamp {
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Place, Walk, Way};
                 use super::super::super::{Stopped, Wire};
-                use super::super::super::super::rows::is_read;
-                use super::super::{RowFunction, goes_back};
+                use super::super::{RowFunction, goes_back, is_read};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::exec::RayRoom;
                 use crate::exec::{
                     BusRoom, ControlRoom, End, Flow, Glance, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
                     split_operands,
                 };
-                use crate::fast::group::Counting;
                 use crate::fast::plan::{Step, padded};
                 use crate::profile::RunObserver;
                 use crate::registers::{Registers, read, write};
@@ -245,36 +264,36 @@ macro_rules! stamp {
 
                 $($(split_operands! { row { $features $ray $style $trait $name } [] [] ($($operands)*) })*)*
 
-                function! { $features hop (registers step walk sums now fields L O C) {
-                    turn!(walk.hop::<C>(now, step), sums, (registers walk L O C))
+                function! { $features hop (registers step walk sums now fields L O) {
+                    turn!(walk.hop(now, step), sums, (registers walk L O))
                 }}
 
-                function! { $features unit (registers step walk sums now fields L O C) {
-                    walk.unit::<C>(registers, step, sums, now)
+                function! { $features unit (registers step walk sums now fields L O) {
+                    walk.unit(registers, step, sums, now)
                 }}
 
-                function! { $features unusual (registers step walk sums now fields L O C) {
+                function! { $features unusual (registers step walk sums now fields L O) {
                     walk.stop_before(Stopped::Unusual, Place { step, sums })
                 }}
 
                 /// The rows by number.
-                pub struct All<L, O, C>(std::marker::PhantomData<(L, O, C)>);
+                pub struct All<L, O>(std::marker::PhantomData<(L, O)>);
 
-                impl<L: Wire, O: RunObserver, C: Counting> All<L, O, C> {
+                impl<L: Wire, O: RunObserver> All<L, O> {
                     /// In the order of the numbers of [`Step`].
-                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O, C>,)*)* hop::<L, O, C>, unit::<L, O, C>, unusual::<L, O, C>]);
+                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O>,)*)* hop::<L, O>, unit::<L, O>, unusual::<L, O>]);
                 }
             }
 
             /// Walks from a step, of which the run has begun, until it stops.
             # $features
-            pub fn run<L: Wire, O: RunObserver, C: Counting>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
+            pub fn run<L: Wire, O: RunObserver>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
                 while !place.step.is_null() {
                     // SAFETY: rows yield a step of the plan, and the host has the features that this function is compiled for, as the
                     // rows are. `crate::checked::run` is the safe twin.
                     place = unsafe {
                         let row = usize::from((*place.step).row);
-                        (const { &rows::All::<L, O, C>::FUNCTIONS }[row])(registers, place.step, walk, place.sums)
+                        (const { &rows::All::<L, O>::FUNCTIONS }[row])(registers, place.step, walk, place.sums)
                     };
                 }
             }

@@ -7,7 +7,7 @@ use super::fuse::Fuse;
 use super::{Stopped, Wire};
 use crate::checked::Seat;
 use crate::exec::{Flow, Motion};
-use crate::fast::group::{Counting, Moment};
+use crate::fast::Moment;
 use crate::fast::plan::{Plan, Step};
 use crate::fast::toll::FLAG;
 use crate::meaning::{Numbers, Units};
@@ -106,11 +106,11 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// The way to a place to which no exit leads whose target is known.
     #[inline(always)]
-    pub fn way_to<C: Counting>(&mut self, place: u32) -> Way {
+    pub fn way_to(&mut self, place: u32) -> Way {
         let step = self.step(place);
         let toll = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
-                run.begun += u64::from(C::IS_ON);
+                run.begun += 1;
                 // SAFETY: there is a step for each of the counts, which `super::walk` has compared. The safe twin is `Plan::steps`.
                 unsafe { (*step).toll }
             }
@@ -120,23 +120,23 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     }
 
     /// Begins at a place.
-    pub fn begin<C: Counting>(&mut self, place: u32, sums: u64) -> Place {
+    pub fn begin(&mut self, place: u32, sums: u64) -> Place {
         self.from = place;
-        let way = self.way_to::<C>(place);
-        self.look::<C>(way.step, way.toll, sums)
+        let way = self.way_to(place);
+        self.look(way.step, way.toll, sums)
     }
 
     /// Looks at what is to be looked at before a run begins, which is counted already.
     #[cold]
     #[inline(never)]
-    pub fn look<C: Counting>(&mut self, step: *const Step, toll: u64, sums: u64) -> Place {
+    pub fn look(&mut self, step: *const Step, toll: u64, sums: u64) -> Place {
         let place = self.place(step);
         let (sums, begins) = self.fuse.look(self.plan, place, sums, toll);
         self.steps = self.plan.steps_of(self.fuse.is_held()).as_ptr();
         if begins {
             return Place { step: self.step(place), sums };
         }
-        self.count.runs[place as usize].cut += u64::from(C::IS_ON);
+        self.count.runs[place as usize].cut += 1;
         self.stop(Ended { stopped: Stopped::Unusual, place, sums, is_cut: false })
     }
 
@@ -153,14 +153,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a control row: one that its step knows, or to any word.
     #[inline(always)]
-    pub fn turn<C: Counting, E: Ending>(
-        &mut self,
-        has_target: bool,
-        now: &Step,
-        step: *const Step,
-        flow: Flow,
-        exit: E,
-    ) -> Way {
+    pub fn turn<E: Ending>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Way {
         let number = now.exit as usize + exit.index();
         let is_falling = E::EXITS > 1 && exit.index() == 0;
         if O::IS_ACTIVE {
@@ -179,12 +172,10 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             return Way { step: step.wrapping_add(1), toll: now.edges[0] };
         }
         if has_target {
-            if C::IS_ON {
-                self.count.take_exit(number);
-            }
+            self.count.take_exit(number);
             return Way { step: self.step(now.target), toll: now.edges[1] };
         }
-        self.way_to::<C>(self.next_place(step, now, flow))
+        self.way_to(self.next_place(step, now, flow))
     }
 
     /// The place of a word to which control goes. What leads to the next word leads to what stands behind it, also in a body.
@@ -195,28 +186,24 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a hop.
     #[inline(always)]
-    pub fn hop<C: Counting>(&mut self, now: &Step, step: *const Step) -> Way {
+    pub fn hop(&mut self, now: &Step, step: *const Step) -> Way {
         if O::IS_ACTIVE {
             let place = self.place(step);
             self.observer.walked(self.from..place);
             self.observer.go(self.plan.steps()[place as usize - 1].slot, now.slot, Motion::Jump);
             self.from = now.target;
         }
-        if C::IS_ON {
-            self.count.take_exit(now.exit as usize);
-        }
+        self.count.take_exit(now.exit as usize);
         Way { step: self.step(now.target), toll: now.edges[1] }
     }
 
     /// Executes an instruction with a meaning in Rust.
-    pub fn unit<C: Counting>(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
+    pub fn unit(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
         let at = Place { step, sums };
         let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Unusual, at) };
         let (plan, fuse, link) = (self.plan, &self.fuse, &mut *self.link);
         let mut read = |address, words: &mut [i32]| {
-            if C::IS_ON {
-                note(plan, fuse, link, (now.slot, plan.place_of(now.slot)), sums);
-            }
+            note(plan, fuse, link, (now.slot, plan.place_of(now.slot)), sums);
             link.read(address, words)
         };
         let ending = match unit.execute(&now.fields, registers, self.buffer, &mut read, &Numbers::Nearest32) {
@@ -225,7 +212,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             Err(Stop::Fault(fault)) => return self.stop_before(Stopped::Fault(fault), at),
         };
         let exit = now.exit as usize + usize::from(ending.exit);
-        let sums = self.pass_any::<C>(now, sums, exit, ending.units, now.exits > 1);
+        let sums = self.pass_any(now, sums, exit, ending.units, now.exits > 1);
         // Only what may lead elsewhere ends a run, and knows where.
         let place = self.place(step);
         let has_target = now.target <= self.plan.end();
@@ -241,8 +228,8 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             let fault = Fault::OutsideProgram { words: self.plan.words };
             return self.stop(Ended { stopped: Stopped::Fault(fault), place: next, sums, is_cut: false });
         }
-        let way = self.way_to::<C>(next);
-        self.look::<C>(way.step, way.toll, sums)
+        let way = self.way_to(next);
+        self.look(way.step, way.toll, sums)
     }
 
     /// Tells the link when it is asked.
@@ -260,25 +247,16 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// Counts what a straight row took, where that is not known beforehand, and yields the sums.
     #[inline(always)]
-    pub fn pass<C: Counting, E: Ending>(&mut self, now: &Step, sums: u64, exit: E) -> u64 {
+    pub fn pass<E: Ending>(&mut self, now: &Step, sums: u64, exit: E) -> u64 {
         let (number, units) = (now.exit as usize + exit.index(), exit.units());
-        self.pass_any::<C>(now, sums, number, units, E::EXITS > 1)
+        self.pass_any(now, sums, number, units, E::EXITS > 1)
     }
 
     /// The same, whatever the row.
     #[inline(always)]
-    fn pass_any<C: Counting>(
-        &mut self,
-        now: &Step,
-        mut sums: u64,
-        number: usize,
-        units: u32,
-        has_several: bool,
-    ) -> u64 {
+    fn pass_any(&mut self, now: &Step, mut sums: u64, number: usize, units: u32, has_several: bool) -> u64 {
         if has_several {
-            if C::IS_ON {
-                self.count.take_exit(number);
-            }
+            self.count.take_exit(number);
             if now.is_uneven {
                 sums += self.plan.extra(number).0;
             }
@@ -286,7 +264,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
                 self.pass_seen(number, false, 0);
             }
         }
-        if C::IS_ON && units != 0 {
+        if units != 0 {
             self.count_units(number, units);
         }
         sums

@@ -190,7 +190,7 @@ fn tables(list: &mut Vec<String>) {
 fn language(list: &mut Vec<String>) {
     for row in isa::ROWS {
         let operands = row.operands.iter().map(|one| format!("{}:{}", char::from(one.letter), one.kind.name()));
-        let exits = row.exits.iter().map(|exit| &*exit.name);
+        let exits = row.outcomes.iter().map(|outcome| &*outcome.name);
         list.push(format!("instruction {} ({}) \"{}\" [{}]", row.name, joined(operands), row.drawn, joined(exits)));
     }
     list.extend(asm::pseudo::PSEUDOS.iter().map(|pseudo| format!("pseudo-instruction {}", pseudo.usage())));

@@ -239,7 +239,7 @@ which the instruction ends with what each costs. Words stand in the major opcode
     BODY "E040" "impossible body"
 "The body of an extension instruction works on the operands of its row (by their letters), on temporaries t0, t1, ... (scalars), tv0, ...
 (vectors), tw0, ... (wide accumulators) and on s0. It writes only destinations and temporaries, reads nothing that it has not written or
-been given, writes every destination on every way to an exit, and neither calls, returns, halts nor uses instructions of extensions.
+been given, writes every destination on every way to an outcome, and neither calls, returns, halts nor uses instructions of extensions.
 
     .extension slab
     .instr vhalf (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]

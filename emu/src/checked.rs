@@ -2,7 +2,7 @@
 //! are compared with. It knows nothing of other cores: where the machine is not ready it stops and can be resumed.
 
 use isa::Op;
-use isa::table::Ending;
+use isa::table::AnyOutcome;
 
 use crate::code::Code;
 use crate::exec::{

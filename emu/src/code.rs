@@ -138,7 +138,7 @@ impl<'a> Code<'a> {
                 (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
                 let runs_body = isa.runs_body(instruction.op);
                 let is_expanded = runs_body && isa.is_expanded(instruction.op);
-                for exit in 0..isa.row(instruction.op).exits.len() as u8 {
+                for exit in 0..isa.row(instruction.op).outcomes.len() as u8 {
                     let cost = (!is_expanded).then_some((instruction.op, exit));
                     code.add(Pass { word, exit: Some(exit), cost }, is_expanded);
                 }
@@ -158,7 +158,7 @@ impl<'a> Code<'a> {
     }
 
     fn add(&mut self, pass: Pass, is_inner: bool) -> u32 {
-        let cost = pass.cost.map(|(op, exit)| &self.isa.row(op).exits[usize::from(exit)]);
+        let cost = pass.cost.map(|(op, exit)| &self.isa.row(op).outcomes[usize::from(exit)]);
         let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
         self.costs.push(ExitCost {
             clocks: cost.map_or(0, |exit| fit(self.timing.clocks(&exit.cost).0)),
@@ -183,9 +183,9 @@ impl<'a> Code<'a> {
         let base = self.words() + behind.len() as u32;
         let place = |at: usize| if at == 0 { word } else { base + at as u32 };
         let is_expanded = isa.is_expanded(op);
-        let costs_body = is_expanded || row.exits.iter().any(|exit| exit.is_body);
+        let costs_body = is_expanded || row.outcomes.iter().any(|exit| exit.is_body);
         // Where steps cost nothing, they share passes.
-        let most = pieces.iter().map(|piece| isa.row(piece.op).exits.len()).max().unwrap_or(0);
+        let most = pieces.iter().map(|piece| isa.row(piece.op).outcomes.len()).max().unwrap_or(0);
         let free = self.passes.len() as u32;
         for _ in 0..most {
             self.add(Pass { word, exit: None, cost: None }, true);
@@ -193,7 +193,7 @@ impl<'a> Code<'a> {
         self.extended.push((word, op));
         let mut first = outer;
         for (at, piece) in pieces.iter().enumerate() {
-            let exits = isa.row(piece.counted).exits.len() as u8;
+            let exits = isa.row(piece.counted).outcomes.len() as u8;
             let first_exit = match piece.passing {
                 Passing::Step if costs_body => {
                     let first = self.passes.len() as u32;
@@ -327,7 +327,7 @@ impl<'a> Code<'a> {
     pub fn pass_cost(&self, pass: usize) -> (Counts, Counts) {
         match self.passes.get(pass).and_then(|pass| pass.cost) {
             Some((op, exit)) => {
-                let exit = &self.isa.row(op).exits[usize::from(exit)];
+                let exit = &self.isa.row(op).outcomes[usize::from(exit)];
                 (exit.cost, exit.each)
             }
             None => (Counts::ZERO, Counts::ZERO),

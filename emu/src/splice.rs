@@ -76,7 +76,7 @@ impl Place {
 pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<Piece> {
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
-    let length = |act: &Act| if matches!(act, Act::Exit { .. }) { after.len().max(1) } else { 1 };
+    let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
     let mut starts = Vec::with_capacity(body.steps.len() + 1);
     starts.push(before.len());
     starts.extend(body.steps.iter().scan(before.len(), |at, step| {
@@ -103,7 +103,7 @@ pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<
     for (number, step) in body.steps.iter().enumerate() {
         let (instruction, immediates) = match step.act {
             Act::Row { instruction, immediates } => (instruction, immediates),
-            Act::Exit { exit, jumps } => {
+            Act::End { outcome: exit, jumps } => {
                 let nothing = [copy('s', 0, 0)];
                 let made = if after.is_empty() { &nothing[..] } else { &after[..] };
                 for (at, &moved) in made.iter().enumerate() {
@@ -129,8 +129,8 @@ pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<
                 (piece.op, piece.fields) = copy('s', 0, 0);
                 piece.way = Way::Inside(target);
             }
-            (None, Some(Act::Exit { exit, jumps }))
-                if after.is_empty() && inner.exits.len() == 1 && instruction.op != Op::trap =>
+            (None, Some(Act::End { outcome: exit, jumps }))
+                if after.is_empty() && inner.outcomes.len() == 1 && instruction.op != Op::trap =>
             {
                 piece.way = leave(jumps);
                 piece.passing = Passing::StepAndExit(exit);

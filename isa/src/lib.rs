@@ -12,5 +12,5 @@ pub mod table;
 pub use class::{Class, Counts};
 pub use isa::{EncodeError, Fields, Instruction, Isa, parse_register, register_name};
 pub use program::Program;
-pub use row::{Exit, Kind, Operand, Row};
+pub use row::{Kind, Operand, OutcomeDef, Row};
 pub use table::{Op, ROWS};

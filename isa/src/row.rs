@@ -1,4 +1,4 @@
-//! What a row of the instruction table says: operands, pattern, exits and their costs. Built-in rows are constants,
+//! What a row of the instruction table says: operands, pattern, outcomes and their costs. Built-in rows are constants,
 //! rows of extensions are owned values of the same type.
 
 use std::borrow::Cow;
@@ -157,10 +157,10 @@ impl Operand {
 
 /// One way in which an instruction ends, and what that way costs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Exit {
+pub struct OutcomeDef {
     /// `Done`, `Taken`, ...
     pub name: Cow<'static, str>,
-    /// Cost of the exit.
+    /// Cost of the outcome.
     pub cost: Counts,
     /// Cost of each unit that the meaning reports (an octet of a block transfer).
     pub each: Counts,
@@ -193,7 +193,7 @@ pub struct Row {
     /// The pattern as written.
     pub drawn: Cow<'static, str>,
     /// The ways in which it ends; at least one.
-    pub exits: Cow<'static, [Exit]>,
+    pub outcomes: Cow<'static, [OutcomeDef]>,
 }
 
 /// Why a row is not well formed.
@@ -207,13 +207,13 @@ pub enum RowError {
     Twice(u8),
     /// A register under an immediate's letter or the other way round.
     Letter(u8),
-    /// There is no exit.
-    NoExit,
+    /// There is no outcome.
+    NoOutcome,
 }
 
 impl Row {
-    /// Whether operands, pattern and exits fit together.
-    pub const fn check(operands: &[Operand], pattern: &BitPattern, exits: usize) -> Result<(), RowError> {
+    /// Whether operands, pattern and outcomes fit together.
+    pub const fn check(operands: &[Operand], pattern: &BitPattern, outcomes: usize) -> Result<(), RowError> {
         let mut at = 0;
         while at < operands.len() {
             let Operand { letter, kind } = operands[at];
@@ -242,8 +242,8 @@ impl Row {
         if pattern.field_count() != operands.len() {
             return Err(RowError::Spare);
         }
-        if exits == 0 {
-            return Err(RowError::NoExit);
+        if outcomes == 0 {
+            return Err(RowError::NoOutcome);
         }
         Ok(())
     }
@@ -253,22 +253,22 @@ impl Row {
         self.operands.iter().find(|operand| operand.letter == letter)
     }
 
-    /// Number of the exit of that name.
-    pub fn exit(&self, name: &str) -> Option<usize> {
-        self.exits.iter().position(|exit| exit.name == name)
+    /// Number of the outcome of that name.
+    pub fn outcome(&self, name: &str) -> Option<usize> {
+        self.outcomes.iter().position(|outcome| outcome.name == name)
     }
 
-    /// The row line as it stands in the table: operands, pattern, exits.
+    /// The row line as it stands in the table: operands, pattern, outcomes.
     pub fn line(&self) -> String {
         let operands: Vec<String> =
             self.operands.iter().map(|o| format!("{}: {}", o.letter as char, o.kind.name())).collect();
-        let exits: Vec<String> = self.exits.iter().map(Exit::text).collect();
-        format!("{} ({})  \"{}\"  [{}]", self.name, operands.join(", "), self.drawn, exits.join(", "))
+        let outcomes: Vec<String> = self.outcomes.iter().map(OutcomeDef::text).collect();
+        format!("{} ({})  \"{}\"  [{}]", self.name, operands.join(", "), self.drawn, outcomes.join(", "))
     }
 }
 
-impl Exit {
-    /// The exit as a row writes it, such as `Done(mem 1; each octet 1)`.
+impl OutcomeDef {
+    /// The outcome as a row writes it, such as `Done(mem 1; each octet 1)`.
     pub fn text(&self) -> String {
         let list = |counts: &Counts| -> String {
             let parts: Vec<String> =

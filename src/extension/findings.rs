@@ -32,14 +32,14 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
         let hint = format!("where both are one register, it still reads what `{read}` was: a unit has to keep that");
         found.push(warning(message, "they may be one register").hint(hint));
     }
-    for (exit, is_reached) in summary.exits.iter().enumerate() {
+    for (outcome, is_reached) in summary.outcomes.iter().enumerate() {
         if !is_reached {
-            let message = format!("the exit `{}` of `{}` is never taken", row.exits[exit].name, row.name);
-            found.push(Diagnostic::warning(message).at(loaded.exits[exit].clone(), "not reached"));
+            let message = format!("the outcome `{}` of `{}` is never taken", row.outcomes[outcome].name, row.name);
+            found.push(Diagnostic::warning(message).at(loaded.outcomes[outcome].clone(), "not reached"));
         }
     }
     if let Some(step) = summary.reached.iter().position(|is_reached| !is_reached) {
-        // A fused exit that the assembler added is no line of the user's.
+        // A fused outcome that the assembler added is no line of the user's.
         if matches!(body.steps[step].act, Act::Row { .. }) {
             found.push(at(step, format!("a line of the body of `{}` is never reached", row.name), "not reached"));
         }
@@ -63,29 +63,29 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
 /// Exits that declare less than the body spends at least.
 fn cheap(isa: &Isa, loaded: &Loaded, summary: &Summary, body: &Body) -> Vec<Diagnostic> {
     let row = isa.row(loaded.op);
-    if row.exits.iter().any(|exit| exit.is_body) {
+    if row.outcomes.iter().any(|outcome| outcome.is_body) {
         return Vec::new();
     }
     let least = least(isa, summary, body);
     let mut found = Vec::new();
-    for (number, exit) in row.exits.iter().enumerate() {
+    for (number, outcome) in row.outcomes.iter().enumerate() {
         let Some(least) = least.get(&number) else { continue };
         let lower: Vec<String> = (Class::ALL.iter())
             .filter(|class| class.is_elementary() || matches!(class, Class::Mem | Class::Octet))
-            .filter(|&&class| exit.cost[class] < least[class])
-            .map(|&class| format!("{} {} instead of {}", class.name(), exit.cost[class], least[class]))
+            .filter(|&&class| outcome.cost[class] < least[class])
+            .map(|&class| format!("{} {} instead of {}", class.name(), outcome.cost[class], least[class]))
             .collect();
         if !lower.is_empty() {
             let message =
-                format!("`{}` of `{}` costs less than its body spends: {}", exit.name, row.name, lower.join(", "));
+                format!("`{}` of `{}` costs less than its body spends: {}", outcome.name, row.name, lower.join(", "));
             let hint = "a unit may be cheaper; its description should say why";
-            found.push(Diagnostic::warning(message).at(loaded.exits[number].clone(), "declared here").hint(hint));
+            found.push(Diagnostic::warning(message).at(loaded.outcomes[number].clone(), "declared here").hint(hint));
         }
     }
     found
 }
 
-/// The least that the body spends of each class on its ways to each exit, class by class.
+/// The least that the body spends of each class on its ways to each outcome, class by class.
 fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     let mut spent: Vec<Option<Counts>> = vec![None; body.steps.len()];
     spent[0] = Some(Counts::ZERO);
@@ -94,8 +94,10 @@ fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     while let Some(step) = open.pop() {
         let before = spent[step].expect("what is open has been reached");
         let cost = match body.steps[step].act {
-            Act::Row { instruction, .. } => isa.row(instruction.op).exits.iter().map(|exit| exit.cost).reduce(lower),
-            Act::Exit { .. } => None,
+            Act::Row { instruction, .. } => {
+                isa.row(instruction.op).outcomes.iter().map(|outcome| outcome.cost).reduce(lower)
+            }
+            Act::End { .. } => None,
         };
         let after = before + cost.unwrap_or(Counts::ZERO);
         for next in body.successors(step, isa) {
@@ -108,10 +110,10 @@ fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     }
     let mut least: BTreeMap<usize, Counts> = BTreeMap::new();
     for (step, is_reached) in summary.reached.iter().enumerate() {
-        let (Act::Exit { exit, .. }, true, Some(spent)) = (body.steps[step].act, *is_reached, spent[step]) else {
+        let (Act::End { outcome, .. }, true, Some(spent)) = (body.steps[step].act, *is_reached, spent[step]) else {
             continue;
         };
-        let entry = least.entry(exit.into()).or_insert(spent);
+        let entry = least.entry(outcome.into()).or_insert(spent);
         *entry = lower(*entry, spent);
     }
     least

@@ -132,7 +132,7 @@ impl Run {
         let code = self.code();
         let names = |&(pc, exit): &(u32, usize)| {
             let row = code.row(pc).expect("what was executed is a row");
-            (row.name.to_string(), row.exits[exit].name.to_string())
+            (row.name.to_string(), row.outcomes[exit].name.to_string())
         };
         self.steps.iter().map(names).collect()
     }
@@ -167,7 +167,7 @@ impl Run {
             Subject::Exit => {
                 let code = self.code();
                 let here = self.steps.iter().filter(|&&(pc, _)| self.line(pc) == claim.line);
-                let names = here.filter_map(|&(pc, exit)| Some(code.row(pc)?.exits[exit].name.to_string()));
+                let names = here.filter_map(|&(pc, exit)| Some(code.row(pc)?.outcomes[exit].name.to_string()));
                 return Ok(names.collect::<Vec<_>>().join(", "));
             }
             Subject::Count => return Ok(count_text(&at.tally.counts(&self.code()))),

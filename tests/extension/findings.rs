@@ -35,7 +35,7 @@ fn each_suspicion_has_its_words() {
         (
             format!("{TWO} [Small(body), Large(body)]"),
             "    mov d, a\n    exit Small",
-            "the exit `Large` of `odd` is never taken",
+            "the outcome `Large` of `odd` is never taken",
             "",
             "",
         ),

@@ -65,11 +65,16 @@ fn rows_that_cannot_be_read() {
         ),
         (
             "(d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [A(body), B(cmp 1)]",
-            "all exits",
+            "all outcomes",
             "3:74",
             "counted before",
         ),
-        ("(d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [A(), A()]", "two exits", "3:70", "tells exits apart"),
+        (
+            "(d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [A(), A()]",
+            "two outcomes",
+            "3:70",
+            "tells outcomes apart",
+        ),
         ("(d: S, a: S) \"custom0 ddddd aaaaa ----------------\"", "expected `[`", "4:5", "a row is written"),
     ] {
         refuses(&with(row), message, place, hint);
@@ -102,7 +107,7 @@ fn bodies_that_cannot_be_executed() {
         ("    beqz a, 1f\n    mov d, a\n1:", "`d` is not written on every way", "5:5", "may stay as it was"),
         ("1:  jump 1b", "never ends", "3:8", "`exit NAME`"),
         ("    call t0, 1f\n1:  mov d, a", "`call` does not stand in a body", "4:5", "stay inside"),
-        ("    mov d, a\n    exit Over", "has no exit `Over`", "5:10", "`Done`"),
+        ("    mov d, a\n    exit Over", "has no outcome `Over`", "5:10", "`Done`"),
         ("    mov d, t99", "no temporary `t99`", "4:12", "t0 to t31"),
         ("    beqz a, .+9\n    mov d, a", "leads out of the body", "4:13", "`exit NAME`"),
         ("    .word 1\n    mov d, a", "`.word` does not stand in an extension", "4:5", "data belong to the program"),
@@ -115,7 +120,7 @@ fn bodies_that_cannot_be_executed() {
         }
     }
     let row = "(d: S, a: S)  \"custom0 ddddd aaaaa ----------------\"  [A(), B()]";
-    refuses(&file(row, "    mov d, a"), "runs off its end, but it has 2 exits", "4:5", "`exit A` or `exit B`");
+    refuses(&file(row, "    mov d, a"), "runs off its end, but it has 2 outcomes", "4:5", "`exit A` or `exit B`");
     let row = "(d: S, i: Un)  \"custom0 ddddd iiiiiiiiiiiiiiii -----\"  [Done()]";
     let report = refused(&file(row, "    movi d, i + 1"));
     assert!(report.to_string().contains("with i = 65535 this is 65536"), "{report}");
@@ -133,7 +138,7 @@ fn what_a_meaning_in_rust_does_not_go_with() {
         (
             "(d: S, a: S)  \"custom0 ddddd aaaaa ----------------\"  [Done(body)]",
             "    .meaning rust\n    mov d, a",
-            "its exits say what they cost",
+            "its outcomes say what they cost",
             "3:67",
             "such as `add 3`",
         ),

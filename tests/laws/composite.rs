@@ -41,7 +41,7 @@ fn elementary(counts: &Counts) -> Counts {
 }
 
 fn is_composite(row: &Row) -> bool {
-    row.exits.iter().any(|exit| exit.cost.elementary() > 1)
+    row.outcomes.iter().any(|exit| exit.cost.elementary() > 1)
 }
 
 /// Where an operand lives: by its letter, behind the further vectors of the operands before it.

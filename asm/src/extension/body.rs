@@ -1,4 +1,4 @@
-//! A body from its lines: assembled, completed by its exit, and checked for what its steps read and write.
+//! A body from its lines: assembled, completed by its outcome, and checked for what its steps read and write.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -53,16 +53,16 @@ pub(super) fn assemble(
     Ok((body, summary, attempt.report))
 }
 
-/// Adds the exit that the body runs into, where there is only one.
+/// Adds the outcome that the body runs into, where there is only one.
 fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place) -> Result<Body, Report> {
     let Template { row, mut steps, .. } = template;
     let end = steps.len();
     let mut body = Body { steps: steps.clone(), source: source.clone(), temporaries: [0; 3] };
     let runs_on = (0..end).find(|&step| body.successors(step, isa).any(|next| next == end));
     if let Some(step) = runs_on.or((end == 0).then_some(0)) {
-        if row.exits.len() > 1 {
-            let names: Vec<&str> = row.exits.iter().map(|exit| &*exit.name).collect();
-            let message = format!("the body of `{}` runs off its end, but it has {} exits", row.name, names.len());
+        if row.outcomes.len() > 1 {
+            let names: Vec<&str> = row.outcomes.iter().map(|outcome| &*outcome.name).collect();
+            let message = format!("the body of `{}` runs off its end, but it has {} outcomes", row.name, names.len());
             let place = body.place(step).unwrap_or_else(|| row_at.clone());
             let hint = format!("end it with `exit {}`", names.join("` or `exit "));
             return Err(Diagnostic::error(message)
@@ -72,7 +72,7 @@ fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place)
                 .into());
         }
         let line = steps.last().map_or(template.row_line, |last| last.line);
-        steps.push(Step { act: Act::Exit { exit: 0, jumps: false }, line });
+        steps.push(Step { act: Act::End { outcome: 0, jumps: false }, line });
         body.steps = steps;
     }
     for (place, file) in ['s', 'v', 'w'].into_iter().enumerate() {
@@ -133,14 +133,14 @@ fn defective(defect: Defect, body: &Body, row: &Row, row_at: &Place) -> Report {
         Defect::Missing { step, letter, offset } => {
             let count = row.operand(letter).map_or(1, |operand| operand.kind.registers());
             let name = letter_name(letter, offset, count);
-            let message = format!("`{name}` is not written on every way to this exit of `{}`", row.name);
+            let message = format!("`{name}` is not written on every way to this outcome of `{}`", row.name);
             Diagnostic::error(message)
                 .at(place(step), "ends here")
                 .also(row_at.clone(), "its row")
                 .hint("write it, or call the operand `x` or `y` in the row if it may stay as it was")
         }
         Defect::Endless => Diagnostic::error(format!("the body of `{}` never ends", row.name))
-            .at(row_at.clone(), "no exit is reached")
+            .at(row_at.clone(), "no outcome is reached")
             .hint("`exit NAME` ends a body"),
     };
     message.code(explain::BODY).into()

@@ -64,7 +64,7 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
         let found =
             add(isa, source, drawn, block.doc, parts.name.as_deref().unwrap_or_default()).and_then(|mut found| {
                 let is_empty = lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty());
-                check_costs(isa.row(found.op), block.is_rust, is_empty, &found.exits, each_at)?;
+                check_costs(isa.row(found.op), block.is_rust, is_empty, &found.outcomes, each_at)?;
                 found.is_rust = block.is_rust;
                 if is_empty && block.is_rust {
                     return Ok(found);
@@ -212,28 +212,28 @@ fn is_rust(source: &Arc<Source>, place: &Place) -> Result<(), Box<Diagnostic>> {
     }
 }
 
-/// What exits may cost depends on who executes the instruction.
+/// What outcomes may cost depends on who executes the instruction.
 fn check_costs(
     row: &Row,
     is_rust: bool,
     is_bodiless: bool,
-    exits: &[Place],
+    outcomes: &[Place],
     each_at: Option<Place>,
 ) -> Result<(), Report> {
     let wrong = |message: String, place: Place, label: &str, hint: &str| -> Result<(), Report> {
         Err(Diagnostic::error(message).code(explain::ROW).at(place, label).hint(hint).into())
     };
     if let Some(place) = each_at.filter(|_| !is_bodiless) {
-        let message = format!("the exits of `{}` have no cost for each unit, because it has a body", row.name);
+        let message = format!("the outcomes of `{}` have no cost for each unit, because it has a body", row.name);
         let hint =
             "only a meaning in Rust without a body beside it reports units; a body costs `body` or fixed numbers";
         return wrong(message, place, "here", hint);
     }
-    match row.exits.iter().position(|exit| exit.is_body) {
-        Some(exit) if is_rust => {
-            let message = format!("`{}` has its meaning in Rust, so its exits say what they cost", row.name);
+    match row.outcomes.iter().position(|outcome| outcome.is_body) {
+        Some(outcome) if is_rust => {
+            let message = format!("`{}` has its meaning in Rust, so its outcomes say what they cost", row.name);
             let hint = "nobody counts what a meaning in Rust spends: write numbers, such as `add 3`";
-            wrong(message, exits[exit].clone(), "`body` is the sum of steps that are not executed", hint)
+            wrong(message, outcomes[outcome].clone(), "`body` is the sum of steps that are not executed", hint)
         }
         _ => Ok(()),
     }
@@ -258,7 +258,7 @@ fn name(source: &Arc<Source>, place: &Place, is_late: bool) -> Result<String, Bo
 
 /// Adds a row without its body.
 fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension: &str) -> Result<Loaded, Report> {
-    let Drawn { mut row, name_at, pattern_at, exits_at, start, end, .. } = drawn;
+    let Drawn { mut row, name_at, pattern_at, outcomes_at, start, end, .. } = drawn;
     row.room = extension.to_owned().into();
     row.doc = doc.into();
     let place = Place::new(source, start..end);
@@ -283,9 +283,9 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
         Ok(op) => op,
         Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, pattern_at).into()),
     };
-    let exits = exits_at.into_iter().map(|span| Place::new(source, span)).collect();
+    let outcomes = outcomes_at.into_iter().map(|span| Place::new(source, span)).collect();
     let (summary, is_rust) = (Summary::default(), false);
-    Ok(Loaded { op, extension: extension.to_owned(), summary, row: place, exits, is_rust })
+    Ok(Loaded { op, extension: extension.to_owned(), summary, row: place, outcomes, is_rust })
 }
 
 /// The message when another instruction has the name or a word of a row.

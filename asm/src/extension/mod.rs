@@ -30,8 +30,8 @@ pub struct Loaded {
     pub summary: Summary,
     /// Its row in the file.
     pub row: Place,
-    /// Where its exits stand in the file.
-    pub exits: Vec<Place>,
+    /// Where its outcomes stand in the file.
+    pub outcomes: Vec<Place>,
     /// Whether the file says that its meaning is in Rust; it may have a body beside that.
     pub is_rust: bool,
 }
@@ -40,7 +40,7 @@ pub struct Loaded {
 pub const MOST_INSTRUCTIONS: usize = 1024;
 /// Most steps of a body.
 pub const MOST_STEPS: usize = 1024;
-/// Most operations of a class that an exit may cost.
+/// Most operations of a class that an outcome may cost.
 pub const MOST_COST: u64 = 1_000_000;
 
 /// The source of a file of extensions.

@@ -1,10 +1,10 @@
-//! The text of a row: mnemonic, operands, pattern, exits with their costs, as a row of the table has them.
+//! The text of a row: mnemonic, operands, pattern, outcomes with their costs, as a row of the table has them.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use isa::pattern::{BitPattern, CUSTOM, LETTERS, PatternError};
-use isa::row::{Exit, Kind, Operand, Row, RowError};
+use isa::row::{Kind, Operand, OutcomeDef, Row, RowError};
 use isa::{Class, Counts};
 use messages::{Diagnostic, Source, did_you_mean};
 
@@ -17,7 +17,7 @@ pub(super) struct Drawn {
     pub row: Row,
     pub name_at: Range<usize>,
     pub pattern_at: Range<usize>,
-    pub exits_at: Vec<Range<usize>>,
+    pub outcomes_at: Vec<Range<usize>>,
     /// Where a cost for each unit stands, if one does.
     pub each_at: Option<Range<usize>>,
     pub start: usize,
@@ -94,7 +94,7 @@ impl<'a> Scanner<'a> {
         let digits: String = rest[..length].chars().filter(|&c| c != '_').collect();
         let value = digits.parse().unwrap_or(u64::MAX);
         if value > MOST_COST {
-            let message = format!("an exit costs at most {MOST_COST} operations of a class, not {digits}");
+            let message = format!("an outcome costs at most {MOST_COST} operations of a class, not {digits}");
             let hint = "a cost counts elementary operations: 3 for the addition of two vectors";
             return Err(Box::new(self.wrong(message, span, "too many").hint(hint)));
         }
@@ -115,9 +115,9 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
     let operands = operands(&mut scanner)?;
     let (pattern, drawn, pattern_at) = pattern(&mut scanner, &operands)?;
     let mut each_at = None;
-    let (exits, exits_at) = exits(&mut scanner, &mut each_at)?;
+    let (outcomes, outcomes_at) = outcomes(&mut scanner, &mut each_at)?;
     let only: Vec<Operand> = operands.iter().map(|(operand, _)| *operand).collect();
-    if let Err(wrong) = Row::check(&only, &pattern, exits.len()) {
+    if let Err(wrong) = Row::check(&only, &pattern, outcomes.len()) {
         return Err(misfit(&scanner, wrong, &operands, &pattern, pattern_at));
     }
     let row = Row {
@@ -127,9 +127,9 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
         operands: only.into(),
         pattern,
         drawn: drawn.to_owned().into(),
-        exits: exits.into(),
+        outcomes: outcomes.into(),
     };
-    Ok(Drawn { row, name_at, pattern_at, exits_at, each_at, start, end: scanner.at })
+    Ok(Drawn { row, name_at, pattern_at, outcomes_at, each_at, start, end: scanner.at })
 }
 
 fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
@@ -269,50 +269,51 @@ fn misfit(
             );
             Box::new(scanner.wrong(message, pattern_at, "in this pattern").hint(hint))
         }
-        RowError::Twice(_) | RowError::Letter(_) | RowError::NoExit => {
+        RowError::Twice(_) | RowError::Letter(_) | RowError::NoOutcome => {
             Box::new(scanner.wrong("the row cannot be read", pattern_at, "here"))
         }
     }
 }
 
-fn exits(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(Vec<Exit>, Vec<Range<usize>>)> {
+fn outcomes(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(Vec<OutcomeDef>, Vec<Range<usize>>)> {
     scanner.expect("[")?;
-    let (mut exits, mut places): (Vec<Exit>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    let (mut outcomes, mut places): (Vec<OutcomeDef>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     loop {
-        let (name, name_at) = scanner.word("the name of an exit, such as `Done`")?;
-        if exits.iter().any(|other| other.name == name) {
-            let message = format!("two exits are called `{name}`");
-            return Err(Box::new(scanner.wrong(message, name_at, "second one").hint("the name tells exits apart")));
+        let (name, name_at) = scanner.word("the name of an outcome, such as `Done`")?;
+        if outcomes.iter().any(|other| other.name == name) {
+            let message = format!("two outcomes are called `{name}`");
+            return Err(Box::new(scanner.wrong(message, name_at, "second one").hint("the name tells outcomes apart")));
         }
         scanner.expect("(")?;
-        let exit = cost(scanner, name, each_at)?;
-        if let Some(first) = exits.first()
-            && first.is_body != exit.is_body
+        let outcome = cost(scanner, name, each_at)?;
+        if let Some(first) = outcomes.first()
+            && first.is_body != outcome.is_body
         {
-            let message = "either all exits cost what the body does, or none";
+            let message = "either all outcomes cost what the body does, or none";
             return Err(Box::new(
                 scanner
                     .wrong(message, name_at, "not as the first one")
-                    .hint("what was executed is counted before it is known which exit is taken"),
+                    .hint("what was executed is counted before it is known which outcome is taken"),
             ));
         }
-        exits.push(exit);
+        outcomes.push(outcome);
         places.push(name_at.start..scanner.at);
-        if exits.len() > 32 {
-            return Err(Box::new(scanner.wrong("an instruction has at most 32 exits", name_at, "one too many")));
+        if outcomes.len() > 32 {
+            return Err(Box::new(scanner.wrong("an instruction has at most 32 outcomes", name_at, "one too many")));
         }
         if scanner.accept("]") {
-            return Ok((exits, places));
+            return Ok((outcomes, places));
         }
         scanner.expect(",")?;
     }
 }
 
-/// What stands in the parentheses of an exit, the closing one included; `each_at` gets the place of a cost for each unit.
-fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> Read<Exit> {
-    let mut exit = Exit { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };
+/// What stands in the parentheses of an outcome, the closing one included; `each_at` gets the place of a cost for each unit.
+fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> Read<OutcomeDef> {
+    let mut outcome =
+        OutcomeDef { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };
     if scanner.accept(")") {
-        return Ok(exit);
+        return Ok(outcome);
     }
     let mut named: Vec<Class> = Vec::new();
     let mut is_each = false;
@@ -325,9 +326,9 @@ fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -
         }
         let (class_text, class_at) = scanner.word("a class of operations")?;
         if class_text == "body" && named.is_empty() && !is_each {
-            exit.is_body = true;
+            outcome.is_body = true;
             scanner.expect(")")?;
-            return Ok(exit);
+            return Ok(outcome);
         }
         let Some(class) = Class::from_name(class_text) else {
             let names = Class::ALL.iter().map(|class| class.name());
@@ -342,10 +343,10 @@ fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -
             return Err(Box::new(scanner.wrong(message, class_at, "second one")));
         }
         named.push(class);
-        let counts = if is_each { &mut exit.each } else { &mut exit.cost };
+        let counts = if is_each { &mut outcome.each } else { &mut outcome.cost };
         (counts[class], _) = scanner.number()?;
         if scanner.accept(")") {
-            return Ok(exit);
+            return Ok(outcome);
         }
         if is_each || !scanner.rest().trim_start().starts_with(';') {
             scanner.expect(",")?;

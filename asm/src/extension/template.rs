@@ -152,7 +152,7 @@ impl Assembler<'_> {
         // `set_act` has put the step there when its numbers are known already.
         if template.places.len() == self.program.words.len() {
             let number = if line.source == 0 { line.number } else { template.row_line };
-            let pending = Act::Exit { exit: 0, jumps: false };
+            let pending = Act::End { outcome: 0, jumps: false };
             template.steps.resize(template.places.len() + 1, Step { act: pending, line: number });
             let last = template.steps.len() - 1;
             template.steps[last].line = number;
@@ -207,14 +207,15 @@ impl Assembler<'_> {
     fn exit_step(&mut self, cursor: &mut Cursor) -> Parsed<()> {
         let Some(template) = &self.body else { return Ok(()) };
         let row = template.row.clone();
-        let names = || row.exits.iter().map(|exit| format!("`{}`", exit.name)).collect::<Vec<_>>().join(", ");
-        let exit = if cursor.is_at_end() && row.exits.len() == 1 {
+        let names = || row.outcomes.iter().map(|outcome| format!("`{}`", outcome.name)).collect::<Vec<_>>().join(", ");
+        let outcome = if cursor.is_at_end() && row.outcomes.len() == 1 {
             0
         } else {
-            let (name, name_at) = cursor.name("the name of an exit")?;
-            row.exit(name).ok_or_else(|| {
-                let message = format!("`{}` has no exit `{name}`", row.name);
-                Problem::new(explain::BODY, message, name_at, "not in its row").hint(format!("its exits: {}", names()))
+            let (name, name_at) = cursor.name("the name of an outcome")?;
+            row.outcome(name).ok_or_else(|| {
+                let message = format!("`{}` has no outcome `{name}`", row.name);
+                Problem::new(explain::BODY, message, name_at, "not in its row")
+                    .hint(format!("its outcomes: {}", names()))
             })?
         };
         let jumps = cursor.accept(",");
@@ -229,7 +230,7 @@ impl Assembler<'_> {
         cursor.end()?;
         let step = self.program.words.len();
         if self.body.as_ref().is_some_and(|template| !template.is_shared) {
-            self.set_act(step, Act::Exit { exit: exit as u8, jumps });
+            self.set_act(step, Act::End { outcome: outcome as u8, jumps });
         }
         self.emit(0, cursor.line);
         Ok(())

@@ -1,6 +1,6 @@
 //! Meanings of the rows that choose the next instruction. Program counters count words.
 
-use isa::table::{Done, exit};
+use isa::table::{Done, outcome};
 
 use super::ControlRoom;
 
@@ -65,99 +65,99 @@ macro_rules! branch {
     ($self:ident, $name:ident, $i:ident, $claim:expr) => {
         if $claim {
             $self.jump_by($i);
-            exit::$name::Exit::Taken
+            outcome::$name::Outcome::Taken
         } else {
-            exit::$name::Exit::Fall
+            outcome::$name::Outcome::Fall
         }
     };
 }
 
 impl ControlRoom for Flow {
     #[inline]
-    fn beq(&mut self, a: i32, b: i32, i: i32) -> exit::beq::Exit {
+    fn beq(&mut self, a: i32, b: i32, i: i32) -> outcome::beq::Outcome {
         branch!(self, beq, i, a == b)
     }
 
     #[inline]
-    fn bne(&mut self, a: i32, b: i32, i: i32) -> exit::bne::Exit {
+    fn bne(&mut self, a: i32, b: i32, i: i32) -> outcome::bne::Outcome {
         branch!(self, bne, i, a != b)
     }
 
     #[inline]
-    fn blt(&mut self, a: i32, b: i32, i: i32) -> exit::blt::Exit {
+    fn blt(&mut self, a: i32, b: i32, i: i32) -> outcome::blt::Outcome {
         branch!(self, blt, i, a < b)
     }
 
     #[inline]
-    fn bge(&mut self, a: i32, b: i32, i: i32) -> exit::bge::Exit {
+    fn bge(&mut self, a: i32, b: i32, i: i32) -> outcome::bge::Outcome {
         branch!(self, bge, i, a >= b)
     }
 
     #[inline]
-    fn bltu(&mut self, a: i32, b: i32, i: i32) -> exit::bltu::Exit {
+    fn bltu(&mut self, a: i32, b: i32, i: i32) -> outcome::bltu::Outcome {
         branch!(self, bltu, i, (a as u32) < b as u32)
     }
 
     #[inline]
-    fn bgeu(&mut self, a: i32, b: i32, i: i32) -> exit::bgeu::Exit {
+    fn bgeu(&mut self, a: i32, b: i32, i: i32) -> outcome::bgeu::Outcome {
         branch!(self, bgeu, i, a as u32 >= b as u32)
     }
 
     #[inline]
-    fn bweqz(&mut self, a: i64, i: i32) -> exit::bweqz::Exit {
+    fn bweqz(&mut self, a: i64, i: i32) -> outcome::bweqz::Outcome {
         branch!(self, bweqz, i, a == 0)
     }
 
     #[inline]
-    fn bwnez(&mut self, a: i64, i: i32) -> exit::bwnez::Exit {
+    fn bwnez(&mut self, a: i64, i: i32) -> outcome::bwnez::Outcome {
         branch!(self, bwnez, i, a != 0)
     }
 
     #[inline]
-    fn bwltz(&mut self, a: i64, i: i32) -> exit::bwltz::Exit {
+    fn bwltz(&mut self, a: i64, i: i32) -> outcome::bwltz::Outcome {
         branch!(self, bwltz, i, a < 0)
     }
 
     #[inline]
-    fn bwgez(&mut self, a: i64, i: i32) -> exit::bwgez::Exit {
+    fn bwgez(&mut self, a: i64, i: i32) -> outcome::bwgez::Outcome {
         branch!(self, bwgez, i, a >= 0)
     }
 
     #[inline]
-    fn bwlt(&mut self, a: i64, b: i64, i: i32) -> exit::bwlt::Exit {
+    fn bwlt(&mut self, a: i64, b: i64, i: i32) -> outcome::bwlt::Outcome {
         branch!(self, bwlt, i, a < b)
     }
 
     #[inline]
-    fn bweq(&mut self, a: i64, b: i64, i: i32) -> exit::bweq::Exit {
+    fn bweq(&mut self, a: i64, b: i64, i: i32) -> outcome::bweq::Outcome {
         branch!(self, bweq, i, a == b)
     }
 
     #[inline]
-    fn jump(&mut self, i: i32) -> exit::jump::Exit {
+    fn jump(&mut self, i: i32) -> outcome::jump::Outcome {
         self.jump_by(i);
-        exit::jump::Exit::Taken
+        outcome::jump::Outcome::Taken
     }
 
     #[inline]
-    fn call(&mut self, i: i32) -> (i32, exit::call::Exit) {
+    fn call(&mut self, i: i32) -> (i32, outcome::call::Outcome) {
         self.jump_by(i);
         self.motion = Motion::Call;
-        (self.link(), exit::call::Exit::Taken)
+        (self.link(), outcome::call::Outcome::Taken)
     }
 
     #[inline]
-    fn callr(&mut self, a: u32) -> (i32, exit::callr::Exit) {
+    fn callr(&mut self, a: u32) -> (i32, outcome::callr::Outcome) {
         self.next = a;
         self.motion = Motion::Call;
-        (self.link(), exit::callr::Exit::Taken)
+        (self.link(), outcome::callr::Outcome::Taken)
     }
 
     #[inline]
-    fn ret(&mut self, a: u32) -> exit::ret::Exit {
+    fn ret(&mut self, a: u32) -> outcome::ret::Outcome {
         self.next = a;
         self.motion = Motion::Return;
-        exit::ret::Exit::Taken
+        outcome::ret::Outcome::Taken
     }
 
     #[inline]

@@ -15,7 +15,7 @@ mod watch;
 mod wide;
 
 use isa::number::Vector;
-use isa::table::exit;
+use isa::table::outcome;
 
 pub(crate) use bus::{Glance, hand_on, methods, refuse};
 pub use bus::{Link, Message, Port};
@@ -59,8 +59,8 @@ macro_rules! value {
 
 /// What a meaning hands back: the written values in the order of the row, then the exit.
 macro_rules! outcome {
-    ($name:ident []) => { exit::$name::Exit };
-    ($name:ident [$(($letter:ident $kind:ident))+]) => { ($(value!($kind),)+ exit::$name::Exit) };
+    ($name:ident []) => { outcome::$name::Outcome };
+    ($name:ident [$(($letter:ident $kind:ident))+]) => { ($(value!($kind),)+ outcome::$name::Outcome) };
 }
 
 /// One method of a room's trait.

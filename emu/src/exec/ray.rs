@@ -4,14 +4,14 @@ use isa::number::ray::{
     BoxEnd, Plane, Ray, Step, TriangleEnd, across_box, exit_face, is_surely_before, ratio, step, triangle,
 };
 use isa::number::{Arithmetic, Vector};
-use isa::table::{Done, exit};
+use isa::table::{Done, outcome};
 
 use super::RayRoom;
 
 impl<T: Arithmetic> RayRoom for T {
     #[inline]
-    fn rtri(&self, a: [Vector; 2], b: [Vector; 3], i: i32) -> (i32, Vector, exit::rtri::Exit) {
-        use exit::rtri::{Exit, Way};
+    fn rtri(&self, a: [Vector; 2], b: [Vector; 3], i: i32) -> (i32, Vector, outcome::rtri::Outcome) {
+        use outcome::rtri::{Outcome, Way};
         let met = triangle(&Ray::from(a), &b);
         let way = match met.end {
             TriangleEnd::Parallel => Way::Parallel,
@@ -21,7 +21,7 @@ impl<T: Arithmetic> RayRoom for T {
             TriangleEnd::Behind => Way::Behind,
             TriangleEnd::Hit => Way::Hit,
         };
-        let exit = Exit { way, units: met.ties };
+        let exit = Outcome { way, units: met.ties };
         if way != Way::Hit {
             return (i32::MAX >> (32 - self.word()), [0; 3], exit);
         }
@@ -30,14 +30,14 @@ impl<T: Arithmetic> RayRoom for T {
     }
 
     #[inline]
-    fn rbox(&self, a: [Vector; 2], b: [Vector; 2]) -> (i64, i64, exit::rbox::Exit) {
-        use exit::rbox::Exit;
+    fn rbox(&self, a: [Vector; 2], b: [Vector; 2]) -> (i64, i64, outcome::rbox::Outcome) {
+        use outcome::rbox::Outcome;
         let (enter, leave, end) = across_box(&Ray::from(a), b[0], b[1]);
         let exit = match end {
-            BoxEnd::Beside => Exit::Beside,
-            BoxEnd::Inside => Exit::Inside,
-            BoxEnd::Missed => Exit::Missed,
-            BoxEnd::Entered => Exit::Entered,
+            BoxEnd::Beside => Outcome::Beside,
+            BoxEnd::Inside => Outcome::Inside,
+            BoxEnd::Missed => Outcome::Missed,
+            BoxEnd::Entered => Outcome::Entered,
         };
         (enter.pattern(), leave.pattern(), exit)
     }
@@ -48,8 +48,8 @@ impl<T: Arithmetic> RayRoom for T {
     }
 
     #[inline]
-    fn rstep(&self, a: [Vector; 2], b: [i64; 3], i: i32) -> (i32, i32, exit::rstep::Exit) {
-        use exit::rstep::Exit;
+    fn rstep(&self, a: [Vector; 2], b: [i64; 3], i: i32) -> (i32, i32, outcome::rstep::Outcome) {
+        use outcome::rstep::Outcome;
         let ray = Ray::from(a);
         let [split, entry, leave] = b.map(Plane::from_pattern);
         let left = (b[0] >> 32) as i32 & !3;
@@ -57,11 +57,11 @@ impl<T: Arithmetic> RayRoom for T {
         let found = step(&ray, split, entry, leave);
         let (first, second) = if found.is_right_first(&ray, split.axis) { (right, left) } else { (left, right) };
         match found {
-            Step::Leaf => (left, -1, Exit::Leaf),
-            Step::Behind => (first, 0, Exit::Behind),
-            Step::Passed => (first, 0, Exit::Passed),
-            Step::Near => (first, 0, Exit::Near),
-            Step::Both => (first, second, Exit::Both),
+            Step::Leaf => (left, -1, Outcome::Leaf),
+            Step::Behind => (first, 0, Outcome::Behind),
+            Step::Passed => (first, 0, Outcome::Passed),
+            Step::Near => (first, 0, Outcome::Near),
+            Step::Both => (first, second, Outcome::Both),
         }
     }
 

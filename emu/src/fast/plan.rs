@@ -100,7 +100,7 @@ impl<'a> Plan<'a> {
             match stage {
                 Stage::Slot(slot) => {
                     let first = code.slots()[slot as usize].first_exit;
-                    passes.extend((first..).take(code.slot_row(slot).map_or(0, |row| row.exits.len())));
+                    passes.extend((first..).take(code.slot_row(slot).map_or(0, |row| row.outcomes.len())));
                 }
                 Stage::Hop(_) => passes.push(NO_PASS),
             }
@@ -229,13 +229,13 @@ impl<'a> Plan<'a> {
             return Step { row: Step::HOP, exits: 1, ..step };
         }
         let Some((op, row)) = code.slots()[slot as usize].op.zip(code.slot_row(slot)) else { return step };
-        step.exits = row.exits.len() as u8;
-        let extra = &self.extra[first..first + row.exits.len()];
+        step.exits = row.outcomes.len() as u8;
+        let extra = &self.extra[first..first + row.outcomes.len()];
         step.is_uneven = extra.iter().any(|extra| *extra != Toll::default());
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
         step.edges = [
             self.flagged_toll(place + 1, is_held) + extra_of(0),
-            self.flagged_toll(step.target, is_held) + extra_of(row.exits.len().saturating_sub(1)),
+            self.flagged_toll(step.target, is_held) + extra_of(row.outcomes.len().saturating_sub(1)),
         ];
         // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
         step.fields = code.slots()[slot as usize].fields;

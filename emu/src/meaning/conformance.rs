@@ -260,8 +260,8 @@ impl Case {
 /// The exit by which the first word ended.
 fn exit(isa: &Isa, row: &Row, program: &Program, run: &SingleRun) -> String {
     let code = Code::new(program, isa, Default::default());
-    let taken = (0..row.exits.len()).find(|&exit| run.tally.passes(&code, 0, exit).count != 0);
-    taken.map_or_else(|| "none".to_owned(), |exit| row.exits[exit].name.to_string())
+    let taken = (0..row.outcomes.len()).find(|&exit| run.tally.passes(&code, 0, exit).count != 0);
+    taken.map_or_else(|| "none".to_owned(), |exit| row.outcomes[exit].name.to_string())
 }
 
 /// A register of an operand.

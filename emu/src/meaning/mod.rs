@@ -141,7 +141,7 @@ pub fn attach(isa: &mut Isa, name: &str, meaning: impl Meaning + Clone) -> Resul
             )));
         }
     };
-    if isa.row(op).exits.iter().any(|exit| exit.is_body) {
+    if isa.row(op).outcomes.iter().any(|exit| exit.is_body) {
         let message = format!("`{name}` costs what its body does, but its meaning in Rust would be executed instead");
         return Err(Box::new(Diagnostic::error(message).hint("declare what its exits cost, such as `[Done(add 3)]`")));
     }

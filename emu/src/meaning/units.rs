@@ -81,7 +81,7 @@ impl<M> Runner<M> {
         Runner {
             meaning,
             shape: Shape { kinds, name: row.name.to_string() },
-            exits: row.exits.len() as u8,
+            exits: row.outcomes.len() as u8,
             destinations: written.map(|o| (place(o.letter as char), o.letter, o.kind)).collect(),
             results: Results::default(),
             words: Vec::new(),

@@ -145,7 +145,7 @@ impl Observer for Profiler {
         let mut sum = Counts::ZERO;
         for &stage in order.stages() {
             if let Stage::Slot(slot) = stage
-                && code.slot_row(slot).is_some_and(|row| row.exits.len() == 1)
+                && code.slot_row(slot).is_some_and(|row| row.outcomes.len() == 1)
             {
                 sum += code.pass_cost(code.slots()[slot as usize].first_exit as usize).0;
             }

@@ -3,8 +3,8 @@
 use emu::exec::RayRoom;
 use isa::number::ray::Plane;
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
-use isa::table::exit::{rbox, rstep, rtri};
-use isa::table::{Done, Ending};
+use isa::table::outcome::{rbox, rstep, rtri};
+use isa::table::{AnyOutcome, Done};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -88,24 +88,24 @@ fn distances_round_as_the_machine_says_and_never_wrap() {
 fn edges_that_are_met_exactly_are_counted_as_units() {
     let ray = [[0, 0, 0], [0, 0, 1]];
     let (t, _, exit) = Nearest32.rtri(ray, [[0, 0, 5], [2, -1, 5], [2, 1, 5]], 0);
-    assert_eq!((t, exit), (5, rtri::Exit { way: rtri::Way::Hit, units: 2 }), "a vertex is on two edges");
+    assert_eq!((t, exit), (5, rtri::Outcome { way: rtri::Way::Hit, units: 2 }), "a vertex is on two edges");
     let (t, _, exit) = Nearest32.rtri(ray, [[0, 0, 5], [-2, -1, 5], [-2, 1, 5]], 0);
-    assert_eq!((t, exit), (i32::MAX, rtri::Exit { way: rtri::Way::OutsideU, units: 1 }));
+    assert_eq!((t, exit), (i32::MAX, rtri::Outcome { way: rtri::Way::OutsideU, units: 1 }));
 }
 
 #[test]
 fn boxes_give_planes() {
     let corners = [[-10, -20, -30], [10, 20, 30]];
     let across = |origin, direction| Nearest32.rbox([origin, direction], corners);
-    assert_eq!(across([0, 0, 0], [1, 1, 1]), (plane(3, 0), plane(0, 10), rbox::Exit::Inside));
-    assert_eq!(across([0, 0, 0], [-1, -4, 1]), (plane(3, 0), plane(1, -20), rbox::Exit::Inside));
-    assert_eq!(across([0, 0, 50], [0, 1, -4]), (plane(2, 30), plane(1, 20), rbox::Exit::Entered));
-    assert_eq!(across([0, 0, 50], [0, 2, -1]), (-1, -1, rbox::Exit::Missed));
-    assert_eq!(across([0, 0, 50], [0, 0, 1]), (-1, -1, rbox::Exit::Beside));
-    assert_eq!(across([11, 0, 0], [0, 1, 0]), (-1, -1, rbox::Exit::Beside));
+    assert_eq!(across([0, 0, 0], [1, 1, 1]), (plane(3, 0), plane(0, 10), rbox::Outcome::Inside));
+    assert_eq!(across([0, 0, 0], [-1, -4, 1]), (plane(3, 0), plane(1, -20), rbox::Outcome::Inside));
+    assert_eq!(across([0, 0, 50], [0, 1, -4]), (plane(2, 30), plane(1, 20), rbox::Outcome::Entered));
+    assert_eq!(across([0, 0, 50], [0, 2, -1]), (-1, -1, rbox::Outcome::Missed));
+    assert_eq!(across([0, 0, 50], [0, 0, 1]), (-1, -1, rbox::Outcome::Beside));
+    assert_eq!(across([11, 0, 0], [0, 1, 0]), (-1, -1, rbox::Outcome::Beside));
     // On a face: a direction of 0 goes to larger coordinates.
-    assert_eq!(across([10, 0, 0], [0, 1, 0]), (-1, -1, rbox::Exit::Beside));
-    assert_eq!(across([-10, 0, 0], [0, 1, 0]), (plane(3, 0), plane(1, 20), rbox::Exit::Inside));
+    assert_eq!(across([10, 0, 0], [0, 1, 0]), (-1, -1, rbox::Outcome::Beside));
+    assert_eq!(across([-10, 0, 0], [0, 1, 0]), (plane(3, 0), plane(1, 20), rbox::Outcome::Inside));
     assert_eq!(
         Nearest32.rexit([[0, 0, 0], [3, 6, 9]], corners),
         (plane(0, 10), Done),
@@ -121,20 +121,20 @@ fn steps_give_the_children_in_the_order_of_the_ray() {
     let step =
         |direction, axis, at, entry, exit| Nearest32.rstep([[0, 0, 0], direction], [node(axis, at), entry, exit], 8);
     let (start, far) = (plane(3, 0), plane(0, 100));
-    assert_eq!(step([1, 1, 0], 0, 50, start, far), (0x400, 0x408, rstep::Exit::Both));
-    assert_eq!(step([1, 1, 0], 0, -50, start, far), (0x408, 0, rstep::Exit::Behind));
-    assert_eq!(step([1, 1, 0], 0, 0, start, far), (0x408, 0, rstep::Exit::Behind), "through the origin");
-    assert_eq!(step([1, 1, 0], 1, 150, start, far), (0x400, 0, rstep::Exit::Near));
-    assert_eq!(step([1, 1, 0], 1, 40, plane(0, 50), far), (0x408, 0, rstep::Exit::Passed));
+    assert_eq!(step([1, 1, 0], 0, 50, start, far), (0x400, 0x408, rstep::Outcome::Both));
+    assert_eq!(step([1, 1, 0], 0, -50, start, far), (0x408, 0, rstep::Outcome::Behind));
+    assert_eq!(step([1, 1, 0], 0, 0, start, far), (0x408, 0, rstep::Outcome::Behind), "through the origin");
+    assert_eq!(step([1, 1, 0], 1, 150, start, far), (0x400, 0, rstep::Outcome::Near));
+    assert_eq!(step([1, 1, 0], 1, 40, plane(0, 50), far), (0x408, 0, rstep::Outcome::Passed));
     assert_eq!(
         step([1, 1, 0], 1, 50, plane(0, 50), far),
-        (0x400, 0x408, rstep::Exit::Both),
+        (0x400, 0x408, rstep::Outcome::Both),
         "x = 50 comes before y = 50"
     );
-    assert_eq!(step([1, -1, 0], 1, -50, start, far), (0x408, 0x400, rstep::Exit::Both), "backwards");
-    assert_eq!(step([1, -1, 0], 2, -5, start, far), (0x408, 0, rstep::Exit::Behind), "0 goes to larger coordinates");
-    assert_eq!(step([1, -1, 0], 2, 5, start, far), (0x400, 0, rstep::Exit::Near));
-    assert_eq!(step([1, 1, 0], 3, 12, start, far), (0x400, -1, rstep::Exit::Leaf));
+    assert_eq!(step([1, -1, 0], 1, -50, start, far), (0x408, 0x400, rstep::Outcome::Both), "backwards");
+    assert_eq!(step([1, -1, 0], 2, -5, start, far), (0x408, 0, rstep::Outcome::Behind), "0 goes to larger coordinates");
+    assert_eq!(step([1, -1, 0], 2, 5, start, far), (0x400, 0, rstep::Outcome::Near));
+    assert_eq!(step([1, 1, 0], 3, 12, start, far), (0x400, -1, rstep::Outcome::Leaf));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The body of an extension instruction: steps over template registers, with branches inside and explicit exits.
+//! The body of an extension instruction: steps over template registers, with branches inside and explicit outcomes.
 
 use std::sync::Arc;
 
@@ -31,10 +31,10 @@ pub enum Act {
         /// Its immediates `i` and `j`.
         immediates: [Immediate; 2],
     },
-    /// The end, by an exit of the row.
-    Exit {
-        /// Number of the exit.
-        exit: u8,
+    /// The end, by an outcome of the row.
+    End {
+        /// Number of the outcome.
+        outcome: u8,
         /// Whether the program goes on where the row's distance leads, instead of behind the instruction.
         jumps: bool,
     },
@@ -52,7 +52,7 @@ pub struct Step {
 /// A body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Body {
-    /// The steps; the first one is executed first, the last one is an exit or does not fall through.
+    /// The steps; the first one is executed first, the last one is an outcome or does not fall through.
     pub steps: Vec<Step>,
     /// The file.
     pub source: Arc<Source>,

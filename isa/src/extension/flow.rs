@@ -1,4 +1,4 @@
-//! What can be known of a body without running it: which steps and exits are reached, whether it may go on for ever, and that no step
+//! What can be known of a body without running it: which steps and outcomes are reached, whether it may go on for ever, and that no step
 //! reads a register that nothing has written.
 
 use super::body::{Act, Body};
@@ -19,16 +19,16 @@ pub enum Defect {
         /// Its number in the body.
         number: u8,
     },
-    /// An exit is reached on a way on which a destination is not written.
+    /// An outcome is reached on a way on which a destination is not written.
     Missing {
-        /// The exit's step.
+        /// The outcome's step.
         step: usize,
         /// Letter of the destination.
         letter: u8,
         /// Which of its registers.
         offset: u8,
     },
-    /// No exit is reached.
+    /// No outcome is reached.
     Endless,
 }
 
@@ -37,8 +37,8 @@ pub enum Defect {
 pub struct Summary {
     /// Whether each step can be reached.
     pub reached: Vec<bool>,
-    /// The exits that can be reached, by number.
-    pub exits: Vec<bool>,
+    /// The outcomes that can be reached, by number.
+    pub outcomes: Vec<bool>,
     /// A step that can lead back to itself.
     pub repeats: Option<usize>,
     /// Steps that may stop the machine: accesses to memory, traps.
@@ -69,12 +69,12 @@ impl Body {
     /// The steps that may follow a step.
     pub fn successors(&self, step: usize, isa: &Isa) -> impl Iterator<Item = usize> + use<> {
         let (next, target) = match self.steps[step].act {
-            Act::Exit { .. } => (None, None),
+            Act::End { .. } => (None, None),
             Act::Row { instruction, .. } => {
                 let row = isa.row(instruction.op);
                 let distance = row.operands.iter().find(|operand| operand.kind == Kind::Rel);
                 let target = distance.map(|operand| (step as i64 + instruction.fields.get(operand.letter)) as usize);
-                let falls = instruction.op != Op::trap && (target.is_none() || row.exits.len() > 1);
+                let falls = instruction.op != Op::trap && (target.is_none() || row.outcomes.len() > 1);
                 (falls.then_some(step + 1), target)
             }
         };
@@ -128,7 +128,7 @@ impl Body {
     }
 
     fn check(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
-        let mut has_exit = false;
+        let mut has_outcome = false;
         for (step, known) in known.iter().enumerate() {
             let Some(known) = known else { continue };
             for (file, number, kind) in self.operands(step, isa, false) {
@@ -137,10 +137,10 @@ impl Body {
                     return Err(Defect::Unwritten { step, file, number: number + at });
                 }
             }
-            if !matches!(self.steps[step].act, Act::Exit { .. }) {
+            if !matches!(self.steps[step].act, Act::End { .. }) {
                 continue;
             }
-            has_exit = true;
+            has_outcome = true;
             for operand in row.operands.iter().filter(|operand| operand.is_written()) {
                 let Some(file) = operand.kind.register_file() else { continue };
                 let number = registers::operand(operand.letter, 0);
@@ -150,20 +150,20 @@ impl Body {
                 }
             }
         }
-        if has_exit { Ok(()) } else { Err(Defect::Endless) }
+        if has_outcome { Ok(()) } else { Err(Defect::Endless) }
     }
 
     fn summarize(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Summary {
         let mut summary = Summary {
             reached: known.iter().map(Option::is_some).collect(),
-            exits: vec![false; row.exits.len()],
+            outcomes: vec![false; row.outcomes.len()],
             ..Summary::default()
         };
         let mut used = Vec::new();
         for step in (0..self.steps.len()).filter(|&step| known[step].is_some()) {
             match self.steps[step].act {
-                Act::Exit { exit, jumps } => {
-                    summary.exits[usize::from(exit)] = true;
+                Act::End { outcome, jumps } => {
+                    summary.outcomes[usize::from(outcome)] = true;
                     used.extend(
                         jumps
                             .then_some(row.operands.iter().filter(|o| o.kind == Kind::Rel))
@@ -177,7 +177,7 @@ impl Body {
                     if instruction.op == Op::trap || matches!(&*inner.room, "local" | "bus") {
                         summary.faults.push(step);
                     }
-                    if inner.exits.iter().any(|exit| exit.cost[crate::Class::Div] != 0) {
+                    if inner.outcomes.iter().any(|outcome| outcome.cost[crate::Class::Div] != 0) {
                         summary.divisions.push(step);
                     }
                     let registers =

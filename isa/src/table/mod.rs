@@ -1,5 +1,5 @@
 //! The table of instructions: its rooms put together, once, and what is stamped from it: the opcode enum, the rows as
-//! data, an exit type a row. A wrong row (overlapping pattern, operand without field, unknown class) does not compile.
+//! data, an outcome type a row. A wrong row (overlapping pattern, operand without field, unknown class) does not compile.
 
 mod control;
 mod integer;
@@ -13,7 +13,7 @@ use std::borrow::Cow;
 
 use crate::class::Counts;
 use crate::pattern::BitPattern;
-use crate::row::{Exit, Kind, Operand, Room, Row};
+use crate::row::{Kind, Operand, OutcomeDef, Room, Row};
 
 /// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
 ///
@@ -33,26 +33,26 @@ macro_rules! rows_end {
     ([$($rooms:tt)*] $callback:ident) => { $callback! { $($rooms)* } };
 }
 
-/// The only exit of a row whose list of exits is `[Done(..)]`.
+/// The only outcome of a row whose list of outcomes is `[Done(..)]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Done;
 
-/// The only exit of a row that costs something for each unit; it carries the number of units.
+/// The only outcome of a row that costs something for each unit; it carries the number of units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Each(pub u32);
 
-/// What an engine reads off the exit that a meaning returns.
-pub trait Ending: Copy {
-    /// Exits of the row.
-    const EXITS: usize;
-    /// Number of the exit within its row.
+/// What an engine reads off the outcome that a meaning returns.
+pub trait AnyOutcome: Copy {
+    /// Outcomes of the row.
+    const OUTCOMES: usize;
+    /// Number of the outcome within its row.
     fn index(self) -> usize;
     /// Units of the per-unit cost; 0 where the row has none.
     fn units(self) -> u32;
 }
 
-impl Ending for Done {
-    const EXITS: usize = 1;
+impl AnyOutcome for Done {
+    const OUTCOMES: usize = 1;
     #[inline]
     fn index(self) -> usize {
         0
@@ -63,8 +63,8 @@ impl Ending for Done {
     }
 }
 
-impl Ending for Each {
-    const EXITS: usize = 1;
+impl AnyOutcome for Each {
+    const OUTCOMES: usize = 1;
     #[inline]
     fn index(self) -> usize {
         0
@@ -75,29 +75,29 @@ impl Ending for Each {
     }
 }
 
-macro_rules! exit_type {
+macro_rules! outcome_type {
     ($name:ident [Done($($class:ident $n:literal),*)]) => {
         #[doc = concat!("How `", stringify!($name), "` ends.")]
         pub mod $name {
-            pub use super::super::Done as Exit;
+            pub use super::super::Done as Outcome;
         }
     };
     ($name:ident [Done($($class:ident $n:literal),* ; each $($unit:ident $m:literal),+)]) => {
         #[doc = concat!("How `", stringify!($name), "` ends.")]
         pub mod $name {
-            pub use super::super::Each as Exit;
+            pub use super::super::Each as Outcome;
         }
     };
-    ($name:ident [$($exit:ident($($class:ident $n:literal),*)),+]) => {
+    ($name:ident [$($outcome:ident($($class:ident $n:literal),*)),+]) => {
         #[doc = concat!("How `", stringify!($name), "` ends.")]
         pub mod $name {
             #[doc = concat!("How `", stringify!($name), "` ends.")]
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub enum Exit {
-                $(#[doc = concat!("Exit `", stringify!($exit), "`.")] $exit,)+
+            pub enum Outcome {
+                $(#[doc = concat!("Outcome `", stringify!($outcome), "`.")] $outcome,)+
             }
-            impl crate::table::Ending for Exit {
-                const EXITS: usize = [$(stringify!($exit)),+].len();
+            impl crate::table::AnyOutcome for Outcome {
+                const OUTCOMES: usize = [$(stringify!($outcome)),+].len();
                 #[inline]
                 fn index(self) -> usize { self as usize }
                 #[inline]
@@ -105,24 +105,24 @@ macro_rules! exit_type {
             }
         }
     };
-    ($name:ident [$($exit:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+]) => {
+    ($name:ident [$($outcome:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+]) => {
         #[doc = concat!("How `", stringify!($name), "` ends.")]
         pub mod $name {
             #[doc = concat!("The ways in which `", stringify!($name), "` ends.")]
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
             pub enum Way {
-                $(#[doc = concat!("Exit `", stringify!($exit), "`.")] $exit,)+
+                $(#[doc = concat!("Outcome `", stringify!($outcome), "`.")] $outcome,)+
             }
             #[doc = concat!("How `", stringify!($name), "` ends, with the number of units.")]
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub struct Exit {
-                /// Which exit.
+            pub struct Outcome {
+                /// Which outcome.
                 pub way: Way,
                 /// Units of its cost for each; 0 where it has none.
                 pub units: u32,
             }
-            impl crate::table::Ending for Exit {
-                const EXITS: usize = [$(stringify!($exit)),+].len();
+            impl crate::table::AnyOutcome for Outcome {
+                const OUTCOMES: usize = [$(stringify!($outcome)),+].len();
                 #[inline]
                 fn index(self) -> usize { self.way as usize }
                 #[inline]
@@ -135,7 +135,7 @@ macro_rules! exit_type {
 macro_rules! stamp {
     ($($style:ident $room:ident $trait:ident $room_doc:literal {
         $($(#[doc = $doc:expr])* $name:ident ($($letter:ident : $kind:ident),*) $drawn:literal
-            [$($exit:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+];)*
+            [$($outcome:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+];)*
     })*) => {
         /// Number of an instruction: a row of the table, or row `n` of the extensions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -175,8 +175,8 @@ macro_rules! stamp {
                 Err(_) => panic!(concat!("the pattern of `", stringify!($name), "` cannot be read")),
             },
             drawn: Cow::Borrowed($drawn),
-            exits: Cow::Borrowed(&[$(Exit {
-                name: Cow::Borrowed(stringify!($exit)),
+            outcomes: Cow::Borrowed(&[$(OutcomeDef {
+                name: Cow::Borrowed(stringify!($outcome)),
                 cost: Counts::from_pairs(&[$((stringify!($class), $n)),*]),
                 each: Counts::from_pairs(&[$($((stringify!($unit), $m)),+)?]),
                 is_body: false,
@@ -190,9 +190,9 @@ macro_rules! stamp {
             assert!(Row::check(OPERANDS, &pattern, 1).is_ok(), concat!("operands and pattern of `", stringify!($name), "` do not fit"));
         };)*)*
 
-        /// An exit type a row, in a module of the row's name.
-        pub mod exit {
-            $($(exit_type! { $name [$($exit($($class $n),* $(; each $($unit $m),+)?)),+] })*)*
+        /// An outcome type a row, in a module of the row's name.
+        pub mod outcome {
+            $($(outcome_type! { $name [$($outcome($($class $n),* $(; each $($unit $m),+)?)),+] })*)*
         }
     };
 }

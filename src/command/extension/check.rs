@@ -22,7 +22,7 @@ Exit codes: 0 the files can be loaded (there may be warnings), 1 they cannot.";
 /// Says what is wrong in files of extensions, and what is suspicious.
 ///
 /// Errors: rows that cannot be read, names and words that are taken, bodies that write what they do not own, read what nothing has
-/// written, leave a destination unwritten, never end or contain themselves. Warnings: operands without use, exits and lines that are
+/// written, leave a destination unwritten, never end or contain themselves. Warnings: operands without use, outcomes and lines that are
 /// never reached, loops, traps, destinations that are written before a source that may be the same register is read, costs below what the body
 /// spends.
 #[derive(Args, Clone, Debug)]
@@ -75,7 +75,7 @@ fn spent(isa: &Isa, op: isa::Op) -> String {
     let mut sum = Counts::ZERO;
     for step in isa.body(op).iter().flat_map(|body| &body.steps) {
         if let isa::extension::Act::Row { instruction, .. } = step.act {
-            sum += isa.row(instruction.op).exits[0].cost;
+            sum += isa.row(instruction.op).outcomes[0].cost;
         }
     }
     let parts = Class::ALL.iter().filter(|class| sum[**class] != 0);

@@ -174,7 +174,7 @@ fn latency(instructions: &[Instruction], isa: &Isa, timing: &Timing) -> (u64, u6
     let mut ready: Vec<(Registers, u64)> = Vec::new();
     let (mut serial, mut critical) = (0, 0);
     for instruction in instructions {
-        let clocks = timing.clocks(&isa.row(instruction.op).exits[0].cost).0;
+        let clocks = timing.clocks(&isa.row(instruction.op).outcomes[0].cost).0;
         let reads = registers(instruction, isa, false);
         let start = ready.iter().filter(|(written, _)| written & reads != 0).map(|&(_, end)| end).max().unwrap_or(0);
         let writes = registers(instruction, isa, true);

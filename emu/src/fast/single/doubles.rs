@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 
 use isa::Fields;
 use isa::number::{Nearest32, Vector};
-use isa::table::exit::rtri::{Exit, Way};
+use isa::table::outcome::rtri::{Outcome, Way};
 
 use super::operands::set_vector;
 use crate::exec::RayRoom;
@@ -139,7 +139,7 @@ fn close_margins(met: &Met) -> __m256d {
 /// A ray against a triangle; see the row.
 #[target_feature(enable = "avx2,fma")]
 #[inline]
-pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
+pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Outcome {
     let met = meet(registers, fields);
     let margin = wide_margin(&met);
     let (passed, is_missed) = judge(met.found, _mm256_broadcastsd_pd(margin), 6.0 * _mm_cvtsd_f64(margin));
@@ -151,18 +151,18 @@ pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Exit {
 
 /// The test that comes after those passed is failed.
 #[inline(always)]
-fn miss(registers: &mut Registers, fields: &Fields, passed: u32) -> Exit {
+fn miss(registers: &mut Registers, fields: &Fields, passed: u32) -> Outcome {
     const WAYS: [Way; 8] =
         [Way::Parallel, Way::OutsideU, Way::OutsideV, Way::OutsideW, Way::Behind, Way::Hit, Way::Hit, Way::Hit];
     registers.set_other_scalar(fields.d, i32::MAX);
     set_vector(registers, fields.e, [0; 3]);
-    Exit { way: WAYS[passed as usize & 7], units: 0 }
+    Outcome { way: WAYS[passed as usize & 7], units: 0 }
 }
 
 /// The same with closer bounds.
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
-fn closely(registers: &mut Registers, fields: &Fields) -> Exit {
+fn closely(registers: &mut Registers, fields: &Fields) -> Outcome {
     let met = meet(registers, fields);
     let margins = close_margins(&met);
     let [whole_margin, u_margin, v_margin, _] = lanes(margins);
@@ -177,7 +177,7 @@ fn closely(registers: &mut Registers, fields: &Fields) -> Exit {
     {
         registers.set_other_scalar(fields.d, t);
         set_vector(registers, fields.e, weights);
-        return Exit { way: Way::Hit, units: 0 };
+        return Outcome { way: Way::Hit, units: 0 };
     }
     exactly(registers, fields)
 }
@@ -229,7 +229,7 @@ fn hit(found: __m256d, margin: __m256d, whole: f64, whole_margin: f64, shift: i3
 
 #[cold]
 #[inline(never)]
-fn exactly(registers: &mut Registers, fields: &Fields) -> Exit {
+fn exactly(registers: &mut Registers, fields: &Fields) -> Outcome {
     let (t, weights, exit) =
         RayRoom::rtri(&Nearest32, registers.vectors(fields.a), registers.vectors(fields.b), fields.i);
     registers.set_other_scalar(fields.d, t);

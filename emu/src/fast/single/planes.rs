@@ -1,7 +1,7 @@
 //! A step down a kd tree as the host does it quickest: it leaves as soon as the way is known, so that what follows can be foreseen.
 
 use isa::Fields;
-use isa::table::exit::rstep::Exit;
+use isa::table::outcome::rstep::Outcome;
 
 use crate::registers::Registers;
 
@@ -39,23 +39,23 @@ impl Meeting {
 
 /// A step down a kd tree; see the row.
 #[inline(always)]
-pub(super) fn rstep(registers: &Registers, fields: &Fields) -> (i32, i32, Exit) {
+pub(super) fn rstep(registers: &Registers, fields: &Fields) -> (i32, i32, Outcome) {
     let (origin, direction) = (registers.padded(fields.a), registers.padded(fields.a.wrapping_add(1)));
     let [node, entry, exit]: [i64; 3] = registers.wides(fields.b);
     let split = Meeting::of(node, origin, direction);
     let left = (node >> 32) as i32 & !3;
     if split.axis == TIME {
-        return (left, -1, Exit::Leaf);
+        return (left, -1, Outcome::Leaf);
     }
     let right = left.wrapping_add(fields.i);
     let (near, far) = if split.slope < 0 { (right, left) } else { (left, right) };
     if if split.slope < 0 { split.run >= 0 } else { split.run <= 0 } {
-        (far, 0, Exit::Behind)
+        (far, 0, Outcome::Behind)
     } else if !Meeting::of(entry, origin, direction).is_before(split) {
-        (far, 0, Exit::Passed)
+        (far, 0, Outcome::Passed)
     } else if !split.is_before(Meeting::of(exit, origin, direction)) {
-        (near, 0, Exit::Near)
+        (near, 0, Outcome::Near)
     } else {
-        (near, far, Exit::Both)
+        (near, far, Outcome::Both)
     }
 }

@@ -111,8 +111,8 @@ macro_rules! function {
 macro_rules! row {
     ({ $features:tt $ray:ident pure RayRoom $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            let exit: exit::$name::Exit = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
-            let sums = walk.pass::<exit::$name::Exit>(now, sums, exit);
+            let exit: outcome::$name::Outcome = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
+            let sums = walk.pass::<outcome::$name::Outcome>(now, sums, exit);
             let next = walk.go_on(Place { step, sums });
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
@@ -122,9 +122,9 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(exit::$name::Exit::EXITS == 1) };
+            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
-            let _: exit::$name::Exit = finish!(registers fields, result, $written);
+            let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
             let next = walk.go_on(Place { step, sums });
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
@@ -134,10 +134,10 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(exit::$name::Exit::EXITS == 1) };
+            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
             match $trait::$name(&mut *walk.buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
-                    let _: exit::$name::Exit = finish!(registers fields, result, $written);
+                    let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
                 }
                 Err(_) => return walk.stop_before(Stopped::Unusual, Place { step, sums }),
             }
@@ -147,12 +147,12 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(exit::$name::Exit::EXITS == 1) };
+            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
             walk.note(Place { step, sums }, now);
             if is_read(Op::$name) {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Glance(&mut *walk.link) };
                 if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
-                    let _: exit::$name::Exit = finish!(registers fields, result, $written);
+                    let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
                     let next = walk.go_on(Place { step, sums });
                     return thread!(next, (registers walk L O));
                 }
@@ -161,8 +161,8 @@ macro_rules! row {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut *walk.link };
                 match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     Ok(result) => {
-                        let exit: exit::$name::Exit = finish!(registers fields, result, $written);
-                        let sums = walk.pass::<exit::$name::Exit>(now, sums, exit);
+                        let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
+                        let sums = walk.pass::<outcome::$name::Outcome>(now, sums, exit);
                         walk.go_on(Place { step, sums })
                     }
                     Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
@@ -175,7 +175,7 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(exit::$name::Exit::EXITS <= 2) };
+            const { assert!(outcome::$name::Outcome::OUTCOMES <= 2) };
             let mut flow = Flow::new(now.slot, now.slot + 1, walk.seat.core, walk.seat.cores);
             let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
             let has_target = const { false $(|| is_relative!($kind))* };
@@ -183,11 +183,11 @@ macro_rules! row {
             if matches!(flow.end, Some(End::Trap(_))) || !has_target && !goes_on && flow.next >= walk.plan.words {
                 return walk.stop_before(Stopped::Unusual, Place { step, sums });
             }
-            let exit: exit::$name::Exit = finish!(registers fields, result, $written);
+            let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
             if let Some(End::Halt) = flow.end {
                 return walk.halt(Place { step, sums });
             }
-            turn!(walk.turn::<exit::$name::Exit>(has_target, now, step, flow, exit), sums, (registers walk L O))
+            turn!(walk.turn::<outcome::$name::Outcome>(has_target, now, step, flow, exit), sums, (registers walk L O))
         }}
     };
 }
@@ -242,7 +242,7 @@ macro_rules! stamp {
             mod rows {
                 use isa::Op;
                 use isa::number::Nearest32;
-                use isa::table::{Ending, exit};
+                use isa::table::{AnyOutcome, outcome};
 
                 use super::super::super::fuse::LOOK;
                 use super::super::super::operands::put;

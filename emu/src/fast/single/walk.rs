@@ -1,6 +1,6 @@
 //! A walk through a program: what rows need beside registers, and how a run follows the other.
 
-use isa::table::Ending;
+use isa::table::AnyOutcome;
 
 use super::count::Count;
 use super::fuse::Fuse;
@@ -153,11 +153,11 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a control row: one that its step knows, or to any word.
     #[inline(always)]
-    pub fn turn<E: Ending>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Way {
+    pub fn turn<E: AnyOutcome>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Way {
         let number = now.exit as usize + exit.index();
-        let is_falling = E::EXITS > 1 && exit.index() == 0;
+        let is_falling = E::OUTCOMES > 1 && exit.index() == 0;
         if O::IS_ACTIVE {
-            if E::EXITS > 1 {
+            if E::OUTCOMES > 1 {
                 self.pass_seen(number, false, 0);
             }
             let place = self.place(step);
@@ -247,9 +247,9 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
     /// Counts what a straight row took, where that is not known beforehand, and yields the sums.
     #[inline(always)]
-    pub fn pass<E: Ending>(&mut self, now: &Step, sums: u64, exit: E) -> u64 {
+    pub fn pass<E: AnyOutcome>(&mut self, now: &Step, sums: u64, exit: E) -> u64 {
         let (number, units) = (now.exit as usize + exit.index(), exit.units());
-        self.pass_any(now, sums, number, units, E::EXITS > 1)
+        self.pass_any(now, sums, number, units, E::OUTCOMES > 1)
     }
 
     /// The same, whatever the row.

@@ -9,7 +9,7 @@ use emu::profile::Profile;
 use kernels::build::{Build, Crop};
 use messages::Report;
 use rayon::prelude::*;
-use scenes::image::{Image, Kind};
+use scenes::image::{MemoryImage, Kind};
 use scenes::layout::PIXEL;
 use scenes::metrics::{self, PictureError};
 use scenes::model::Picture;
@@ -44,7 +44,7 @@ pub struct Times {
 #[derive(Clone, Debug)]
 pub struct Drawing {
     /// The scene in memory; its octets have moved into the frame's memory.
-    pub image: Image,
+    pub image: MemoryImage,
     /// The programs.
     pub build: Build,
     /// What the machine did.
@@ -129,7 +129,7 @@ fn part(reference: &Reference, crop: &Crop) -> Picture {
 }
 
 /// The colours in the frame, where the drawn part lies row by row from its start.
-fn colour_words(image: &Image, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
+fn colour_words(image: &MemoryImage, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
     let start = image.region(Kind::Frame).start;
     let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
     let octets = octets.expect("the image has a frame for the whole picture");
@@ -137,7 +137,7 @@ fn colour_words(image: &Image, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
     octets.chunks_exact(PIXEL.octets() as usize).map(|pixel| std::array::from_fn(|k| word(pixel, k))).collect()
 }
 
-fn picture(image: &Image, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
+fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
     let scale = (-f64::from(image.formats.colour)).exp2();
     Picture { size, pixels: words.iter().map(|colour| colour.map(|raw| f64::from(raw) * scale)).collect() }
 }

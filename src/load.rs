@@ -8,7 +8,7 @@ use kernels::annex::load;
 use kernels::build::Build;
 use messages::Report;
 use scenes::cadrage::Formats;
-use scenes::image::{self, Image, Kind};
+use scenes::image::{self, MemoryImage, Kind};
 
 use crate::failure::Failure;
 use crate::job::Job;
@@ -49,7 +49,7 @@ impl Load {
     ///
     /// # Errors
     /// A scene that does not fit its formats, errors in the user's kernels.
-    pub fn picture(job: &Job) -> Result<(Load, Image), Failure> {
+    pub fn picture(job: &Job) -> Result<(Load, MemoryImage), Failure> {
         let isa = job.isa.clone();
         let mut image = image::build(&job.scene, &job.view, &job.memory)?;
         let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use isa::{Isa, Program};
 use messages::{Report, Source};
 use scenes::cadrage::Formats;
-use scenes::image::Image;
+use scenes::image::MemoryImage;
 use scenes::model::{Scene, View};
 
 use crate::function::{Function, Profile};
@@ -123,7 +123,7 @@ pub struct Build {
 ///
 /// # Errors
 /// What the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
-pub fn build(scene: &Scene, view: &View, image: &Image, isa: &Isa, options: &Options) -> Result<Build, Report> {
+pub fn build(scene: &Scene, view: &View, image: &MemoryImage, isa: &Isa, options: &Options) -> Result<Build, Report> {
     let features = Features::new(scene, view, &image.formats, options);
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
     let mut warnings = Report::default();
@@ -142,7 +142,7 @@ fn keeps_to_team(source: &Source, profile: Profile) -> bool {
 }
 
 fn assemble(
-    image: &Image,
+    image: &MemoryImage,
     features: &Features,
     crop: &Crop,
     isa: &Isa,

@@ -2,7 +2,7 @@
 //! twins. What else a program is told about its scene is said in [`crate::prelude`].
 
 use scenes::cadrage::Formats;
-use scenes::image::Image;
+use scenes::image::MemoryImage;
 
 /// Shifts and limits of a scene in a word length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ pub struct Constants {
 
 impl Constants {
     /// The constants of an image.
-    pub fn new(image: &Image) -> Constants {
+    pub fn new(image: &MemoryImage) -> Constants {
         let formats = image.formats;
         let bits = difference_bits(image);
         let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
@@ -67,7 +67,7 @@ impl Constants {
 }
 
 /// Bits of the widest difference of two coordinates, in the sense |difference| < 2^n.
-fn difference_bits(image: &Image) -> u32 {
+fn difference_bits(image: &MemoryImage) -> u32 {
     let reach = image.bounds.union(&image.grid.reach);
     let widest = (0..3).map(|k| i64::from(reach.high[k]) - i64::from(reach.low[k]) + 1).max().unwrap_or(1);
     64 - widest.leading_zeros()

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use isa::Isa;
 use messages::{Report, Source};
 use scenes::camera::RawCamera;
-use scenes::image::{Image, Kind};
+use scenes::image::{MemoryImage, Kind};
 use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, Features};
@@ -47,7 +47,7 @@ pub enum Walk {
 }
 
 /// The prelude of a core's program, or of the main processor's.
-pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main: bool) -> String {
+pub fn text(image: &MemoryImage, features: &Features, crop: &Crop, walk: Walk, is_main: bool) -> String {
     let mut text = String::from("; Written by the loader for one scene and one machine.\n");
     for (name, bits) in image.formats.entries() {
         let _ = writeln!(text, ".format {name}, {bits}");
@@ -82,11 +82,11 @@ pub fn text(image: &Image, features: &Features, crop: &Crop, walk: Walk, is_main
 }
 
 /// Whether the materials, and the lights, lie in the buffer from the start.
-fn is_local(image: &Image, kind: Kind) -> bool {
+fn is_local(image: &MemoryImage, kind: Kind) -> bool {
     image.region(kind).len() as u32 <= TABLES / 2
 }
 
-fn constants(image: &Image, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
+fn constants(image: &MemoryImage, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
     let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
         Constants::new(image);
     let mut constants = vec![
@@ -147,7 +147,7 @@ NODE: .space 2 * sizeof(node)
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
-fn core(text: &mut String, image: &Image, features: &Features, walk: Walk) {
+fn core(text: &mut String, image: &MemoryImage, features: &Features, walk: Walk) {
     text.push_str(
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
@@ -208,7 +208,7 @@ fn words(values: &[i32]) -> String {
 }
 
 /// The words of a region of the image, as data.
-fn table(text: &mut String, image: &Image, kind: Kind) {
+fn table(text: &mut String, image: &MemoryImage, kind: Kind) {
     let range = image.region(kind);
     let octets = &image.bytes[range.start as usize..range.end as usize];
     for row in octets.chunks(16) {

@@ -10,7 +10,7 @@ use kernels::twin::ray::{Ray, Search};
 use kernels::twin::surface::normal;
 use kernels::twin::{Twin, report};
 use rayon::prelude::*;
-use scenes::image::Image;
+use scenes::image::MemoryImage;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -48,7 +48,7 @@ struct Ended {
 
 impl RayErrors {
     /// Measures the camera rays of a job's picture on the image that was built for it.
-    pub fn new(image: &Image, job: &Job, (width, height): (u32, u32)) -> RayErrors {
+    pub fn new(image: &MemoryImage, job: &Job, (width, height): (u32, u32)) -> RayErrors {
         let (profile, modes) = (job.kernels.profile, job.machine.arithmetic.modes());
         let features = Features::new(&job.scene, &job.view, &image.formats, &kernels::Options::default());
         let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");

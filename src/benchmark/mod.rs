@@ -150,7 +150,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
 }
 
 fn twin(
-    image: &scenes::image::Image,
+    image: &scenes::image::MemoryImage,
     features: &Features,
     crop: &kernels::build::Crop,
     job: &Job,

@@ -7,7 +7,7 @@ use kernels::Profile;
 use kernels::build::{Crop, Features};
 use kernels::twin;
 use scenes::generate::{self, SCENES};
-use scenes::image::{self, Image};
+use scenes::image::{self, MemoryImage};
 use scenes::metrics;
 use scenes::model::{Material, Picture, Scene, View};
 use scenes::reference;
@@ -118,7 +118,7 @@ pub fn bounces(_: u64, trials: Range<u64>) -> Tally {
     })
 }
 
-fn picture(image: &Image, pixels: &[Vector]) -> Picture {
+fn picture(image: &MemoryImage, pixels: &[Vector]) -> Picture {
     let step = (-f64::from(image.formats.colour)).exp2();
     Picture { size: image.size, pixels: pixels.iter().map(|pixel| pixel.map(|raw| f64::from(raw) * step)).collect() }
 }

@@ -22,7 +22,7 @@ use scenes::model::{Scene, View};
 struct Subject {
     scene: Scene,
     view: View,
-    image: Image,
+    image: MemoryImage,
     features: Features,
     modes: Modes,
     profile: Profile,

@@ -60,7 +60,7 @@ fn scene() -> Scene {
     }
 }
 
-fn image(scene: &Scene, view: &View) -> Result<Image, Report> {
+fn image(scene: &Scene, view: &View) -> Result<MemoryImage, Report> {
     image::build(scene, view, &image::Options { layout: Layout::Report, ..image::Options::default() })
 }
 

@@ -27,7 +27,7 @@ use std::fmt;
 use isa::number::{Arithmetic, Modes, Nearest32, Vector};
 use rayon::prelude::*;
 use scenes::camera::RawCamera;
-use scenes::image::Image;
+use scenes::image::MemoryImage;
 
 use crate::build::{Crop, Features};
 use crate::constants::Constants;
@@ -85,7 +85,7 @@ impl std::error::Error for Failure {}
 /// # Errors
 /// An image that holds no scene, or a ray for which the machine traps.
 pub fn render(
-    image: &Image,
+    image: &MemoryImage,
     features: &Features,
     crop: &Crop,
     profile: Profile,
@@ -100,7 +100,7 @@ pub fn render(
 
 impl<A: Arithmetic> Twin<A> {
     /// The twin of the kernels for an image, whose word the arithmetic has to have; `None` when its octets hold no scene.
-    pub fn new(image: &Image, features: &Features, profile: Profile, arithmetic: A) -> Option<Twin<A>> {
+    pub fn new(image: &MemoryImage, features: &Features, profile: Profile, arithmetic: A) -> Option<Twin<A>> {
         Some(Twin {
             profile,
             arithmetic,

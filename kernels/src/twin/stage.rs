@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use isa::number::Vector;
-use scenes::image::{Image, StoredTriangle};
+use scenes::image::{MemoryImage, StoredTriangle};
 use scenes::kdtree::{Bounds, Content, KdTree};
 
 use super::ray::Packet;
@@ -69,7 +69,7 @@ pub struct Stage {
 
 impl Stage {
     /// The scene of an image; `None` when its octets hold none.
-    pub fn new(image: &Image) -> Option<Stage> {
+    pub fn new(image: &MemoryImage) -> Option<Stage> {
         let contents = image.decode()?;
         let (nodes, references) = tree(&contents.tree);
         let stage = Stage {

@@ -1,6 +1,6 @@
 //! An image read back: what its octets say, by the tables of [`crate::layout`] alone. Tests and the kernels' twins compare with it.
 
-use super::{Image, Kind};
+use super::{MemoryImage, Kind};
 use crate::kdtree::{Bounds, Given, KdTree};
 use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
 use crate::model::{Scene, Triangle};
@@ -27,7 +27,7 @@ pub struct Contents {
     pub lights: Vec<Vec<i64>>,
 }
 
-impl Image {
+impl MemoryImage {
     /// Reads tree, triangles, materials and lights from the octets; `None` when an address leads out of its region or the tree is none.
     pub fn decode(&self) -> Option<Contents> {
         let nodes = (self.tree.nodes as u32).min(self.region(Kind::Nodes).len() as u32 / self.layout.node().octets());

@@ -91,7 +91,7 @@ pub type Regions = [(Kind, Range<u32>); 7];
 
 /// A memory image and the raw integers that go with it.
 #[derive(Clone, Debug)]
-pub struct Image {
+pub struct MemoryImage {
     /// Global memory from address 0; the frame at its end is zero.
     pub bytes: Vec<u8>,
     /// How triangles and tree are stored.
@@ -116,7 +116,7 @@ pub struct Image {
     pub background: [i32; 3],
     /// Numbers of triangles, materials and lights.
     pub counts: Counts,
-    /// Size and shape of the tree that is stored; the tree itself is in the octets alone ([`Image::decode`] reads it back).
+    /// Size and shape of the tree that is stored; the tree itself is in the octets alone ([`MemoryImage::decode`] reads it back).
     pub tree: Statistics,
 }
 
@@ -131,7 +131,7 @@ pub struct Counts {
     pub lights: u32,
 }
 
-impl Image {
+impl MemoryImage {
     /// The addresses of one kind.
     pub fn region(&self, kind: Kind) -> Range<u32> {
         self.regions.iter().find(|(k, _)| *k == kind).map_or(0..0, |(_, range)| range.clone())
@@ -151,7 +151,7 @@ impl Image {
 /// # Errors
 /// What [`Grid::new`], [`Formats::new`], [`Rays::new`], [`RawCamera::new`] and [`kdtree::build`] refuse, more materials than a triangle can
 /// name, coefficients that do not fit their format, leaves with more triangles than a node can count, and an image beyond 32-bit addresses.
-pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Report> {
+pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<MemoryImage, Report> {
     let layout = options.layout;
     let grid = Grid::new(scene, view, options.word, options.formats.position)?;
     let shift = layout.coordinate_shift(options.word);
@@ -184,7 +184,7 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<Image, Rep
         materials: scene.materials.len() as u32,
         lights: scene.lights.len() as u32,
     };
-    Ok(Image {
+    Ok(MemoryImage {
         bytes,
         layout,
         regions,

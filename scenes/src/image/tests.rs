@@ -24,7 +24,7 @@ fn options(layout: Layout, word: u32) -> Options {
     Options { layout, word, ..Options::default() }
 }
 
-fn image(scene: &Scene, layout: Layout, word: u32) -> Image {
+fn image(scene: &Scene, layout: Layout, word: u32) -> MemoryImage {
     build(scene, &View::new(scene.size), &options(layout, word)).unwrap_or_else(|report| panic!("{report}"))
 }
 
@@ -32,7 +32,7 @@ fn image(scene: &Scene, layout: Layout, word: u32) -> Image {
 const TWO: [Vec3; 6] =
     [[-1.0, -1.0, -1.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.5]];
 
-fn words(image: &Image, address: u32, count: usize) -> Vec<u32> {
+fn words(image: &MemoryImage, address: u32, count: usize) -> Vec<u32> {
     let octets = &image.bytes[address as usize..][..4 * count];
     octets.chunks(4).map(|c| u32::from_le_bytes(c.try_into().unwrap())).collect()
 }

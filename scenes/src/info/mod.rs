@@ -10,7 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 
 pub use self::precision::Precision;
-use crate::image::{self, Image, Options};
+use crate::image::{self, MemoryImage, Options};
 use crate::kdtree::Statistics;
 use crate::model::{Scene, Vec3, View};
 use crate::read::mesh::repeated;
@@ -121,7 +121,7 @@ impl SceneInfo {
     }
 
     /// The facts of a scene and its image.
-    pub fn of_image(scene: &Scene, image: &Image) -> SceneInfo {
+    pub fn of_image(scene: &Scene, image: &MemoryImage) -> SceneInfo {
         let mut is_used = vec![false; scene.vertices.len()];
         scene.triangles.iter().flat_map(|t| t.vertices).for_each(|vertex| is_used[vertex as usize] = true);
         let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|triangle| triangle.vertices).collect();

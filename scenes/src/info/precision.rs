@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::image::Image;
+use crate::image::MemoryImage;
 use crate::model::{Scene, Vec3};
 use crate::read::mesh::is_flat;
 
@@ -30,7 +30,7 @@ pub struct Precision {
 
 impl Precision {
     /// Compares the triangles of a scene with those of its image.
-    pub fn new(scene: &Scene, image: &Image) -> Precision {
+    pub fn new(scene: &Scene, image: &MemoryImage) -> Precision {
         let shift = image.layout.coordinate_shift(image.formats.word);
         let inner = image.grid.bounds();
         let longest = [0, 1, 2].map(|axis| inner.side(axis)).into_iter().max().unwrap_or(0);

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use emu::machine::{self, Engine, Options};
-use kernels::Profile;
+use kernels::KernelSet;
 use lancer::job::Job;
 use lancer::load::Load;
 use scenes::generate::{self, SCENES};
@@ -17,7 +17,7 @@ fn engines(criterion: &mut Criterion) {
     for generator in SCENES {
         let scene = generate::scene(generator.name, &generate::Options { size: SIZE, ..generate::Options::default() });
         let scene = scene.expect("it is generated");
-        for profile in Profile::ALL {
+        for profile in KernelSet::ALL {
             let mut job = Job::new(scene.clone());
             job.view.shift = [0.137, 0.071];
             job.kernels.profile = profile;

@@ -1,9 +1,9 @@
 //! Pictures in every profile of the kernels, next to each other: what vector rows save on the report's scalar ones, and the ray unit on those.
 
 use emu::machine::Config;
-use emu::profile::Profile as Spent;
+use emu::profile::Profile;
 use isa::Counts;
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use scenes::model::{Scene, View};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -109,7 +109,7 @@ pub fn measure(
     };
     for scene in scenes {
         let first = result.pictures.len();
-        for profile in Profile::ALL {
+        for profile in KernelSet::ALL {
             let mut job = job(scene, size, profile);
             (job.machine_name, job.machine) = machine.clone();
             job.memory.word = job.machine.arithmetic.word;
@@ -119,12 +119,12 @@ pub fn measure(
         let pairs = result.pictures[first..].windows(2);
         result.ratios.extend(pairs.map(|pair| Ratio::new(&pair[1], &pair[0])));
     }
-    let means: Vec<Ratio> = Profile::ALL[1..].iter().filter_map(|profile| mean(&result.ratios, *profile)).collect();
+    let means: Vec<Ratio> = KernelSet::ALL[1..].iter().filter_map(|profile| mean(&result.ratios, *profile)).collect();
     result.ratios.extend(means);
     Ok(result)
 }
 
-fn job(scene: &Scene, size: (u32, u32), profile: Profile) -> Job {
+fn job(scene: &Scene, size: (u32, u32), profile: KernelSet) -> Job {
     let mut job = Job::new(scene.clone());
     job.view = View { shift: SHIFT, ..View::new(size) };
     job.kernels.profile = profile;
@@ -134,7 +134,7 @@ fn job(scene: &Scene, size: (u32, u32), profile: Profile) -> Job {
 }
 
 /// Instructions of the functions that walk the tree and intersect, inner regions included.
-fn search_instructions(spent: &Spent) -> u64 {
+fn search_instructions(spent: &Profile) -> u64 {
     let is_search = |name: &str| name.parse().is_ok_and(|function: Function| function.is_search());
     let outermost = |mut at: usize| {
         while let Some(parent) = spent.regions[at].parent {
@@ -150,7 +150,7 @@ impl Spending {
     fn new(job: &Job, drawing: &Drawing) -> Spending {
         let frame = &drawing.frame;
         let cores = &frame.processors[..job.machine.cores as usize];
-        let counts = frame.profile.as_ref().map_or(Counts::ZERO, Spent::total);
+        let counts = frame.profile.as_ref().map_or(Counts::ZERO, Profile::total);
         Spending {
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
@@ -186,7 +186,7 @@ impl Ratio {
 }
 
 /// The mean of a profile's ratios; `None` where there are none.
-fn mean(ratios: &[Ratio], profile: Profile) -> Option<Ratio> {
+fn mean(ratios: &[Ratio], profile: KernelSet) -> Option<Ratio> {
     let own: Vec<&Ratio> = ratios.iter().filter(|ratio| ratio.profile == profile.name()).collect();
     let mean = |figure: fn(&Ratio) -> f64| own.iter().map(|ratio| figure(ratio)).sum::<f64>() / own.len() as f64;
     Some(Ratio {

@@ -1,6 +1,6 @@
 //! How much memory a picture of a large scene takes on the host. This test is alone in its process: it counts what is allocated.
 
-use kernels::Profile;
+use kernels::KernelSet;
 use lancer::drawing::{self, Comparison};
 use lancer::job::Job;
 use peak_alloc::PeakAlloc;
@@ -21,7 +21,7 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     ALLOCATOR.reset_peak_usage();
     let mut job = Job::new(generate::scene("terrain", &options).expect("the terrain has any number of triangles"));
     job.view.shift = [0.137, 0.071];
-    job.kernels.profile = Profile::Ray;
+    job.kernels.profile = KernelSet::Ray;
     job.memory.kd_depth = Depth::Auto;
     let drawing =
         drawing::draw(&job, Comparison::Reference, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));

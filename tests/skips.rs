@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use kernels::{Profile, Skip};
+use kernels::{KernelSet, Skip};
 use lancer::drawing::Comparison;
 use lancer::job::Job;
 use lancer::savings::{self, Saving, Savings};
@@ -11,7 +11,7 @@ use scenes::layout::Layout;
 use scenes::model::Scene;
 
 /// A generated scene, small enough for a dozen pictures.
-fn job(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Job {
+fn job(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> Job {
     let smaller = |name: &str| match name {
         "terrain" => (None, Some(300)),
         "cornell" => (Some(2), None),
@@ -25,7 +25,7 @@ fn job(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Job {
     set_up(scene, profile, layout)
 }
 
-fn set_up(scene: Scene, profile: Profile, layout: Layout) -> Job {
+fn set_up(scene: Scene, profile: KernelSet, layout: Layout) -> Job {
     let mut job = Job::new(scene);
     job.view.shift = [0.137, 0.071];
     job.kernels.profile = profile;
@@ -33,7 +33,7 @@ fn set_up(scene: Scene, profile: Profile, layout: Layout) -> Job {
     job
 }
 
-fn measured(name: &str, profile: Profile, layout: Layout, size: (u32, u32)) -> Savings {
+fn measured(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> Savings {
     savings::measure(&job(name, profile, layout, size), &|| {}).unwrap_or_else(|error| panic!("{name}: {error:?}"))
 }
 
@@ -44,7 +44,7 @@ fn saving<'a>(savings: &'a Savings, name: &str) -> &'a Saving {
 #[test]
 fn no_skip_changes_a_picture() {
     for scene in SCENES {
-        for &profile in &Profile::ALL {
+        for &profile in &KernelSet::ALL {
             // One scene has everything that a layout could get wrong: mirrors, glass, packets with many triangles.
             for layout in Layout::ALL.into_iter().filter(|&layout| layout == profile.layout() || scene.name == "slabs")
             {
@@ -65,7 +65,7 @@ fn no_skip_changes_a_picture() {
 #[test]
 fn each_skip_saves_something_somewhere() {
     let scenes = ["cornell", "slabs", "terrain"];
-    let all: Vec<Savings> = scenes.iter().map(|name| measured(name, Profile::Vector, Layout::Wide, (12, 9))).collect();
+    let all: Vec<Savings> = scenes.iter().map(|name| measured(name, KernelSet::Vector, Layout::Wide, (12, 9))).collect();
     for skip in Skip::ALL {
         let saves = |savings: &Savings| {
             let saving = saving(savings, skip.name());
@@ -87,7 +87,7 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
         if !scene.materials.iter().any(|material| material.reflection > 0.0 || material.transmission() > 0.0) {
             continue;
         }
-        let saved = Profile::ALL.map(|profile| {
+        let saved = KernelSet::ALL.map(|profile| {
             let savings = savings::together(&set_up(scene.clone(), profile, profile.layout())).unwrap();
             saving(&savings, "all").operations_saved
         });
@@ -100,7 +100,7 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
 
 #[test]
 fn a_diffuse_scene_has_no_word_of_secondary_rays() {
-    for profile in Profile::ALL {
+    for profile in KernelSet::ALL {
         let job = job("terrain", profile, profile.layout(), (8, 6));
         let image = scenes::image::build(&job.scene, &job.view, &job.memory).unwrap();
         let build = kernels::build(&job.scene, &job.view, &image, &isa::Isa::base(), &job.kernels).unwrap();
@@ -132,7 +132,7 @@ fn pixels_between_corners_that_agree_are_their_mean() {
     // The pixels of the triangle miss it: reading corners takes longer than what they would have taken.
     let cases = [("cornell", (17, 12), 0.02, true), ("terrain", (8, 9), 0.3, true), ("triangle", (1, 6), 0.0, false)];
     for (name, size, difference, is_faster) in cases {
-        for profile in Profile::ALL {
+        for profile in KernelSet::ALL {
             let mut job = job(name, profile, profile.layout(), size);
             let drawn = |job: &Job| lancer::drawing::draw(job, Comparison::None, &mut |_| {}).unwrap();
             let whole = drawn(&job);

@@ -8,7 +8,7 @@ use scenes::cadrage::Formats;
 use scenes::image::MemoryImage;
 use scenes::model::{Scene, View};
 
-use crate::function::{Function, Profile};
+use crate::function::{Function, KernelSet};
 use crate::prelude;
 use crate::skip::{Skip, Skips};
 
@@ -79,7 +79,7 @@ pub struct Crop {
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Which file serves which function.
-    pub profile: Profile,
+    pub profile: KernelSet,
     /// Files of the user's own that serve a function instead.
     pub replaced: Vec<(Function, Arc<Source>)>,
     /// The part of the picture that is drawn; `None` for all of it.
@@ -96,7 +96,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Options {
         Options {
-            profile: Profile::default(),
+            profile: KernelSet::default(),
             replaced: Vec::new(),
             crop: None,
             weight_cutoff: 0.0,
@@ -137,7 +137,7 @@ pub fn build(scene: &Scene, view: &View, image: &MemoryImage, isa: &Isa, options
 }
 
 /// Whether a file says, in a line `; team: ray`, that it keeps to what the files of that profile agree on between them.
-fn keeps_to_team(source: &Source, profile: Profile) -> bool {
+fn keeps_to_team(source: &Source, profile: KernelSet) -> bool {
     source.text.lines().any(|line| line.strip_prefix("; team: ") == Some(profile.name()))
 }
 

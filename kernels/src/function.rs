@@ -13,7 +13,7 @@ use crate::skip::Skip;
 
 /// A set of kernels that differ only by which file serves a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Profile {
+pub enum KernelSet {
     /// Scalar operations laid out as the formulas and pseudo codes of the report, each rounded to a word: what its annexes count. Its
     /// decisions are not exact.
     Report,
@@ -24,64 +24,64 @@ pub enum Profile {
     Ray,
 }
 
-impl Profile {
+impl KernelSet {
     /// All profiles.
-    pub const ALL: [Profile; 3] = [Profile::Report, Profile::Vector, Profile::Ray];
+    pub const ALL: [KernelSet; 3] = [KernelSet::Report, KernelSet::Vector, KernelSet::Ray];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
-            Profile::Report => "report",
-            Profile::Vector => "vector",
-            Profile::Ray => "ray",
+            KernelSet::Report => "report",
+            KernelSet::Vector => "vector",
+            KernelSet::Ray => "ray",
         }
     }
 
     /// The layout of memory that goes with it unless the user chooses another.
     pub const fn layout(self) -> Layout {
         match self {
-            Profile::Report => Layout::Report,
-            Profile::Vector | Profile::Ray => Layout::Wide,
+            KernelSet::Report => Layout::Report,
+            KernelSet::Vector | KernelSet::Ray => Layout::Wide,
         }
     }
 
     /// How its walk through the tree remembers far sides, when the user has replaced some functions.
     pub fn walk(self, replaced: &[Function]) -> Walk {
         match self {
-            Profile::Report => Walk::Restart,
+            KernelSet::Report => Walk::Restart,
             _ if Team::of(Function::Descend, self, replaced).is_some() => Walk::Planes,
             _ => Walk::Boxes,
         }
     }
 }
 
-impl Profile {
+impl KernelSet {
     /// Whether the profile's kernels know how to leave something out. Those of the report test every triangle of a packet, whole, and
     /// search as it is printed.
     pub const fn knows(self, skip: Skip) -> bool {
         match self {
-            Profile::Report => {
+            KernelSet::Report => {
                 matches!(skip, Skip::Features | Skip::Weightless | Skip::Unlit | Skip::AnyHit | Skip::Beyond)
             }
-            Profile::Vector | Profile::Ray => true,
+            KernelSet::Vector | KernelSet::Ray => true,
         }
     }
 }
 
-impl fmt::Display for Profile {
+impl fmt::Display for KernelSet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-impl FromStr for Profile {
+impl FromStr for KernelSet {
     type Err = Box<Diagnostic>;
 
-    fn from_str(name: &str) -> Result<Profile, Box<Diagnostic>> {
-        Profile::ALL
+    fn from_str(name: &str) -> Result<KernelSet, Box<Diagnostic>> {
+        KernelSet::ALL
             .into_iter()
             .find(|profile| profile.name() == name)
-            .ok_or_else(|| unknown("profile", name, Profile::ALL.map(Profile::name)))
+            .ok_or_else(|| unknown("profile", name, KernelSet::ALL.map(KernelSet::name)))
     }
 }
 
@@ -118,7 +118,7 @@ macro_rules! file {
 ///
 /// A file of the user's own knows nothing of that, so when it replaces one function the others are served each by itself.
 struct Team {
-    profile: Profile,
+    profile: KernelSet,
     /// The functions that it serves, with their files; `None` where another one's file does their work.
     members: &'static [(Function, Option<File>)],
 }
@@ -126,11 +126,11 @@ struct Team {
 /// The teams of all profiles.
 const TEAMS: &[Team] = &[
     Team {
-        profile: Profile::Ray,
+        profile: KernelSet::Ray,
         members: &[(Function::Packet, Some(file!("ray/packet.s"))), (Function::Triangle, None)],
     },
     Team {
-        profile: Profile::Ray,
+        profile: KernelSet::Ray,
         members: &[
             (Function::Trace, Some(file!("ray/trace.s"))),
             (Function::NextPacket, Some(file!("ray/next_packet.s"))),
@@ -144,7 +144,7 @@ const TEAMS: &[Team] = &[
 
 impl Team {
     /// The team that serves a function, when it is complete.
-    fn of(function: Function, profile: Profile, replaced: &[Function]) -> Option<&'static Team> {
+    fn of(function: Function, profile: KernelSet, replaced: &[Function]) -> Option<&'static Team> {
         let has = |team: &Team, function| team.members.iter().any(|&(member, _)| member == function);
         TEAMS.iter().find(|team| {
             team.profile == profile && has(team, function) && !replaced.iter().any(|&other| has(team, other))
@@ -176,10 +176,10 @@ macro_rules! functions {
             }
 
             /// The file that serves the function by itself, with the registers that `registers.inc` gives it.
-            const fn own_file(self, profile: Profile) -> File {
+            const fn own_file(self, profile: KernelSet) -> File {
                 match (self, profile) {
-                    $($((Function::$variant, Profile::$profile) => file!($file),)*)*
-                    _ => self.own_file(Profile::Vector),
+                    $($((Function::$variant, KernelSet::$profile) => file!($file),)*)*
+                    _ => self.own_file(KernelSet::Vector),
                 }
             }
         }
@@ -236,7 +236,7 @@ functions! {
 impl Function {
     /// The file that serves the function in a profile, given which functions the user has replaced; `None` when another function's file does
     /// its work.
-    pub fn file(self, profile: Profile, replaced: &[Function]) -> Option<File> {
+    pub fn file(self, profile: KernelSet, replaced: &[Function]) -> Option<File> {
         match Team::of(self, profile, replaced) {
             Some(team) => team.members.iter().find(|&&(member, _)| member == self).and_then(|&(_, file)| file),
             None => Some(self.own_file(profile)),

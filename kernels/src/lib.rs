@@ -11,5 +11,5 @@ pub mod skip;
 pub mod twin;
 
 pub use build::{Build, Options, build};
-pub use function::{Function, Profile};
+pub use function::{Function, KernelSet};
 pub use skip::{Skip, Skips};

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use messages::Diagnostic;
 
-use crate::function::{Profile, unknown};
+use crate::function::{KernelSet, unknown};
 
 macro_rules! skips {
     ($($(#[doc = $doc:literal])* $variant:ident $name:literal $constant:literal;)*) => {
@@ -100,7 +100,7 @@ impl Skips {
 
     /// Those that a profile's kernels know.
     #[must_use]
-    pub fn known_to(self, profile: Profile) -> Skips {
+    pub fn known_to(self, profile: KernelSet) -> Skips {
         Skip::ALL.iter().filter(|&&skip| !profile.knows(skip)).fold(self, |skips, &skip| skips.without(skip))
     }
 

@@ -10,7 +10,7 @@ use std::fmt;
 use std::time::Instant;
 
 use isa::number::Quantization;
-use kernels::Profile;
+use kernels::KernelSet;
 use scenes::layout::Layout;
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Picture, Scene, View};
@@ -30,7 +30,7 @@ pub use rays::RayErrors;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variant {
     /// Set of kernels.
-    pub profile: Profile,
+    pub profile: KernelSet,
     /// Bits of a word.
     pub word: u32,
     /// Rounding mode.
@@ -47,8 +47,8 @@ pub struct Variant {
 
 impl Variant {
     /// The same with other kernels, those of the report in its layout.
-    fn with(self, profile: Profile) -> Variant {
-        let layout = if profile == Profile::Report { profile.layout() } else { self.layout };
+    fn with(self, profile: KernelSet) -> Variant {
+        let layout = if profile == KernelSet::Report { profile.layout() } else { self.layout };
         Variant { profile, layout, ..self }
     }
 }
@@ -82,7 +82,7 @@ const BOUNCES: u32 = 5;
 #[derive(Clone, Debug)]
 pub struct Choice {
     /// Sets of kernels.
-    pub profiles: Vec<Profile>,
+    pub profiles: Vec<KernelSet>,
     /// Bits of a word.
     pub words: Vec<u32>,
     /// Rounding modes.

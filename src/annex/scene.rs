@@ -1,7 +1,7 @@
 //! The rows of the annexes on a scene: what a call of each row's region takes where nothing is assumed.
 
 use emu::profile::{Profile, RegionProfile};
-use kernels::Profile as Kernels;
+use kernels::KernelSet;
 use kernels::annex::rows;
 use scenes::image::Options;
 
@@ -33,8 +33,8 @@ pub fn job(scene: Scene, size: (u32, u32)) -> Job {
     let mut job = Job::new(scene);
     job.view.size = size;
     job.view.shift = SHIFT;
-    job.kernels.profile = Kernels::Report;
-    job.memory = Options { layout: Kernels::Report.layout(), ..job.memory };
+    job.kernels.profile = KernelSet::Report;
+    job.memory = Options { layout: KernelSet::Report.layout(), ..job.memory };
     job
 }
 

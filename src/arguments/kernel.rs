@@ -14,8 +14,8 @@ use super::ExtensionArguments;
 #[command(next_help_heading = "Kernels")]
 pub struct KernelArguments {
     /// Set of kernels.
-    #[arg(long, value_name = "NAME", value_parser = profile(), default_value = Profile::default().name())]
-    pub profile: Profile,
+    #[arg(long, value_name = "NAME", value_parser = profile(), default_value = KernelSet::default().name())]
+    pub profile: KernelSet,
     /// Assembly file that serves one function instead of the profile's own; may be repeated.
     #[arg(long = "kernel", value_name = "FUNCTION=FILE", value_parser = replacement)]
     pub replaced: Vec<(Function, PathBuf)>,
@@ -24,8 +24,8 @@ pub struct KernelArguments {
     pub extensions: ExtensionArguments,
 }
 
-fn profile() -> impl TypedValueParser<Value = Profile> {
-    let names = PossibleValuesParser::new(Profile::ALL.iter().map(|profile| profile.name()));
+fn profile() -> impl TypedValueParser<Value = KernelSet> {
+    let names = PossibleValuesParser::new(KernelSet::ALL.iter().map(|profile| profile.name()));
     names.map(|name| name.parse().expect("the parser lets only names pass"))
 }
 

@@ -60,7 +60,7 @@ impl Runner {
 pub struct Measured {
     /// Name of the scene.
     pub scene: String,
-    /// Profile of the kernels.
+    /// The kernel set.
     pub profile: &'static str,
     /// Who computed it: `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]

@@ -49,7 +49,7 @@ pub struct AccuracyArguments {
     words: Vec<u32>,
     /// Sets of kernels.
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = profile, default_value = "ray,vector,report")]
-    profiles: Vec<Profile>,
+    profiles: Vec<KernelSet>,
     /// Rounding modes, by their IEEE 1666 names.
     #[arg(long, value_name = "MODE,..", value_delimiter = ',', value_parser = rounding, default_value = "RND,TRN")]
     roundings: Vec<Quantization>,
@@ -90,8 +90,8 @@ fn difference(text: &str) -> Result<Agreement, String> {
     }
 }
 
-fn profile(text: &str) -> Result<Profile, String> {
-    Profile::from_str(text).map_err(|message| arguments::plain(&message))
+fn profile(text: &str) -> Result<KernelSet, String> {
+    KernelSet::from_str(text).map_err(|message| arguments::plain(&message))
 }
 
 fn layout(text: &str) -> Result<Layout, String> {

@@ -43,7 +43,7 @@ pub struct BenchArguments {
     size: Size,
     /// Sets of kernels.
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = profile, default_value = "ray")]
-    profiles: Vec<Profile>,
+    profiles: Vec<KernelSet>,
     /// Runs of each.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), default_value = "5")]
     runs: u32,
@@ -58,8 +58,8 @@ pub struct BenchArguments {
     svg: Option<PathBuf>,
 }
 
-fn profile(text: &str) -> Result<Profile, String> {
-    Profile::from_str(text).map_err(|message| arguments::plain(&message))
+fn profile(text: &str) -> Result<KernelSet, String> {
+    KernelSet::from_str(text).map_err(|message| arguments::plain(&message))
 }
 
 /// Times of pictures on a host.

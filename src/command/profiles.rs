@@ -48,7 +48,7 @@ pub(super) fn execute(arguments: &ProfilesArguments, terminal: &mut Terminal) ->
         terminal.show(&loaded.warnings);
         scenes.push(loaded.scene);
     }
-    let bar = terminal.progress("pictures", (scenes.len() * kernels::Profile::ALL.len()) as u64);
+    let bar = terminal.progress("pictures", (scenes.len() * kernels::KernelSet::ALL.len()) as u64);
     let profiles = profiles::measure(&scenes, arguments.size, &machine, &|| bar.inc(1));
     bar.finish_and_clear();
     let profiles = profiles?;

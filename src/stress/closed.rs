@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use isa::number::Vector;
 use isa::number::ray::Ray;
-use kernels::Profile;
+use kernels::KernelSet;
 
 use super::mesh::closed;
 use super::random::Random;
@@ -16,7 +16,7 @@ use super::target::{Target, through};
 const EVERY: u64 = 16;
 
 static TARGETS: LazyLock<Vec<Target>> =
-    LazyLock::new(|| closed().iter().map(|mesh| Target::new(mesh, Profile::Ray)).collect());
+    LazyLock::new(|| closed().iter().map(|mesh| Target::new(mesh, KernelSet::Ray)).collect());
 
 /// Checks a ray for each trial, the meshes in turn.
 fn check(seed: u64, trials: Range<u64>, aim: impl Fn(&Target, &mut Random) -> Ray + Sync) -> Tally {

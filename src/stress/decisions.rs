@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use emu::exec::RayRoom;
 use isa::number::ray::Ray;
 use isa::number::{Nearest32, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::twin::stage::Node;
 
 use super::mesh::{Corners, Mesh, cube, sphere};
@@ -96,7 +96,7 @@ static SHEETS: LazyLock<Target> = LazyLock::new(|| {
     let corner = |x: i32, y: i32, random: &mut Random| [x, y, random.coordinate(24)];
     let triangles =
         (0..96).map(|_| [corner(-far, -far, &mut random), corner(far, -far, &mut random), corner(0, far, &mut random)]);
-    Target::new(&Mesh { name: "sheets", triangles: triangles.collect() }, Profile::Ray)
+    Target::new(&Mesh { name: "sheets", triangles: triangles.collect() }, KernelSet::Ray)
 });
 
 /// Nearest hits whose distances differ by a few units in the last place, or round to the same one.
@@ -119,7 +119,7 @@ static DUPLICATES: LazyLock<Vec<Target>> = LazyLock::new(|| {
             let mut random = Random::new(6, 0);
             let mut triangles = [once.clone(), once.clone(), once].concat();
             shuffle(&mut triangles, &mut random);
-            let mut target = Target::new(&Mesh { name, triangles }, Profile::Ray);
+            let mut target = Target::new(&Mesh { name, triangles }, KernelSet::Ray);
             let stage = &mut target.twin.stage;
             for node in &stage.nodes {
                 if let Node::Leaf(references) = node {
@@ -160,7 +160,7 @@ static DEGENERATE: LazyLock<Target> = LazyLock::new(|| {
         let middle = std::array::from_fn(|k| (a[k] + b[k]) / 2);
         triangles.extend([[a, a, a], [a, b, middle], [a, b, c], [b, b, c]]);
     }
-    Target::new(&Mesh { name: "sphere", triangles }, Profile::Ray)
+    Target::new(&Mesh { name: "sphere", triangles }, KernelSet::Ray)
 });
 
 /// Triangles without area are never hit, and do not disturb the others.
@@ -179,7 +179,7 @@ pub fn degenerate(seed: u64, trials: Range<u64>) -> Tally {
 static FULL: LazyLock<Target> = LazyLock::new(|| {
     let ends = |x: i32| x - x.signum() * i32::from(x.abs() == 1 << 28);
     let triangles = cube(3).into_iter().map(|corners| corners.map(|corner| corner.map(ends))).collect();
-    Target::new(&Mesh { name: "box at the ends of the grid", triangles }, Profile::Ray)
+    Target::new(&Mesh { name: "box at the ends of the grid", triangles }, KernelSet::Ray)
 });
 
 /// Rays from and to the ends of the grid: differences of the full word.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use isa::number::{Modes, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::build::{Crop, Features};
 use kernels::twin;
 use scenes::generate::{self, SCENES};
@@ -44,7 +44,7 @@ fn drawn(scene: &Scene, view: &View) -> Result<(Image, Vec<Vector>), String> {
     let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
     let (width, height) = view.size;
     let crop = Crop { column: 0, row: 0, width, height };
-    let pixels = twin::render(&image, &features, &crop, Profile::Ray, Modes::default()).map_err(|f| f.to_string())?;
+    let pixels = twin::render(&image, &features, &crop, KernelSet::Ray, Modes::default()).map_err(|f| f.to_string())?;
     Ok((image, pixels))
 }
 
@@ -94,7 +94,7 @@ pub fn kernels(_: u64, trials: Range<u64>) -> Tally {
         let scene = coarse(trial % MEASURED, (16, 12));
         let mut job = Job::new(scene);
         job.view = shifted(&job.scene);
-        job.kernels.profile = Profile::Ray;
+        job.kernels.profile = KernelSet::Ray;
         job.detail = Detail::Totals;
         let drawing = drawing::draw(&job, Comparison::None, &mut |_| {}).map_err(|failure| match failure {
             Failure::Message { report, .. } => report.render(false),
@@ -140,7 +140,7 @@ pub fn colours(_: u64, trials: Range<u64>) -> Tally {
         let image = image::build(&scene, &view, &options).map_err(|report| report.render(false))?;
         let features = Features::new(&scene, &view, &image.formats, &kernels::Options::default());
         let crop = Crop { column: 0, row: 0, width: 40, height: 30 };
-        let pixels = twin::render(&image, &features, &crop, Profile::Ray, Modes::default());
+        let pixels = twin::render(&image, &features, &crop, KernelSet::Ray, Modes::default());
         let pixels = picture(&image, &pixels.map_err(|failure| failure.to_string())?).pixels;
         let exact = reference::render(&scene, &view).map_err(|report| report.render(false))?.picture.pixels;
         let differences = pixels.iter().flatten().zip(exact.iter().flatten()).map(|(a, b)| (a - b.min(2.0)).abs());

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use isa::number::ray::Ray;
 use isa::number::{Nearest32, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::twin::lanes::Lanes;
 use kernels::twin::ray;
 use kernels::twin::refract::{Refraction, refracts};
@@ -25,7 +25,7 @@ const BITS: u32 = 30;
 const SPAWNS: u64 = 1000;
 
 static BALL: LazyLock<Target> =
-    LazyLock::new(|| Target::new(&Mesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, Profile::Ray));
+    LazyLock::new(|| Target::new(&Mesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, KernelSet::Ray));
 
 fn rounded(direction: [f64; 3]) -> Vector {
     direction.map(|x| (x * f64::from(1 << BITS)).round() as i32)

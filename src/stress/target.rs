@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use isa::number::ray::{Meeting, Ray, TriangleEnd, triangle};
 use isa::number::{Nearest32, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::build::Features;
 use kernels::twin::planes::Packets;
 use kernels::twin::stage::Node;
@@ -32,7 +32,7 @@ pub type Crossing = (i128, i128, i32, u32);
 
 impl Target {
     /// The mesh as the loader puts it on the grid, with its tree.
-    pub fn new(mesh: &Mesh, profile: Profile) -> Target {
+    pub fn new(mesh: &Mesh, profile: KernelSet) -> Target {
         let grey = Material { colour: [0.5; 3], reflection: 0.0, intensity: 1.0, index: 0.0 };
         let corner = |number: usize| 3 * number as u32;
         let scene = Scene {
@@ -196,7 +196,7 @@ mod tests {
 
     /// Rays at vertices that are found to be wrong, of 500.
     fn wrong(triangles: Vec<Corners>) -> usize {
-        let target = Target::new(&Mesh { name: "sphere", triangles }, Profile::Ray);
+        let target = Target::new(&Mesh { name: "sphere", triangles }, KernelSet::Ray);
         let ray = |trial| {
             let mut random = Random::new(1, trial);
             through(random.point(1 << 30), target.corners(random.below(target.len()) as u32)[0])

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::constants::Constants;
 use kernels::twin::descend::own_packet;
 use kernels::twin::first_packet::first_packet;
@@ -262,7 +262,7 @@ fn searches_through_the_tree_miss_nothing() {
         let formats = Overrides { position, direction: Some(29), ..Overrides::default() };
         let options = image::Options { formats, ..image::Options::default() };
         let subject = Subject::new(scene, View::new(size), modes(32), options).expect("a scene on a coarse grid");
-        let twin = Twin::new(&subject.image, &subject.features, Profile::Vector, Nearest32)
+        let twin = Twin::new(&subject.image, &subject.features, KernelSet::Vector, Nearest32)
             .expect("the image holds the scene");
         assert_eq!(twin.constants.edge_shift, 0);
         for n in 0..2500 {

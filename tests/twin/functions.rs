@@ -6,7 +6,7 @@ use kernels::twin::exit_face::exit_face;
 use kernels::twin::ray::{Exit, Packet, Ray, Search};
 use kernels::twin::report;
 use kernels::twin::unit::{sqrt, unit};
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use scenes::generate;
@@ -31,7 +31,7 @@ pub(super) const MODES: [Modes; 5] = [
 ];
 
 /// The profiles whose kernels are in all functions different.
-const PROFILES: [Profile; 2] = [Profile::Vector, Profile::Report];
+const PROFILES: [KernelSet; 2] = [KernelSet::Vector, KernelSet::Report];
 
 /// A generated scene with a small picture.
 pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
@@ -124,7 +124,7 @@ fn units() {
     for modes in MODES {
         for profile in PROFILES {
             let subject = subject("slabs", Some(4), modes).with(profile);
-            let unit = if profile == Profile::Report { report::unit } else { unit };
+            let unit = if profile == KernelSet::Report { report::unit } else { unit };
             let lane = || number(modes.word - 2);
             agree(&subject, &experiment, [lane(), lane(), lane()].prop_map(|v| v.to_vec()), |case| {
                 unit(&modes, subject.image.formats.direction, vector(case, 0)).to_vec()

@@ -25,18 +25,18 @@ struct Subject {
     image: MemoryImage,
     features: Features,
     modes: Modes,
-    profile: Profile,
+    profile: KernelSet,
 }
 
 impl Subject {
     fn new(scene: Scene, view: View, modes: Modes, options: image::Options) -> Result<Subject, Report> {
         let image = image::build(&scene, &view, &image::Options { word: modes.word, ..options })?;
         let features = Features::new(&scene, &view, &image.formats, &Options::default());
-        Ok(Subject { scene, view, image, features, modes, profile: Profile::Vector })
+        Ok(Subject { scene, view, image, features, modes, profile: KernelSet::Vector })
     }
 
     /// The same with other kernels.
-    fn with(self, profile: Profile) -> Subject {
+    fn with(self, profile: KernelSet) -> Subject {
         let features = Features { skips: Skips::default().known_to(profile), ..self.features };
         Subject { features, profile, ..self }
     }

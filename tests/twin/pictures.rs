@@ -5,7 +5,7 @@ use emu::octets::Memory;
 use emu::trap::Fault;
 use isa::Isa;
 use isa::number::{Modes, Overflow, Quantization, Vector};
-use kernels::Profile;
+use kernels::KernelSet;
 use kernels::build::Crop;
 use kernels::twin;
 use scenes::generate;
@@ -80,7 +80,7 @@ struct Setting {
     background: f64,
     layout: Layout,
     shift: f64,
-    profile: Profile,
+    profile: KernelSet,
 }
 
 const PLAIN: Setting = Setting {
@@ -90,7 +90,7 @@ const PLAIN: Setting = Setting {
     background: 0.0,
     layout: Layout::Wide,
     shift: 0.137,
-    profile: Profile::Vector,
+    profile: KernelSet::Vector,
 };
 
 const fn word(word: u32) -> Modes {
@@ -176,7 +176,7 @@ fn pictures_that_are_rounded_down_and_wrap() {
 
 #[test]
 fn pictures_of_the_ray_unit() {
-    let ray = Setting { profile: Profile::Ray, ..PLAIN };
+    let ray = Setting { profile: KernelSet::Ray, ..PLAIN };
     assert_eq!(check_all(&ray), 0);
     assert_eq!(check_all(&Setting { is_perspective: true, background: 0.3, bounces: 2, ..ray }), 0);
     assert_eq!(check_all(&Setting { layout: Layout::Report, shift: 0.0, ..ray }), 0);
@@ -184,7 +184,7 @@ fn pictures_of_the_ray_unit() {
 
 #[test]
 fn pictures_of_the_ray_unit_in_fewer_bits() {
-    let ray = Setting { profile: Profile::Ray, ..PLAIN };
+    let ray = Setting { profile: KernelSet::Ray, ..PLAIN };
     assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, ..ray }), 0);
     assert_eq!(check_all(&Setting { modes: word(16), shift: 0.0, bounces: 2, ..ray }), 0);
     assert_eq!(check_all(&Setting { modes: word(8), background: 1.0, ..ray }), 0);
@@ -194,7 +194,7 @@ fn pictures_of_the_ray_unit_in_fewer_bits() {
 
 #[test]
 fn pictures_as_the_report_draws_them() {
-    let report = Setting { profile: Profile::Report, layout: Layout::Report, ..PLAIN };
+    let report = Setting { profile: KernelSet::Report, layout: Layout::Report, ..PLAIN };
     assert_eq!(check_all(&report), 0);
     assert_eq!(check_all(&Setting { is_perspective: true, background: 0.3, bounces: 2, ..report }), 0);
     assert_eq!(check_all(&Setting { layout: Layout::Wide, shift: 0.0, ..report }), 0);
@@ -202,7 +202,7 @@ fn pictures_as_the_report_draws_them() {
 
 #[test]
 fn pictures_as_the_report_draws_them_in_fewer_bits() {
-    let report = Setting { profile: Profile::Report, layout: Layout::Wide, ..PLAIN };
+    let report = Setting { profile: KernelSet::Report, layout: Layout::Wide, ..PLAIN };
     assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, background: 0.7, ..report }), 0);
     assert_eq!(check_all(&Setting { modes: word(16), layout: Layout::Report, bounces: 2, ..report }), 0);
     assert_eq!(check_all(&Setting { modes: word(8), ..report }), 0);

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use kernels::twin::planes::Packets;
 use kernels::twin::ray::{Packet, Ray, Search};
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use proptest::prelude::*;
 use scenes::image::Kind;
 
@@ -27,7 +27,7 @@ fn walks_of_the_ray_unit() {
     };
     for modes in MODES {
         for subject in trees(modes) {
-            let subject = subject.with(Profile::Ray);
+            let subject = subject.with(KernelSet::Ray);
             let twin = subject.twin();
             let address = |references: Range<u32>| {
                 let bounds = twin.stage.bounds;
@@ -62,7 +62,7 @@ fn searches_of_aimed_rays() {
     };
     for modes in MODES {
         for subject in trees(modes) {
-            let subject = subject.with(Profile::Ray);
+            let subject = subject.with(KernelSet::Ray);
             let twin = subject.twin();
             let vertices: Vec<[i32; 3]> = twin.stage.triangles.iter().flat_map(|triangle| triangle.vertices).collect();
             let towards = prop_oneof![prop::sample::select(vertices), point_of_tree(&subject)];

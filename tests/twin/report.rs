@@ -8,7 +8,7 @@ use kernels::twin::Twin;
 use kernels::twin::ray::{Ray, Search};
 use kernels::twin::report::{self, Exit, Refraction};
 use kernels::twin::surface::Surface;
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use proptest::prelude::*;
 
 use super::Subject;
@@ -20,7 +20,7 @@ use super::functions::{
 use super::operands::{direction, vector, words};
 
 fn literal(modes: Modes) -> Subject {
-    subject("slabs", Some(4), modes).with(Profile::Report)
+    subject("slabs", Some(4), modes).with(KernelSet::Report)
 }
 
 #[test]
@@ -140,7 +140,7 @@ fn descents() {
     };
     for modes in MODES {
         for subject in trees(modes) {
-            let subject = subject.with(Profile::Report);
+            let subject = subject.with(KernelSet::Report);
             let twin = subject.twin();
             let cases = (direction(modes.word - 2), point_of_tree(&subject)).prop_map(|(d, p)| words(&[d, p], &[]));
             agree(&subject, &experiment, cases, |case| {
@@ -156,7 +156,7 @@ fn descents() {
 fn walks_end() {
     for modes in MODES {
         for subject in trees(modes) {
-            let subject = subject.with(Profile::Report);
+            let subject = subject.with(KernelSet::Report);
             let twin = subject.twin();
             let cases = (point_of_tree(&subject), direction(modes.word - 2));
             let cases = cases.prop_map(|(o, d)| words(&[o, d], &[]));

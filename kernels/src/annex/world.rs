@@ -12,7 +12,7 @@ use scenes::model::{Light, Material, Scene, Triangle, View};
 
 use super::Row;
 use crate::build::{Crop, Features, Options};
-use crate::function::{Function, Profile};
+use crate::function::{Function, KernelSet};
 use crate::prelude;
 use crate::skip::Skips;
 
@@ -39,7 +39,7 @@ const EVERYTHING: Features =
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
     let core = Function::of_program(false, &EVERYTHING).filter(|&function| function != Function::Pixel);
-    core.chain([Function::FirstPacket]).filter_map(|function| function.file(Profile::Report, &[]))
+    core.chain([Function::FirstPacket]).filter_map(|function| function.file(KernelSet::Report, &[]))
 }
 
 /// A file of the kernels, path and text, by its path below their folder.
@@ -78,10 +78,10 @@ impl Row {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
-        let options = Options { profile: Profile::Report, ..Options::default() };
+        let options = Options { profile: KernelSet::Report, ..Options::default() };
         let features = Features::new(&scene, &view, &image.formats, &options);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
-        let mut text = prelude::text(&image, &features, &crop, Profile::Report.walk(&[]), false);
+        let mut text = prelude::text(&image, &features, &crop, KernelSet::Report.walk(&[]), false);
         if let Some(search) = &self.search {
             text += &format!(".equ {}, {number}\n", search.constant);
         }

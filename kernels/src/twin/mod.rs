@@ -31,7 +31,7 @@ use scenes::image::MemoryImage;
 
 use crate::build::{Crop, Features};
 use crate::constants::Constants;
-use crate::function::Profile;
+use crate::function::KernelSet;
 use ray::{Packet, Ray, Stuck};
 use ray_tree::Branch;
 use stage::Stage;
@@ -40,7 +40,7 @@ use stage::Stage;
 #[derive(Clone, Debug)]
 pub struct Twin<A> {
     /// Which kernels it is the twin of.
-    pub profile: Profile,
+    pub profile: KernelSet,
     /// Word and modes.
     pub arithmetic: A,
     /// Shifts and limits.
@@ -88,7 +88,7 @@ pub fn render(
     image: &MemoryImage,
     features: &Features,
     crop: &Crop,
-    profile: Profile,
+    profile: KernelSet,
     modes: Modes,
 ) -> Result<Vec<Vector>, Failure> {
     if modes == Modes::default() {
@@ -100,7 +100,7 @@ pub fn render(
 
 impl<A: Arithmetic> Twin<A> {
     /// The twin of the kernels for an image, whose word the arithmetic has to have; `None` when its octets hold no scene.
-    pub fn new(image: &MemoryImage, features: &Features, profile: Profile, arithmetic: A) -> Option<Twin<A>> {
+    pub fn new(image: &MemoryImage, features: &Features, profile: KernelSet, arithmetic: A) -> Option<Twin<A>> {
         Some(Twin {
             profile,
             arithmetic,
@@ -150,8 +150,8 @@ impl<A: Arithmetic> Twin<A> {
     pub fn camera_ray(&self, column: u32, row: u32) -> Ray {
         let (arithmetic, bits) = (&self.arithmetic, self.constants.formats.direction);
         let unit = |vector| match self.profile {
-            Profile::Report => report::unit(arithmetic, bits, vector),
-            Profile::Vector | Profile::Ray => unit::unit(arithmetic, bits, vector),
+            KernelSet::Report => report::unit(arithmetic, bits, vector),
+            KernelSet::Vector | KernelSet::Ray => unit::unit(arithmetic, bits, vector),
         };
         camera::camera(arithmetic, unit, &self.camera, column, row)
     }
@@ -159,8 +159,8 @@ impl<A: Arithmetic> Twin<A> {
     /// The first packet of a camera ray; `None` when it misses the scene's box.
     pub fn camera_packet(&self, ray: &Ray) -> Option<Packet> {
         match self.profile {
-            Profile::Report => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
-            Profile::Vector | Profile::Ray => first_packet::first_packet(&self.arithmetic, &self.stage, ray),
+            KernelSet::Report => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
+            KernelSet::Vector | KernelSet::Ray => first_packet::first_packet(&self.arithmetic, &self.stage, ray),
         }
     }
 }

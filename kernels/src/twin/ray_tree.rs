@@ -9,7 +9,7 @@ use super::reflect::{reflect, reflects};
 use super::refract::{Refraction, refract, refracts};
 use super::report;
 use super::surface::Surface;
-use crate::function::Profile;
+use crate::function::KernelSet;
 
 /// A node of the ray tree that is still to be visited.
 #[derive(Clone, Debug)]
@@ -80,7 +80,7 @@ impl<A: Arithmetic> Twin<A> {
     /// direction of the refracted one.
     fn transmitted(&self, surface: &Surface, weight: i32, inside: bool) -> (i32, Option<(i32, Vector)>) {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
-        if self.profile == Profile::Report {
+        if self.profile == KernelSet::Report {
             return report::transmitted(arithmetic, constants, surface, weight, inside);
         }
         match refracts(arithmetic, constants, surface, weight, inside) {
@@ -94,7 +94,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The direction of the reflected ray.
     fn reflected(&self, surface: &Surface) -> Vector {
-        let reflect = if self.profile == Profile::Report { report::reflect } else { reflect };
+        let reflect = if self.profile == KernelSet::Report { report::reflect } else { reflect };
         reflect(&self.arithmetic, &self.constants, surface)
     }
 }

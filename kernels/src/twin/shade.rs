@@ -10,7 +10,7 @@ use super::stage::Light;
 use super::surface::Surface;
 use super::unit::unit;
 use crate::constants::Constants;
-use crate::function::Profile;
+use crate::function::KernelSet;
 
 impl<A: Arithmetic> Twin<A> {
     /// colour (ambient + kd sum over visible lights of (N . L) light colour), in the colour format.
@@ -34,7 +34,7 @@ impl<A: Arithmetic> Twin<A> {
     fn visible(&self, surface: &Surface, light: &Light) -> Result<Option<i32>, Stuck> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let way = arithmetic.difference(light.position, surface.point);
-        let is_literal = self.profile == Profile::Report;
+        let is_literal = self.profile == KernelSet::Report;
         let lit = if is_literal { report::lit } else { lit };
         let Some((direction, cosine)) = lit(arithmetic, constants, surface.facing, way) else { return Ok(None) };
         let dot = if is_literal { report::dot } else { A::dot };

@@ -9,7 +9,7 @@ use super::report;
 use super::stage::Material;
 use super::unit::unit;
 use crate::constants::Constants;
-use crate::function::Profile;
+use crate::function::KernelSet;
 
 /// The place where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,11 +66,11 @@ impl<A: Arithmetic> Twin<A> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let bits = constants.formats.direction;
         let (facing, cosine, point, behind) = match self.profile {
-            Profile::Report => {
+            KernelSet::Report => {
                 let normal = report::normal(arithmetic, bits, &triangle.vertices);
                 report::sides(arithmetic, constants, ray, t, normal)
             }
-            Profile::Vector | Profile::Ray => {
+            KernelSet::Vector | KernelSet::Ray => {
                 let (facing, cosine) = normal(arithmetic, bits, ray.direction, &triangle.vertices);
                 let (point, behind) = sides(arithmetic, constants, ray, t, facing);
                 (facing, cosine, point, behind)

@@ -10,7 +10,7 @@ use super::first_packet::first_packet;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::report;
 use super::triangle::triangle;
-use crate::function::Profile;
+use crate::function::KernelSet;
 
 impl<A: Arithmetic> Twin<A> {
     /// Follows a ray from its first packet until the search is over.
@@ -33,25 +33,25 @@ impl<A: Arithmetic> Twin<A> {
     /// profile `ray` looks.
     pub fn own_packet(&self, ray: &Ray) -> Option<Packet> {
         match self.profile {
-            Profile::Report => Some(report::own_packet(&self.stage, ray)),
-            Profile::Vector => Some(own_packet(&self.arithmetic, &self.stage, ray)),
-            Profile::Ray => first_packet(&self.arithmetic, &self.stage, ray),
+            KernelSet::Report => Some(report::own_packet(&self.stage, ray)),
+            KernelSet::Vector => Some(own_packet(&self.arithmetic, &self.stage, ray)),
+            KernelSet::Ray => first_packet(&self.arithmetic, &self.stage, ray),
         }
     }
 
     /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
     pub fn triangle(&self, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
         match self.profile {
-            Profile::Report => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
-            Profile::Vector => triangle(&self.arithmetic, &self.constants, ray, vertices),
-            Profile::Ray => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
+            KernelSet::Report => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
+            KernelSet::Vector => triangle(&self.arithmetic, &self.constants, ray, vertices),
+            KernelSet::Ray => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
         }
     }
 
     /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index; the profile `report` tests all and
     /// keeps the first of equal hits.
     pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
-        let is_literal = self.profile == Profile::Report;
+        let is_literal = self.profile == KernelSet::Report;
         for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
             let vertices = &self.stage.triangles[index as usize].vertices;
             let t = self.triangle(ray, vertices);
@@ -71,7 +71,7 @@ impl<A: Arithmetic> Twin<A> {
         if search.takes_any && search.triangle.is_some() {
             return None;
         }
-        if self.profile == Profile::Report {
+        if self.profile == KernelSet::Report {
             return report::next_packet(&self.arithmetic, &self.constants, &self.stage, ray, packet, search);
         }
         let exit = exit_face(&self.arithmetic, ray, &packet.bounds);

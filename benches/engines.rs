@@ -15,7 +15,10 @@ const SIZE: (u32, u32) = (32, 24);
 
 fn engines(criterion: &mut Criterion) {
     for generator in SCENES {
-        let scene = generate::scene(generator.name, &generate::Options { size: SIZE, ..generate::Options::default() });
+        let scene = generate::scene(
+            generator.name,
+            &generate::GenerateOptions { size: SIZE, ..generate::GenerateOptions::default() },
+        );
         let scene = scene.expect("it is generated");
         for profile in KernelSet::ALL {
             let mut job = Job::new(scene.clone());

@@ -13,7 +13,7 @@ use scenes::generate;
 const RUNS: u32 = 40;
 
 fn main() {
-    let scene = generate::scene("cornell", &generate::Options { size: (96, 72), ..Default::default() });
+    let scene = generate::scene("cornell", &generate::GenerateOptions { size: (96, 72), ..Default::default() });
     let picture = Load::picture(&Job::new(scene.expect("it is generated"))).expect("it fits").0;
     let annex = Load::annex().expect("it assembles");
     println!(

@@ -9,11 +9,11 @@ use emu::profile::Profile;
 use kernels::build::{Build, Crop};
 use messages::Report;
 use rayon::prelude::*;
-use scenes::image::{MemoryImage, Kind};
+use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::PIXEL;
 use scenes::metrics::{self, PictureError};
 use scenes::model::Picture;
-use scenes::reference::{Method, Reference};
+use scenes::reference::{Reference, SearchMethod};
 
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
@@ -77,7 +77,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let start = Instant::now();
     let (load, image) = Load::picture(job)?;
     let reference = match comparison {
-        Comparison::Reference => Some(Reference::new(&job.scene, &job.view, Method::Hierarchy)?),
+        Comparison::Reference => Some(Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?),
         Comparison::None => None,
     };
     let crop = load.build.crop;
@@ -130,7 +130,7 @@ fn part(reference: &Reference, crop: &Crop) -> Picture {
 
 /// The colours in the frame, where the drawn part lies row by row from its start.
 fn colour_words(image: &MemoryImage, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
-    let start = image.region(Kind::Frame).start;
+    let start = image.region(MemoryKind::Frame).start;
     let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
     let octets = octets.expect("the image has a frame for the whole picture");
     let word = |octets: &[u8], at: usize| i32::from_le_bytes(std::array::from_fn(|k| octets[4 * at + k]));

@@ -19,8 +19,9 @@ pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Resul
         return read::load(path, mesh);
     }
     if SCENES.iter().any(|generator| generator.name == name) {
-        let defaults = generate::Options::default();
-        let scene = generate::scene(name, &generate::Options { size: size.unwrap_or(defaults.size), ..defaults })?;
+        let defaults = generate::GenerateOptions::default();
+        let scene =
+            generate::scene(name, &generate::GenerateOptions { size: size.unwrap_or(defaults.size), ..defaults })?;
         return Ok(Loaded { scene, warnings: Report::default(), files: Vec::new() });
     }
     let names = || SCENES.iter().map(|generator| generator.name);

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use emu::machine::{Config, Engine};
 use isa::Isa;
-use kernels::build::{Crop, Options as KernelOptions};
+use kernels::build::{Crop, KernelOptions};
 use messages::{Diagnostic, Report};
-use scenes::image::Options as MemoryOptions;
+use scenes::image::MemoryOptions;
 use scenes::model::{Camera, Scene, View};
 
 use crate::arguments::{

@@ -8,7 +8,7 @@ use kernels::annex::load;
 use kernels::build::Build;
 use messages::Report;
 use scenes::cadrage::Formats;
-use scenes::image::{self, MemoryImage, Kind};
+use scenes::image::{self, MemoryImage, MemoryKind};
 
 use crate::failure::Failure;
 use crate::job::Job;
@@ -37,9 +37,9 @@ pub struct Load {
 }
 
 /// What a kind of data is called where its octets are counted.
-fn traffic(kind: Kind) -> &'static str {
+fn traffic(kind: MemoryKind) -> &'static str {
     match kind {
-        Kind::Frame => "pixels",
+        MemoryKind::Frame => "pixels",
         kind => kind.name(),
     }
 }

@@ -225,7 +225,7 @@ fn names(list: &mut Vec<String>) {
     list.extend(Overflow::ALL.iter().map(|mode| format!("overflow {}", mode.name())));
     list.extend(kernels::Function::ALL.iter().map(|function| format!("kernel {}", function.name())));
     list.extend(scenes::cadrage::Overrides::NAMES.map(|name| format!("format {name}")));
-    let mut job = Job::new(scenes::generate::scene("cornell", &scenes::generate::Options::default()).unwrap());
+    let mut job = Job::new(scenes::generate::scene("cornell", &scenes::generate::GenerateOptions::default()).unwrap());
     job.view.size = (4, 4);
     let build = Load::picture(&job).map(|(load, _)| load.build);
     let build = build.unwrap_or_else(|failure| panic!("{failure:?}"));

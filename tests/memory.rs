@@ -16,7 +16,8 @@ const MOST: f64 = 3.0;
 
 #[test]
 fn a_picture_takes_at_most_three_times_its_memory_image() {
-    let options = generate::Options { triangles: Some(150_000), size: (16, 12), ..generate::Options::default() };
+    let options =
+        generate::GenerateOptions { triangles: Some(150_000), size: (16, 12), ..generate::GenerateOptions::default() };
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
     let mut job = Job::new(generate::scene("terrain", &options).expect("the terrain has any number of triangles"));

@@ -21,7 +21,7 @@ fn job(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> Job 
         _ => (None, None),
     };
     let (level, triangles) = smaller(name);
-    let scene = generate::scene(name, &generate::Options { level, triangles, size }).unwrap();
+    let scene = generate::scene(name, &generate::GenerateOptions { level, triangles, size }).unwrap();
     set_up(scene, profile, layout)
 }
 
@@ -65,7 +65,8 @@ fn no_skip_changes_a_picture() {
 #[test]
 fn each_skip_saves_something_somewhere() {
     let scenes = ["cornell", "slabs", "terrain"];
-    let all: Vec<Savings> = scenes.iter().map(|name| measured(name, KernelSet::Vector, Layout::Wide, (12, 9))).collect();
+    let all: Vec<Savings> =
+        scenes.iter().map(|name| measured(name, KernelSet::Vector, Layout::Wide, (12, 9))).collect();
     for skip in Skip::ALL {
         let saves = |savings: &Savings| {
             let saving = saving(savings, skip.name());
@@ -83,7 +84,9 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
     let document = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/skips.md")).unwrap();
     for scene in &SCENES[..5] {
         let size = (8, 6);
-        let scene = generate::scene(scene.name, &generate::Options { size, ..generate::Options::default() }).unwrap();
+        let scene =
+            generate::scene(scene.name, &generate::GenerateOptions { size, ..generate::GenerateOptions::default() })
+                .unwrap();
         if !scene.materials.iter().any(|material| material.reflection > 0.0 || material.transmission() > 0.0) {
             continue;
         }

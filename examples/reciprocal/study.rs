@@ -68,7 +68,7 @@ pub fn isa(bits: u32) -> Result<Isa, Report> {
 
 /// The Cornell box with the unit.
 pub fn job(bits: u32) -> Result<Job, Report> {
-    let scene = generate::scene("cornell", &generate::Options { size: (24, 18), ..Default::default() });
+    let scene = generate::scene("cornell", &generate::GenerateOptions { size: (24, 18), ..Default::default() });
     let mut job = Job::new(scene.expect("it is generated"));
     job.isa = isa(bits)?;
     job.view.shift = [0.137, 0.071];

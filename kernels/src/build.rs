@@ -14,7 +14,7 @@ use crate::skip::{Skip, Skips};
 
 /// What of a scene decides which code its programs contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Features {
+pub struct SceneFeatures {
     /// Whether some triangle's material reflects.
     pub has_mirror: bool,
     /// Whether some triangle's material is transparent.
@@ -30,13 +30,13 @@ pub struct Features {
     pub agreement: Option<i32>,
 }
 
-impl Features {
+impl SceneFeatures {
     /// The features of a scene.
-    pub fn new(scene: &Scene, view: &View, formats: &Formats, options: &Options) -> Features {
+    pub fn new(scene: &Scene, view: &View, formats: &Formats, options: &KernelOptions) -> SceneFeatures {
         let raw = |value: f64, bits: u32| (value * f64::from(bits).exp2()).floor() as i32;
         let any =
             |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
-        Features {
+        SceneFeatures {
             has_mirror: any(&|m| scene.materials[m].reflection > 0.0),
             is_transparent: any(&|m| scene.materials[m].transmission() > 0.0),
             bounces: view.bounces,
@@ -77,7 +77,7 @@ pub struct Crop {
 
 /// What a user may choose of the kernels.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct KernelOptions {
     /// Which file serves which function.
     pub profile: KernelSet,
     /// Files of the user's own that serve a function instead.
@@ -93,9 +93,9 @@ pub struct Options {
     pub interpolate: Option<f64>,
 }
 
-impl Default for Options {
-    fn default() -> Options {
-        Options {
+impl Default for KernelOptions {
+    fn default() -> KernelOptions {
+        KernelOptions {
             profile: KernelSet::default(),
             replaced: Vec::new(),
             crop: None,
@@ -123,8 +123,14 @@ pub struct Build {
 ///
 /// # Errors
 /// What the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
-pub fn build(scene: &Scene, view: &View, image: &MemoryImage, isa: &Isa, options: &Options) -> Result<Build, Report> {
-    let features = Features::new(scene, view, &image.formats, options);
+pub fn build(
+    scene: &Scene,
+    view: &View,
+    image: &MemoryImage,
+    isa: &Isa,
+    options: &KernelOptions,
+) -> Result<Build, Report> {
+    let features = SceneFeatures::new(scene, view, &image.formats, options);
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
     let mut warnings = Report::default();
     let mut program = |is_main: bool| -> Result<Program, Report> {
@@ -143,10 +149,10 @@ fn keeps_to_team(source: &Source, profile: KernelSet) -> bool {
 
 fn assemble(
     image: &MemoryImage,
-    features: &Features,
+    features: &SceneFeatures,
     crop: &Crop,
     isa: &Isa,
-    options: &Options,
+    options: &KernelOptions,
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
     let strangers = options.replaced.iter().filter(|(_, source)| !keeps_to_team(source, options.profile));

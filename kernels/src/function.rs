@@ -8,7 +8,7 @@ use scenes::layout::Layout;
 
 use crate::prelude::Walk;
 
-use crate::build::Features;
+use crate::build::SceneFeatures;
 use crate::skip::Skip;
 
 /// A set of kernels that differ only by which file serves a function.
@@ -106,7 +106,7 @@ enum Need {
 }
 
 /// Path (below the folder of the kernels) and text of a file.
-pub type File = (&'static str, &'static str);
+pub type KernelFile = (&'static str, &'static str);
 
 macro_rules! file {
     ($file:literal) => {
@@ -120,7 +120,7 @@ macro_rules! file {
 struct Team {
     profile: KernelSet,
     /// The functions that it serves, with their files; `None` where another one's file does their work.
-    members: &'static [(Function, Option<File>)],
+    members: &'static [(Function, Option<KernelFile>)],
 }
 
 /// The teams of all profiles.
@@ -176,7 +176,7 @@ macro_rules! functions {
             }
 
             /// The file that serves the function by itself, with the registers that `registers.inc` gives it.
-            const fn own_file(self, profile: KernelSet) -> File {
+            const fn own_file(self, profile: KernelSet) -> KernelFile {
                 match (self, profile) {
                     $($((Function::$variant, KernelSet::$profile) => file!($file),)*)*
                     _ => self.own_file(KernelSet::Vector),
@@ -236,7 +236,7 @@ functions! {
 impl Function {
     /// The file that serves the function in a profile, given which functions the user has replaced; `None` when another function's file does
     /// its work.
-    pub fn file(self, profile: KernelSet, replaced: &[Function]) -> Option<File> {
+    pub fn file(self, profile: KernelSet, replaced: &[Function]) -> Option<KernelFile> {
         match Team::of(self, profile, replaced) {
             Some(team) => team.members.iter().find(|&&(member, _)| member == self).and_then(|&(_, file)| file),
             None => Some(self.own_file(profile)),
@@ -250,7 +250,7 @@ impl Function {
     }
 
     /// The functions of the program of a core, or of the main processor, for what a scene needs.
-    pub fn of_program(is_main: bool, features: &Features) -> impl Iterator<Item = Function> {
+    pub fn of_program(is_main: bool, features: &SceneFeatures) -> impl Iterator<Item = Function> {
         let (has_tree, has_glass) = (features.has_tree(), features.has_glass());
         let interpolates = features.agreement.is_some();
         Function::ALL.iter().copied().filter(move |function| {

@@ -10,6 +10,6 @@ pub mod prelude;
 pub mod skip;
 pub mod twin;
 
-pub use build::{Build, Options, build};
+pub use build::{Build, KernelOptions, build};
 pub use function::{Function, KernelSet};
 pub use skip::{Skip, Skips};

@@ -7,10 +7,10 @@ use std::sync::Arc;
 use isa::Isa;
 use messages::{Report, Source};
 use scenes::camera::RawCamera;
-use scenes::image::{MemoryImage, Kind};
+use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::{Layout, Structure};
 
-use crate::build::{Crop, Features};
+use crate::build::{Crop, SceneFeatures};
 use crate::constants::Constants;
 use crate::skip::Skip;
 
@@ -47,7 +47,7 @@ pub enum Walk {
 }
 
 /// The prelude of a core's program, or of the main processor's.
-pub fn text(image: &MemoryImage, features: &Features, crop: &Crop, walk: Walk, is_main: bool) -> String {
+pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Walk, is_main: bool) -> String {
     let mut text = String::from("; Written by the loader for one scene and one machine.\n");
     for (name, bits) in image.formats.entries() {
         let _ = writeln!(text, ".format {name}, {bits}");
@@ -82,11 +82,11 @@ pub fn text(image: &MemoryImage, features: &Features, crop: &Crop, walk: Walk, i
 }
 
 /// Whether the materials, and the lights, lie in the buffer from the start.
-fn is_local(image: &MemoryImage, kind: Kind) -> bool {
+fn is_local(image: &MemoryImage, kind: MemoryKind) -> bool {
     image.region(kind).len() as u32 <= TABLES / 2
 }
 
-fn constants(image: &MemoryImage, features: &Features, crop: &Crop) -> Vec<(&'static str, i64)> {
+fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<(&'static str, i64)> {
     let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
         Constants::new(image);
     let mut constants = vec![
@@ -104,11 +104,11 @@ fn constants(image: &MemoryImage, features: &Features, crop: &Crop) -> Vec<(&'st
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.depth.into()),
         ("ROOT", image.root.into()),
-        ("FRAME", image.region(Kind::Frame).start.into()),
-        ("MATERIALS_BUS", image.region(Kind::Materials).start.into()),
-        ("MATERIALS_LOCAL", is_local(image, Kind::Materials).into()),
-        ("LIGHTS_BUS", image.region(Kind::Lights).start.into()),
-        ("LIGHTS_LOCAL", is_local(image, Kind::Lights).into()),
+        ("FRAME", image.region(MemoryKind::Frame).start.into()),
+        ("MATERIALS_BUS", image.region(MemoryKind::Materials).start.into()),
+        ("MATERIALS_LOCAL", is_local(image, MemoryKind::Materials).into()),
+        ("LIGHTS_BUS", image.region(MemoryKind::Lights).start.into()),
+        ("LIGHTS_LOCAL", is_local(image, MemoryKind::Lights).into()),
         ("LIGHTS", image.counts.lights.into()),
         ("REFERENCES_AT_ONCE", REFERENCES_AT_ONCE.into()),
         ("AMBIENT", image.ambient.into()),
@@ -147,7 +147,7 @@ NODE: .space 2 * sizeof(node)
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
-fn core(text: &mut String, image: &MemoryImage, features: &Features, walk: Walk) {
+fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: Walk) {
     text.push_str(
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
@@ -163,15 +163,15 @@ fn core(text: &mut String, image: &MemoryImage, features: &Features, walk: Walk)
         text.push_str("NODES: .space (BOUNCES + 1) * sizeof(raynode)\n");
     }
     let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));
-    if is_local(image, Kind::Materials) {
+    if is_local(image, MemoryKind::Materials) {
         text.push_str("MATERIALS:\n");
-        table(text, image, Kind::Materials);
+        table(text, image, MemoryKind::Materials);
     } else {
         text.push_str("MATERIAL_SLOT: .space sizeof(material)\n");
     }
-    if is_local(image, Kind::Lights) {
+    if is_local(image, MemoryKind::Lights) {
         text.push_str("LIGHTS_AT:\n");
-        table(text, image, Kind::Lights);
+        table(text, image, MemoryKind::Lights);
     } else {
         text.push_str("LIGHT_SLOT: .space sizeof(light)\n.equ LIGHTS_AT, 0\n");
     }
@@ -208,7 +208,7 @@ fn words(values: &[i32]) -> String {
 }
 
 /// The words of a region of the image, as data.
-fn table(text: &mut String, image: &MemoryImage, kind: Kind) {
+fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind) {
     let range = image.region(kind);
     let octets = &image.bytes[range.start as usize..range.end as usize];
     for row in octets.chunks(16) {

@@ -2,19 +2,19 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use scenes::generate::{self, Options};
+use scenes::generate::{self, GenerateOptions};
 use scenes::model::{Scene, Vec3};
 
 fn default(name: &str) -> Scene {
-    generate::scene(name, &Options::default()).unwrap()
+    generate::scene(name, &GenerateOptions::default()).unwrap()
 }
 
 fn with_triangles(count: u32) -> Scene {
-    generate::scene("terrain", &Options { triangles: Some(count), ..Options::default() }).unwrap()
+    generate::scene("terrain", &GenerateOptions { triangles: Some(count), ..GenerateOptions::default() }).unwrap()
 }
 
 fn with_level(name: &str, level: u32) -> Scene {
-    generate::scene(name, &Options { level: Some(level), ..Options::default() }).unwrap()
+    generate::scene(name, &GenerateOptions { level: Some(level), ..GenerateOptions::default() }).unwrap()
 }
 
 #[test]
@@ -221,12 +221,12 @@ fn no_two_surfaces_cross() {
 
 #[test]
 fn wrong_options_are_explained() {
-    let size = |width, height| Options { size: (width, height), ..Options::default() };
-    let level = |level| Options { level: Some(level), ..Options::default() };
-    let triangles = |triangles| Options { triangles: Some(triangles), ..Options::default() };
+    let size = |width, height| GenerateOptions { size: (width, height), ..GenerateOptions::default() };
+    let level = |level| GenerateOptions { level: Some(level), ..GenerateOptions::default() };
+    let triangles = |triangles| GenerateOptions { triangles: Some(triangles), ..GenerateOptions::default() };
     let cases = [
-        ("cornel", Options::default()),
-        ("teapot", Options::default()),
+        ("cornel", GenerateOptions::default()),
+        ("teapot", GenerateOptions::default()),
         ("cornell", size(0, 240)),
         ("cornell", level(0)),
         ("sphereflake", level(99)),

@@ -9,17 +9,17 @@ use scenes::read::{obj, ply, stl};
 
 /// What is written: whole and half coordinates, so that all formats hold them.
 #[derive(Clone, Debug)]
-struct Model {
+struct MeshModel {
     vertices: Vec<[f64; 3]>,
     faces: Vec<Vec<u32>>,
 }
 
 /// Faces of `corners` corners.
-fn models(corners: std::ops::Range<usize>) -> impl Strategy<Value = Model> {
+fn models(corners: std::ops::Range<usize>) -> impl Strategy<Value = MeshModel> {
     let coordinate = (-1000..1000_i32).prop_map(|x| f64::from(x) / 2.0);
     prop::collection::vec(prop::array::uniform3(coordinate), 1..10).prop_flat_map(move |vertices| {
         let face = prop::collection::vec(0..vertices.len() as u32, corners.clone());
-        (Just(vertices), prop::collection::vec(face, 0..8)).prop_map(|(vertices, faces)| Model { vertices, faces })
+        (Just(vertices), prop::collection::vec(face, 0..8)).prop_map(|(vertices, faces)| MeshModel { vertices, faces })
     })
 }
 
@@ -71,7 +71,7 @@ fn obj_styles() -> impl Strategy<Value = ObjStyle> {
     )
 }
 
-fn obj_text(style: &ObjStyle, model: &Model) -> String {
+fn obj_text(style: &ObjStyle, model: &MeshModel) -> String {
     let mut text = String::new();
     let mut gaps = style.gaps.iter().cycle();
     let mut line = |text: &mut String, words: &[String]| {
@@ -121,7 +121,7 @@ fn places(mesh: &Mesh) -> Vec<[[f64; 3]; 3]> {
     mesh.triangles.iter().map(|corners| corners.map(|n| mesh.vertices[n as usize])).collect()
 }
 
-fn expected(model: &Model) -> Vec<[[f64; 3]; 3]> {
+fn expected(model: &MeshModel) -> Vec<[[f64; 3]; 3]> {
     model.faces.iter().map(|face| [0, 1, 2].map(|k| model.vertices[face[k] as usize])).collect()
 }
 
@@ -200,7 +200,7 @@ proptest! {
     }
 }
 
-fn stl_text(model: &Model, gaps: &[&str], line_end: &str, is_capital: bool, splits: &[bool]) -> Vec<u8> {
+fn stl_text(model: &MeshModel, gaps: &[&str], line_end: &str, is_capital: bool, splits: &[bool]) -> Vec<u8> {
     let mut text = String::new();
     let mut gaps = gaps.iter().cycle();
     let mut line = |text: &mut String, words: &[&str]| {
@@ -229,7 +229,7 @@ fn stl_text(model: &Model, gaps: &[&str], line_end: &str, is_capital: bool, spli
     text.into_bytes()
 }
 
-fn stl_binary(model: &Model) -> Vec<u8> {
+fn stl_binary(model: &MeshModel) -> Vec<u8> {
     let mut out = b"solid, but binary".to_vec();
     out.resize(80, b' ');
     out.extend((model.faces.len() as u32).to_le_bytes());
@@ -305,7 +305,7 @@ impl Write for TextEnd<'_> {
     }
 }
 
-fn ply_bytes(style: &PlyStyle, model: &Model) -> Vec<u8> {
+fn ply_bytes(style: &PlyStyle, model: &MeshModel) -> Vec<u8> {
     let mut lines = vec!["ply".to_string(), format!("format {} 1.0", style.encoding), "comment any".to_string()];
     lines.push(format!("element vertex {}", model.vertices.len()));
     lines.extend(["x", "y", "z"].map(|axis| format!("property {} {axis}", style.coordinate)));

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use scenes::generate::{self, Options};
+use scenes::generate::{self, GenerateOptions};
 use scenes::model::{Light, Material, Scene, Triangle};
 use scenes::read::Loaded;
 use scenes::write::MeshFormat;
@@ -40,7 +40,7 @@ fn bits(scene: &Scene) -> Vec<u64> {
 fn every_generated_scene_comes_back() {
     let folder = tempfile::tempdir().unwrap();
     for generator in generate::SCENES {
-        let scene = generate::scene(generator.name, &Options::default()).unwrap();
+        let scene = generate::scene(generator.name, &GenerateOptions::default()).unwrap();
         let back = there_and_back(folder.path(), &scene);
         // Compared in parts: a difference in one of 30,000 vertices should not print them all.
         assert_eq!((&back.name, back.size), (&scene.name, scene.size));
@@ -96,7 +96,7 @@ proptest! {
 
 #[test]
 fn what_could_not_be_read_is_not_written() {
-    let scene = generate::scene("triangle", &Options::default()).unwrap();
+    let scene = generate::scene("triangle", &GenerateOptions::default()).unwrap();
     let mut infinite = scene.clone();
     infinite.vertices[1][2] = f64::INFINITY;
     let error = write::off(&infinite, &mut Vec::new()).unwrap_err();
@@ -143,7 +143,8 @@ fn effect(material: &Material) -> [f64; 6] {
 fn every_generated_scene_comes_back_in_every_format() {
     let folder = tempfile::tempdir().unwrap();
     for generator in generate::SCENES {
-        let options = Options { triangles: generator.triangles.as_ref().map(|_| 500), ..Options::default() };
+        let options =
+            GenerateOptions { triangles: generator.triangles.as_ref().map(|_| 500), ..GenerateOptions::default() };
         let scene = generate::scene(generator.name, &options).unwrap();
         for format in MeshFormat::ALL {
             let (alone, described) = mesh_there_and_back(folder.path(), &scene, format);
@@ -212,7 +213,7 @@ proptest! {
 fn what_a_format_does_not_hold_is_said() {
     let mut text = String::new();
     for name in ["cornell", "triangle", "empty"] {
-        let scene = generate::scene(name, &Options::default()).unwrap();
+        let scene = generate::scene(name, &GenerateOptions::default()).unwrap();
         for format in MeshFormat::ALL {
             writeln!(text, "{name}\n{}", write::losses(&scene, format)).unwrap();
             writeln!(text, "beside a .dsc: {}\n", write::losses_beside_description(&scene, format)).unwrap();
@@ -248,7 +249,7 @@ fn least_time(work: impl Fn()) -> Duration {
 /// Measured: 0.07 s of processor time; a busy machine may take several times that.
 #[test]
 fn a_mesh_of_88_000_triangles_is_read_within_a_second() {
-    let options = Options { triangles: Some(88_000), ..Options::default() };
+    let options = GenerateOptions { triangles: Some(88_000), ..GenerateOptions::default() };
     let scene = generate::scene("terrain", &options).unwrap();
     let mut mesh = Vec::new();
     write::off(&scene, &mut mesh).unwrap();
@@ -260,7 +261,7 @@ fn a_mesh_of_88_000_triangles_is_read_within_a_second() {
 /// for that one only shows whether the time is out of proportion.
 #[test]
 fn meshes_of_88_000_triangles_are_read_in_time_in_every_format() {
-    let options = Options { triangles: Some(88_000), ..Options::default() };
+    let options = GenerateOptions { triangles: Some(88_000), ..GenerateOptions::default() };
     let scene = generate::scene("terrain", &options).unwrap();
     let mut files: Vec<(String, Vec<u8>)> =
         MeshFormat::ALL.iter().map(|&format| write::mesh(&scene, format, "mesh").unwrap().pop().unwrap()).collect();

@@ -12,7 +12,7 @@ use scenes::read::{dsc, off};
 
 /// How the colours of all faces of a file are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Colours {
+enum ColourStyle {
     None,
     Index,
     Octets,
@@ -29,7 +29,7 @@ struct Style {
     is_homogeneous: bool,
     dimension: Option<usize>,
     is_binary: bool,
-    colours: Colours,
+    colours: ColourStyle,
     has_alpha: bool,
     line_end: &'static str,
     /// Put between words, where a line may end.
@@ -39,7 +39,7 @@ struct Style {
 
 /// What is written.
 #[derive(Clone, Debug)]
-struct Model {
+struct SceneModel {
     vertices: Vec<[f64; 3]>,
     faces: Vec<Vec<u32>>,
     /// Numbers from 0 to 255 for each face.
@@ -49,7 +49,8 @@ struct Model {
 fn styles() -> impl Strategy<Value = Style> {
     let gap = prop::sample::select(vec![" ", "  ", "\t", " \n", "\n\n", " # a comment\n", "\n#7 8 9\n \t"]);
     let flags = (any::<[bool; 8]>(), prop::option::of(1..6_usize));
-    let colours = prop::sample::select(vec![Colours::None, Colours::Index, Colours::Octets, Colours::Decimals]);
+    let colours =
+        prop::sample::select(vec![ColourStyle::None, ColourStyle::Index, ColourStyle::Octets, ColourStyle::Decimals]);
     let line_end = prop::sample::select(vec!["\n", "\r\n", "\r", " \n", "# comment\n", "\n\n"]);
     (flags, colours, line_end, prop::collection::vec(gap, 1..20)).prop_map(
         |(([a, b, c, d, e, f, g, h], dimension), colours, line_end, gaps)| {
@@ -72,14 +73,14 @@ fn styles() -> impl Strategy<Value = Style> {
     )
 }
 
-fn models() -> impl Strategy<Value = Model> {
+fn models() -> impl Strategy<Value = SceneModel> {
     let vertices = prop::collection::vec([-1000.0..1000.0_f64, -1e-3..1e-3, -1e6..1e6], 1..12);
     vertices.prop_flat_map(|vertices| {
         let corner = 0..vertices.len() as u32;
         let face = (prop::collection::vec(corner, 0..7), any::<[u8; 4]>());
         (Just(vertices), prop::collection::vec(face, 0..10)).prop_map(|(vertices, faces)| {
             let (faces, colours) = faces.into_iter().unzip();
-            Model { vertices, faces, colours }
+            SceneModel { vertices, faces, colours }
         })
     })
 }
@@ -111,7 +112,7 @@ fn keyword(style: &Style) -> String {
     )
 }
 
-fn text(style: &Style, model: &Model) -> Vec<u8> {
+fn text(style: &Style, model: &SceneModel) -> Vec<u8> {
     let mut text = String::new();
     let mut gaps = style.gaps.iter().cycle();
     let mut gap = |text: &mut String| text.push_str(gaps.next().unwrap());
@@ -146,17 +147,19 @@ fn text(style: &Style, model: &Model) -> Vec<u8> {
         }
         let components = if style.has_alpha { &colour[..] } else { &colour[..3] };
         match style.colours {
-            Colours::None => {}
-            Colours::Index => write!(text, " {}", colour[0]).unwrap(),
-            Colours::Octets => components.iter().for_each(|c| write!(text, " {c}").unwrap()),
-            Colours::Decimals => components.iter().for_each(|c| write!(text, " {:?}", f64::from(*c) / 256.0).unwrap()),
+            ColourStyle::None => {}
+            ColourStyle::Index => write!(text, " {}", colour[0]).unwrap(),
+            ColourStyle::Octets => components.iter().for_each(|c| write!(text, " {c}").unwrap()),
+            ColourStyle::Decimals => {
+                components.iter().for_each(|c| write!(text, " {:?}", f64::from(*c) / 256.0).unwrap())
+            }
         }
         text.push_str(style.line_end);
     }
     text.into_bytes()
 }
 
-fn binary(style: &Style, model: &Model) -> Vec<u8> {
+fn binary(style: &Style, model: &SceneModel) -> Vec<u8> {
     let mut out = format!("{} BINARY\n", keyword(style)).into_bytes();
     let whole = |out: &mut Vec<u8>, number: usize| out.extend((number as u32).to_be_bytes());
     let real = |out: &mut Vec<u8>, number: f64| out.extend((number as f32).to_be_bytes());
@@ -171,12 +174,12 @@ fn binary(style: &Style, model: &Model) -> Vec<u8> {
         whole(&mut out, face.len());
         face.iter().for_each(|&corner| whole(&mut out, corner as usize));
         let count = match style.colours {
-            Colours::None => 0,
-            Colours::Index => 1,
+            ColourStyle::None => 0,
+            ColourStyle::Index => 1,
             _ => 3 + usize::from(style.has_alpha),
         };
         whole(&mut out, count);
-        let number = |c: u8| if style.colours == Colours::Index { f64::from(c) } else { f64::from(c) / 256.0 };
+        let number = |c: u8| if style.colours == ColourStyle::Index { f64::from(c) } else { f64::from(c) / 256.0 };
         colour[..count].iter().for_each(|&c| real(&mut out, number(c)));
     }
     out
@@ -225,12 +228,12 @@ proptest! {
             for (_, surface) in own {
                 let colour = surface.map(|&surface| mesh.materials[surface as usize].colour);
                 match style.colours {
-                    Colours::None => prop_assert_eq!(colour, None),
-                    Colours::Index => prop_assert!(colour.is_some()),
-                    Colours::Octets if style.is_binary => prop_assert_eq!(colour, Some(rgb.map(|c| c / 256.0))),
-                    Colours::Octets if is_octet => prop_assert_eq!(colour, Some(rgb.map(|c| c / 255.0))),
-                    Colours::Octets => prop_assert_eq!(colour, Some(rgb)),
-                    Colours::Decimals => prop_assert_eq!(colour, Some(rgb.map(|c| c / 256.0))),
+                    ColourStyle::None => prop_assert_eq!(colour, None),
+                    ColourStyle::Index => prop_assert!(colour.is_some()),
+                    ColourStyle::Octets if style.is_binary => prop_assert_eq!(colour, Some(rgb.map(|c| c / 256.0))),
+                    ColourStyle::Octets if is_octet => prop_assert_eq!(colour, Some(rgb.map(|c| c / 255.0))),
+                    ColourStyle::Octets => prop_assert_eq!(colour, Some(rgb)),
+                    ColourStyle::Decimals => prop_assert_eq!(colour, Some(rgb.map(|c| c / 256.0))),
                 }
             }
         }

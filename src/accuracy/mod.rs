@@ -14,7 +14,7 @@ use kernels::KernelSet;
 use scenes::layout::Layout;
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Picture, Scene, View};
-use scenes::reference::{Method, Reference};
+use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -195,7 +195,7 @@ pub fn measure(
     let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
     drawing.image.bytes = drawing.frame.memory.octets().to_vec();
     let stored = drawing.image.stored_scene(scene).expect("an image that was built can be read");
-    let stored = Reference::framed(&stored, scene.bounds(), view, Method::Hierarchy)?.picture().picture;
+    let stored = Reference::framed(&stored, scene.bounds(), view, SearchMethod::Hierarchy)?.picture().picture;
     let rays = RayErrors::new(&drawing.image, &job, view.size);
     let result = Render::new(&job, &drawing);
     let pixels = f64::from(result.width) * f64::from(result.height);

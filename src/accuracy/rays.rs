@@ -4,7 +4,7 @@
 use isa::number::ray::{self as exact, TriangleEnd};
 use isa::number::{Modes, Vector};
 use kernels::KernelSet;
-use kernels::build::Features;
+use kernels::build::SceneFeatures;
 use kernels::twin::planes::Packets;
 use kernels::twin::ray::{Ray, Search};
 use kernels::twin::surface::normal;
@@ -50,7 +50,7 @@ impl RayErrors {
     /// Measures the camera rays of a job's picture on the image that was built for it.
     pub fn new(image: &MemoryImage, job: &Job, (width, height): (u32, u32)) -> RayErrors {
         let (profile, modes) = (job.kernels.profile, job.machine.arithmetic.modes());
-        let features = Features::new(&job.scene, &job.view, &image.formats, &kernels::Options::default());
+        let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &kernels::KernelOptions::default());
         let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");
         let ended: Vec<Ended> = (0..width * height)
             .into_par_iter()

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use messages::Diagnostic;
 
 use super::ExtensionArguments;

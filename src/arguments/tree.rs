@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use scenes::kdtree::{DEEPEST, Depth, Method};
+use scenes::kdtree::{BuildMethod, DEEPEST, Depth};
 
 /// Options of the kd tree.
 #[derive(Args, Clone, Copy, Debug)]
@@ -11,8 +11,8 @@ pub struct TreeArguments {
     #[arg(long, value_name = "N", value_parser = depth, default_value = "16")]
     pub kd_depth: Depth,
     /// Which triangles a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node.
-    #[arg(long, value_name = "METHOD", value_parser = method(), default_value = Method::default().name())]
-    pub kd_build: Method,
+    #[arg(long, value_name = "METHOD", value_parser = method(), default_value = BuildMethod::default().name())]
+    pub kd_build: BuildMethod,
 }
 
 fn depth(text: &str) -> Result<Depth, String> {
@@ -23,7 +23,7 @@ fn depth(text: &str) -> Result<Depth, String> {
     }
 }
 
-fn method() -> impl TypedValueParser<Value = Method> {
-    let names = PossibleValuesParser::new(Method::ALL.map(Method::name));
-    names.map(|name| *Method::ALL.iter().find(|m| m.name() == name).expect("the parser lets only names pass"))
+fn method() -> impl TypedValueParser<Value = BuildMethod> {
+    let names = PossibleValuesParser::new(BuildMethod::ALL.map(BuildMethod::name));
+    names.map(|name| *BuildMethod::ALL.iter().find(|m| m.name() == name).expect("the parser lets only names pass"))
 }

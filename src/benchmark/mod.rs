@@ -8,11 +8,11 @@ use emu::code::Code;
 use emu::machine::{self, Engine, Options, Setup};
 use isa::number::Modes;
 use kernels::Function;
-use kernels::build::Features;
+use kernels::build::SceneFeatures;
 use kernels::twin::Twin;
 use messages::Diagnostic;
 use rayon::prelude::*;
-use scenes::reference::{Method, Reference};
+use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -87,9 +87,9 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let (load, mut image) = Load::picture(job)?;
     image.bytes = load.memory.octets().into_owned();
     let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
-    let features = Features::new(&job.scene, &job.view, &image.formats, &job.kernels);
+    let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &job.kernels);
     let modes = job.machine.arithmetic.modes();
-    let reference = Reference::new(&job.scene, &job.view, Method::Hierarchy)?;
+    let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
     let crop = load.build.crop;
     let count = |setup: &Setup| -> Result<machine::Count, Failure> {
         let count = machine::count(setup, &load.memory)?;
@@ -151,7 +151,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
 
 fn twin(
     image: &scenes::image::MemoryImage,
-    features: &Features,
+    features: &SceneFeatures,
     crop: &kernels::build::Crop,
     job: &Job,
     modes: Modes,

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use isa::number::Quantization;
-use kernels::Profile;
+use kernels::KernelSet;
 use messages::Diagnostic;
 use scenes::layout::Layout;
 use scenes::model::View;

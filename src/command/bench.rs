@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use emu::fast::Features;
-use kernels::Profile;
+use kernels::KernelSet;
 use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -41,7 +41,10 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     })?;
     let measured = annex::measure()?;
     terminal.print(&annex::text::demo(&measured))?;
-    let mut job = Job::new(generate::scene("cornell", &generate::Options { size, ..generate::Options::default() })?);
+    let mut job = Job::new(generate::scene(
+        "cornell",
+        &generate::GenerateOptions { size, ..generate::GenerateOptions::default() },
+    )?);
     job.view.shift = SHIFT;
     let drawing = draw(&job, Comparison::Reference, terminal)?;
     let result = Render::new(&job, &drawing);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use isa::number::{Modes, Vector};
 use kernels::KernelSet;
-use kernels::build::{Crop, Features};
+use kernels::build::{Crop, SceneFeatures};
 use kernels::twin;
 use scenes::generate::{self, SCENES};
 use scenes::image::{self, MemoryImage};
@@ -29,7 +29,7 @@ fn coarse(number: u64, size: (u32, u32)) -> Scene {
     let generator = &SCENES[number as usize];
     let level = generator.level.as_ref().map(|level| (*level.range.start()).max(1));
     let triangles = generator.triangles.as_ref().map(|_| 300);
-    generate::scene(generator.name, &generate::Options { level, triangles, size }).expect("a scene of the list")
+    generate::scene(generator.name, &generate::GenerateOptions { level, triangles, size }).expect("a scene of the list")
 }
 
 /// A view whose rays pass between the vertices.
@@ -38,10 +38,10 @@ fn shifted(scene: &Scene) -> View {
 }
 
 /// The pixels that the kernels of the profile `ray` draw, by their native twin.
-fn drawn(scene: &Scene, view: &View) -> Result<(Image, Vec<Vector>), String> {
+fn drawn(scene: &Scene, view: &View) -> Result<(MemoryImage, Vec<Vector>), String> {
     let refused = |report: messages::Report| report.render(false);
-    let image = image::build(scene, view, &image::Options::default()).map_err(refused)?;
-    let features = Features::new(scene, view, &image.formats, &kernels::Options::default());
+    let image = image::build(scene, view, &image::MemoryOptions::default()).map_err(refused)?;
+    let features = SceneFeatures::new(scene, view, &image.formats, &kernels::KernelOptions::default());
     let (width, height) = view.size;
     let crop = Crop { column: 0, row: 0, width, height };
     let pixels = twin::render(&image, &features, &crop, KernelSet::Ray, Modes::default()).map_err(|f| f.to_string())?;
@@ -78,7 +78,8 @@ pub fn translations(seed: u64, trials: Range<u64>) -> Tally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (16, 12));
         let view = shifted(&scene);
-        let grid = image::build(&scene, &view, &image::Options::default()).map_err(|report| report.render(false))?.grid;
+        let grid =
+            image::build(&scene, &view, &image::MemoryOptions::default()).map_err(|report| report.render(false))?.grid;
         // On the grid first, so that moving does not round.
         let scene = moved(&scene, |point| grid.scene(grid.raw(point)));
         let step = f64::from(-grid.position).exp2();
@@ -135,10 +136,10 @@ pub fn colours(_: u64, trials: Range<u64>) -> Tally {
         let light = scene.lights[0];
         scene.lights = vec![light; 2 + trial as usize % 6];
         let view = View { ambient: 0.4, ..shifted(&scene) };
-        let mut options = image::Options::default();
+        let mut options = image::MemoryOptions::default();
         options.formats.colour = Some(30);
         let image = image::build(&scene, &view, &options).map_err(|report| report.render(false))?;
-        let features = Features::new(&scene, &view, &image.formats, &kernels::Options::default());
+        let features = SceneFeatures::new(&scene, &view, &image.formats, &kernels::KernelOptions::default());
         let crop = Crop { column: 0, row: 0, width: 40, height: 30 };
         let pixels = twin::render(&image, &features, &crop, KernelSet::Ray, Modes::default());
         let pixels = picture(&image, &pixels.map_err(|failure| failure.to_string())?).pixels;

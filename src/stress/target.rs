@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use isa::number::ray::{Meeting, Ray, TriangleEnd, triangle};
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
-use kernels::build::Features;
+use kernels::build::SceneFeatures;
 use kernels::twin::planes::Packets;
 use kernels::twin::stage::Node;
 use kernels::twin::{Twin, ray};
@@ -46,8 +46,8 @@ impl Target {
                 .collect(),
         };
         let view = View::new(scene.size);
-        let image = image::build(&scene, &view, &image::Options::default()).expect("the mesh fits the grid");
-        let features = Features::new(&scene, &view, &image.formats, &kernels::Options::default());
+        let image = image::build(&scene, &view, &image::MemoryOptions::default()).expect("the mesh fits the grid");
+        let features = SceneFeatures::new(&scene, &view, &image.formats, &kernels::KernelOptions::default());
         let twin = Twin::new(&image, &features, profile, Nearest32).expect("an image that was built can be read");
         let mut splits = [vec![], vec![], vec![]];
         for node in &twin.stage.nodes {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::machine::{self, Engine, Frame, Options};
-use kernels::{Function, Profile};
+use kernels::{Function, KernelSet};
 use lancer::job::Job;
 use lancer::load::Load;
 use messages::Source;
@@ -71,7 +71,7 @@ fn kernels_of_examples_are_those_of_a_profile_but_for_marked_lines() {
 #[test]
 fn all_ways_to_run_an_example_agree() {
     for (folder, rows, kernels) in examples() {
-        let scene = generate::scene("cornell", &generate::Options { size: (8, 6), ..Default::default() });
+        let scene = generate::scene("cornell", &generate::GenerateOptions { size: (8, 6), ..Default::default() });
         let mut job = Job::new(scene.unwrap());
         job.view.shift = [0.137, 0.071];
         job.kernels.profile = profile(&kernels).unwrap();

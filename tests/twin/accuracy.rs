@@ -256,11 +256,13 @@ fn searches_through_the_tree_miss_nothing() {
         ("terrain", None, Some(400)),
     ] {
         let size = (8, 6);
-        let scene = generate::scene(name, &generate::Options { level, triangles, size }).expect("a generated scene");
-        let fine = Subject::new(scene.clone(), View::new(size), modes(32), image::Options::default()).expect("a scene");
+        let scene =
+            generate::scene(name, &generate::GenerateOptions { level, triangles, size }).expect("a generated scene");
+        let fine =
+            Subject::new(scene.clone(), View::new(size), modes(32), image::MemoryOptions::default()).expect("a scene");
         let position = Some(fine.image.formats.position - 15);
         let formats = Overrides { position, direction: Some(29), ..Overrides::default() };
-        let options = image::Options { formats, ..image::Options::default() };
+        let options = image::MemoryOptions { formats, ..image::MemoryOptions::default() };
         let subject = Subject::new(scene, View::new(size), modes(32), options).expect("a scene on a coarse grid");
         let twin = Twin::new(&subject.image, &subject.features, KernelSet::Vector, Nearest32)
             .expect("the image holds the scene");

@@ -3,14 +3,14 @@
 use isa::number::{Modes, Overflow, Quantization, Vector};
 use kernels::twin::descend::{descend, own_packet};
 use kernels::twin::exit_face::exit_face;
-use kernels::twin::ray::{Exit, Packet, Ray, Search};
+use kernels::twin::ray::{ExitPlane, Packet, Ray, Search};
 use kernels::twin::report;
 use kernels::twin::unit::{sqrt, unit};
 use kernels::{Function, KernelSet};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use scenes::generate;
-use scenes::image::{self, Kind};
+use scenes::image::{self, MemoryKind};
 use scenes::kdtree::Bounds;
 use scenes::model::View;
 
@@ -36,8 +36,9 @@ const PROFILES: [KernelSet; 2] = [KernelSet::Vector, KernelSet::Report];
 /// A generated scene with a small picture.
 pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
     let size = (8, 6);
-    let scene = generate::scene(name, &generate::Options { level, size, triangles: None }).expect("a generated scene");
-    Subject::new(scene, View::new(size), modes, image::Options::default()).expect("a scene that fits the word")
+    let scene =
+        generate::scene(name, &generate::GenerateOptions { level, size, triangles: None }).expect("a generated scene");
+    Subject::new(scene, View::new(size), modes, image::MemoryOptions::default()).expect("a scene that fits the word")
 }
 
 fn runner() -> TestRunner {
@@ -236,7 +237,7 @@ fn exit_faces() {
         let subject = subject("slabs", Some(4), modes);
         agree(&subject, &experiment, ray_and_box(modes.word - 2), |case| {
             let (ray, bounds) = (ray(&modes, case, 0), bounds(case, 6));
-            let Exit { axis, plane, run, slope } = exit_face(&modes, &ray, &bounds);
+            let ExitPlane { axis, plane, run, slope } = exit_face(&modes, &ray, &bounds);
             vec![axis as i32, plane, run, slope]
         });
     }
@@ -250,7 +251,7 @@ pub(super) fn packet_words(subject: &Subject, packet: Option<Packet>) -> Vec<i32
     match packet {
         None => vec![-1, 0, 0, 0, 0, 0, 0, 0],
         Some(Packet { bounds, references }) => {
-            let first = subject.image.region(Kind::References).start + 4 * references.start;
+            let first = subject.image.region(MemoryKind::References).start + 4 * references.start;
             let address = if references.is_empty() { 0 } else { first };
             [references.len() as i32, address as i32].into_iter().chain(bounds.low).chain(bounds.high).collect()
         }
@@ -304,7 +305,7 @@ fn descents() {
             });
             agree(&subject, &experiment, cases, |case| {
                 let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                let exit = Exit { axis: case[6] as usize, plane: case[7], run: case[8], slope: case[9] };
+                let exit = ExitPlane { axis: case[6] as usize, plane: case[7], run: case[8], slope: case[9] };
                 packet_words(&subject, Some(descend(&modes, &twin.stage, &ray, &exit)))
             });
         }

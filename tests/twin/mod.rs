@@ -11,11 +11,11 @@ mod surfaces;
 mod vectors;
 
 use isa::number::Modes;
-use kernels::build::{Features, Options};
+use kernels::build::{KernelOptions, SceneFeatures};
 use kernels::twin::Twin;
-use kernels::{Profile, Skips};
+use kernels::{KernelSet, Skips};
 use messages::Report;
-use scenes::image::{self, Image};
+use scenes::image::{self, MemoryImage};
 use scenes::model::{Scene, View};
 
 /// A scene on a machine with certain modes.
@@ -23,21 +23,21 @@ struct Subject {
     scene: Scene,
     view: View,
     image: MemoryImage,
-    features: Features,
+    features: SceneFeatures,
     modes: Modes,
     profile: KernelSet,
 }
 
 impl Subject {
-    fn new(scene: Scene, view: View, modes: Modes, options: image::Options) -> Result<Subject, Report> {
-        let image = image::build(&scene, &view, &image::Options { word: modes.word, ..options })?;
-        let features = Features::new(&scene, &view, &image.formats, &Options::default());
+    fn new(scene: Scene, view: View, modes: Modes, options: image::MemoryOptions) -> Result<Subject, Report> {
+        let image = image::build(&scene, &view, &image::MemoryOptions { word: modes.word, ..options })?;
+        let features = SceneFeatures::new(&scene, &view, &image.formats, &KernelOptions::default());
         Ok(Subject { scene, view, image, features, modes, profile: KernelSet::Vector })
     }
 
     /// The same with other kernels.
     fn with(self, profile: KernelSet) -> Subject {
-        let features = Features { skips: Skips::default().known_to(profile), ..self.features };
+        let features = SceneFeatures { skips: Skips::default().known_to(profile), ..self.features };
         Subject { features, profile, ..self }
     }
 

@@ -9,7 +9,7 @@ use kernels::KernelSet;
 use kernels::build::Crop;
 use kernels::twin;
 use scenes::generate;
-use scenes::image::{self, Kind};
+use scenes::image::{self, MemoryKind};
 use scenes::layout::Layout;
 use scenes::model::{Camera, Scene, View};
 
@@ -22,7 +22,8 @@ impl Subject {
     /// The pixels that the machine draws, `None` when a ray is stuck.
     fn drawn(&self, crop: Crop) -> Option<Vec<Vector>> {
         let isa = Isa::base();
-        let options = kernels::Options { crop: Some(crop), profile: self.profile, ..kernels::Options::default() };
+        let options =
+            kernels::KernelOptions { crop: Some(crop), profile: self.profile, ..kernels::KernelOptions::default() };
         let build = kernels::build(&self.scene, &self.view, &self.image, &isa, &options)
             .unwrap_or_else(|report| panic!("{}", report.render(false)));
         let config = self.machine();
@@ -39,7 +40,7 @@ impl Subject {
             Err(Failure::Trap(trap)) if trap.kind == Fault::User(STUCK) => return None,
             Err(failure) => panic!("{failure}"),
         };
-        let start = self.image.region(Kind::Frame).start;
+        let start = self.image.region(MemoryKind::Frame).start;
         let pixel = |n: u32| {
             std::array::from_fn(|k| frame.memory.word(start + 12 * n + 4 * k as u32).expect("the frame is in memory"))
         };
@@ -110,7 +111,7 @@ fn small(name: &str) -> Scene {
         _ => None,
     };
     let triangles = (name == "terrain").then_some(300);
-    generate::scene(name, &generate::Options { level, triangles, size: SIZE }).expect("a scene of the list")
+    generate::scene(name, &generate::GenerateOptions { level, triangles, size: SIZE }).expect("a scene of the list")
 }
 
 /// Draws every scene; those that a word of that length refuses are skipped, and counted.
@@ -126,7 +127,7 @@ fn check_all(setting: &Setting) -> usize {
         background: [setting.background, setting.background / 2.0, setting.background / 3.0],
         ..View::new(SIZE)
     };
-    let options = image::Options { layout: setting.layout, ..image::Options::default() };
+    let options = image::MemoryOptions { layout: setting.layout, ..image::MemoryOptions::default() };
     let mut refused = 0;
     for generator in generate::SCENES {
         match Subject::new(small(generator.name), view.clone(), setting.modes, options) {
@@ -213,7 +214,8 @@ fn pictures_as_the_report_draws_them_in_fewer_bits() {
 #[test]
 fn parts_of_pictures() {
     let view = View { shift: [0.3, 0.1], ..View::new((50, 40)) };
-    let subject = Subject::new(small("cornell"), view, PLAIN.modes, image::Options::default()).expect("a small scene");
+    let subject =
+        Subject::new(small("cornell"), view, PLAIN.modes, image::MemoryOptions::default()).expect("a small scene");
     for crop in [
         Crop { column: 20, row: 11, width: 7, height: 5 },
         Crop { column: 49, row: 39, width: 1, height: 1 },
@@ -231,8 +233,8 @@ fn pictures_of_long_packets_in_short_words() {
     scene.triangles.extend([first; 300]);
     for overflow in [Overflow::Sat, Overflow::Wrap(0), Overflow::SatZero] {
         let modes = Modes { overflow, ..word(8) };
-        let subject =
-            Subject::new(scene.clone(), View::new(SIZE), modes, image::Options::default()).expect("a small scene");
+        let subject = Subject::new(scene.clone(), View::new(SIZE), modes, image::MemoryOptions::default())
+            .expect("a small scene");
         assert!(subject.check(ALL, &format!("300 triangles in {modes:?}")));
     }
 }

@@ -8,7 +8,7 @@ use kernels::twin::planes::Packets;
 use kernels::twin::ray::{Packet, Ray, Search};
 use kernels::{Function, KernelSet};
 use proptest::prelude::*;
-use scenes::image::Kind;
+use scenes::image::MemoryKind;
 
 use super::bench::{Experiment, Place};
 use super::functions::{MODES, agree, packet_words, point_of_tree, trees};
@@ -69,7 +69,7 @@ fn searches_of_aimed_rays() {
             // Not of unit length: the ray passes through the very point.
             let cases = (point_of_tree(&subject), towards)
                 .prop_map(|(origin, towards)| words(&[origin, from_fn(|k| towards[k] - origin[k])], &[]));
-            let triangles = subject.image.region(Kind::Triangles).start;
+            let triangles = subject.image.region(MemoryKind::Triangles).start;
             let octets = subject.image.layout.triangle().octets();
             agree(&subject, &experiment, cases, |case| {
                 let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));

@@ -6,7 +6,7 @@ use isa::number::Modes;
 use kernels::constants::Constants;
 use kernels::twin::Twin;
 use kernels::twin::ray::{Ray, Search};
-use kernels::twin::report::{self, Exit, Refraction};
+use kernels::twin::report::{self, ExitPoint, Transmission};
 use kernels::twin::surface::Surface;
 use kernels::{Function, KernelSet};
 use proptest::prelude::*;
@@ -95,10 +95,10 @@ fn secondary_rays() {
             let reflected = report::reflect(&modes, &twin.constants, &surface);
             let (origin, direction) = (vector(&plain, 9), vector(&plain, 12));
             match report::refract(&modes, &twin.constants, &surface, plain[16] == 1) {
-                Refraction::Total => {
+                Transmission::Total => {
                     [words(&[surface.point, reflected], &[-1]), words(&[origin, direction], &[])].concat()
                 }
-                Refraction::Through(refracted) => {
+                Transmission::Through(refracted) => {
                     [words(&[surface.point, reflected], &[1]), words(&[surface.behind, refracted], &[])].concat()
                 }
             }
@@ -124,7 +124,7 @@ fn exit_faces() {
         let constants = Constants::new(&subject.image);
         agree(&subject, &experiment, ray_and_box(modes.word - 2), |case| {
             let (ray, bounds) = (ray(&modes, case, 0), bounds(case, 6));
-            let Exit { axis, plane, t, point } = report::exit_face(&modes, &constants, &ray, &bounds);
+            let ExitPoint { axis, plane, t, point } = report::exit_face(&modes, &constants, &ray, &bounds);
             [vec![axis as i32, plane, t], words(&[point], &[])].concat()
         });
     }

@@ -28,7 +28,7 @@ pub struct Figure {
 /// An assumption that is looked for: a driver is tried with 1, 2, ... for a constant.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Search {
+pub struct PixelSearch {
     /// The constant.
     pub constant: String,
     /// The largest number that is tried.
@@ -72,7 +72,7 @@ pub struct Peer {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct AnnexFile {
     row: Vec<RawRow>,
     figure: Vec<Figure>,
     erratum: Vec<Erratum>,
@@ -88,7 +88,7 @@ struct RawRow {
     printed: BTreeMap<String, u64>,
     driver: String,
     region: String,
-    search: Option<Search>,
+    search: Option<PixelSearch>,
     #[serde(default)]
     term: Vec<RawTerm>,
 }
@@ -96,7 +96,7 @@ struct RawRow {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawTerm {
-    /// File below the kernels' folder.
+    /// AnnexFile below the kernels' folder.
     at: String,
     /// A piece of the line, found in one line of the file.
     text: String,
@@ -115,7 +115,7 @@ pub(super) struct Data {
 impl Data {
     /// The file as it is part of the program.
     pub fn read() -> Data {
-        let file: File = toml::from_str(include_str!("../../annex.toml")).expect("a test reads the file");
+        let file: AnnexFile = toml::from_str(include_str!("../../annex.toml")).expect("a test reads the file");
         Data {
             rows: file.row.into_iter().map(row).collect(),
             figures: file.figure,

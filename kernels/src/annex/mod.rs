@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use isa::{Class, Counts};
 
-pub use data::{Erratum, Figure, Peer, Search};
+pub use data::{Erratum, Figure, Peer, PixelSearch};
 pub use world::MEMORY;
 
 use data::Data;
@@ -30,7 +30,7 @@ pub struct Row {
     /// The function or region of the kernels that is measured: its calls' inclusive counts.
     pub region: String,
     /// What the driver's assumptions are looked for with.
-    pub search: Option<Search>,
+    pub search: Option<PixelSearch>,
     /// What the kernels do more or less than is printed; by class the terms sum to the difference.
     pub terms: Vec<Term>,
 }

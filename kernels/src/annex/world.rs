@@ -6,12 +6,12 @@ use std::sync::Arc;
 
 use isa::{Isa, Program};
 use messages::{Report, Source};
-use scenes::image::{self, Image};
+use scenes::image::{self, MemoryImage};
 use scenes::layout::Layout;
 use scenes::model::{Light, Material, Scene, Triangle, View};
 
 use super::Row;
-use crate::build::{Crop, Features, Options};
+use crate::build::{Crop, KernelOptions, SceneFeatures};
 use crate::function::{Function, KernelSet};
 use crate::prelude;
 use crate::skip::Skips;
@@ -33,8 +33,8 @@ const DRIVERS: &[(&str, &str)] = files! {
 };
 
 /// A scene that needs every function.
-const EVERYTHING: Features =
-    Features { has_mirror: true, is_transparent: true, bounces: 1, cutoff: 0, skips: Skips::ALL, agreement: None };
+const EVERYTHING: SceneFeatures =
+    SceneFeatures { has_mirror: true, is_transparent: true, bounces: 1, cutoff: 0, skips: Skips::ALL, agreement: None };
 
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
@@ -61,7 +61,7 @@ fn scene() -> Scene {
 }
 
 fn image(scene: &Scene, view: &View) -> Result<MemoryImage, Report> {
-    image::build(scene, view, &image::Options { layout: Layout::Report, ..image::Options::default() })
+    image::build(scene, view, &image::MemoryOptions { layout: Layout::Report, ..image::MemoryOptions::default() })
 }
 
 impl Row {
@@ -78,8 +78,8 @@ impl Row {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
-        let options = Options { profile: KernelSet::Report, ..Options::default() };
-        let features = Features::new(&scene, &view, &image.formats, &options);
+        let options = KernelOptions { profile: KernelSet::Report, ..KernelOptions::default() };
+        let features = SceneFeatures::new(&scene, &view, &image.formats, &options);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
         let mut text = prelude::text(&image, &features, &crop, KernelSet::Report.walk(&[]), false);
         if let Some(search) = &self.search {

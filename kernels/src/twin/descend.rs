@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 
 use super::lanes::Lanes;
-use super::ray::{Exit, Packet, Ray};
+use super::ray::{ExitPlane, Packet, Ray};
 use super::stage::Stage;
 
-/// The packet in which the ray is just behind the plane (for [`Exit::START`], in which it starts).
+/// The packet in which the ray is just behind the plane (for [`ExitPlane::START`], in which it starts).
 ///
 /// At a split s of axis j the point's coordinate O_j + D_j run / slope is compared with s as products.
-pub fn descend(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray, exit: &Exit) -> Packet {
+pub fn descend(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray, exit: &ExitPlane) -> Packet {
     let runs = ray.direction.map(|direction| arithmetic.wide_product(exit.run, direction));
     stage.descend(|axis, at| {
         let split = arithmetic.wide_product(arithmetic.minus(at, ray.origin[axis]), exit.slope);
@@ -23,7 +23,7 @@ pub fn descend(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray, exit: &Exit) -
 }
 
 /// Whether a split that is met together with the exit plane is met before it, the direction being moved by (e, e^2, e^3).
-fn has_crossed(ray: &Ray, exit: &Exit, axis: usize, at: i32) -> bool {
+fn has_crossed(ray: &Ray, exit: &ExitPlane, axis: usize, at: i32) -> bool {
     match axis.cmp(&exit.axis) {
         _ if at == ray.origin[axis] => true,
         Ordering::Equal => true,
@@ -34,5 +34,5 @@ fn has_crossed(ray: &Ray, exit: &Exit, axis: usize, at: i32) -> bool {
 
 /// The packet in which a ray starts that starts inside the scene's box.
 pub fn own_packet(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray) -> Packet {
-    descend(arithmetic, stage, ray, &Exit::START)
+    descend(arithmetic, stage, ray, &ExitPlane::START)
 }

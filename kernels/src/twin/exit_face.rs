@@ -5,12 +5,12 @@ use std::array::from_fn;
 use scenes::kdtree::Bounds;
 
 use super::lanes::Lanes;
-use super::ray::{Exit, Ray};
+use super::ray::{ExitPlane, Ray};
 
 /// The nearest of the three planes ahead of a ray that is in a box.
 ///
 /// Of planes of axes a < b met at the same t, a is first exactly when the direction along a is positive.
-pub fn exit_face(arithmetic: &impl Lanes, ray: &Ray, bounds: &Bounds) -> Exit {
+pub fn exit_face(arithmetic: &impl Lanes, ray: &Ray, bounds: &Bounds) -> ExitPlane {
     let plane = from_fn(|k| if ray.is_backwards(k) { bounds.low[k] } else { bounds.high[k] });
     let run = runs(arithmetic, ray, plane);
     let axis = (1..3).fold(0, |first, k| {
@@ -18,7 +18,7 @@ pub fn exit_face(arithmetic: &impl Lanes, ray: &Ray, bounds: &Bounds) -> Exit {
         let other = arithmetic.wide_product(run[k], ray.steep[first]);
         if other < met || other == met && ray.is_backwards(first) { k } else { first }
     });
-    Exit { axis, plane: plane[axis], run: run[axis], slope: ray.steep[axis] }
+    ExitPlane { axis, plane: plane[axis], run: run[axis], slope: ray.steep[axis] }
 }
 
 /// How far planes lie ahead of a ray's origin, each along its axis.

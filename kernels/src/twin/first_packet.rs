@@ -5,7 +5,7 @@ use std::array::from_fn;
 use super::descend::descend;
 use super::exit_face::runs;
 use super::lanes::Lanes;
-use super::ray::{Exit, Packet, Ray};
+use super::ray::{ExitPlane, Packet, Ray};
 use super::stage::Stage;
 
 /// The first packet of a ray that may start outside the scene's box; `None` when it misses the box.
@@ -20,7 +20,7 @@ pub fn first_packet(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray) -> Option
     if leave.iter().any(|&run| run <= 0) {
         return None;
     }
-    let mut entry = Exit::START;
+    let mut entry = ExitPlane::START;
     for k in (0..3).filter(|&k| enter[k] > 0) {
         if ray.steep[k] == 0 {
             return None;
@@ -28,7 +28,7 @@ pub fn first_packet(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray) -> Option
         let met = arithmetic.wide_product(enter[k], entry.slope);
         let last = arithmetic.wide_product(entry.run, ray.steep[k]);
         if met > last || met == last && !ray.is_backwards(entry.axis) {
-            entry = Exit { axis: k, plane: near[k], run: enter[k], slope: ray.steep[k] };
+            entry = ExitPlane { axis: k, plane: near[k], run: enter[k], slope: ray.steep[k] };
         }
     }
     let is_before =

@@ -29,7 +29,7 @@ use rayon::prelude::*;
 use scenes::camera::RawCamera;
 use scenes::image::MemoryImage;
 
-use crate::build::{Crop, Features};
+use crate::build::{Crop, SceneFeatures};
 use crate::constants::Constants;
 use crate::function::KernelSet;
 use ray::{Packet, Ray, Stuck};
@@ -46,7 +46,7 @@ pub struct Twin<A> {
     /// Shifts and limits.
     pub constants: Constants,
     /// Which rays have children.
-    pub features: Features,
+    pub features: SceneFeatures,
     /// Tree, triangles, materials and lights.
     pub stage: Stage,
     /// Where the rays of the pixels start and go.
@@ -86,7 +86,7 @@ impl std::error::Error for Failure {}
 /// An image that holds no scene, or a ray for which the machine traps.
 pub fn render(
     image: &MemoryImage,
-    features: &Features,
+    features: &SceneFeatures,
     crop: &Crop,
     profile: KernelSet,
     modes: Modes,
@@ -100,7 +100,7 @@ pub fn render(
 
 impl<A: Arithmetic> Twin<A> {
     /// The twin of the kernels for an image, whose word the arithmetic has to have; `None` when its octets hold no scene.
-    pub fn new(image: &MemoryImage, features: &Features, profile: KernelSet, arithmetic: A) -> Option<Twin<A>> {
+    pub fn new(image: &MemoryImage, features: &SceneFeatures, profile: KernelSet, arithmetic: A) -> Option<Twin<A>> {
         Some(Twin {
             profile,
             arithmetic,

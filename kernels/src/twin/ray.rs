@@ -32,7 +32,7 @@ impl Ray {
 
 /// A plane through which a ray leaves a packet (or enters the scene): met at t = run / slope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Exit {
+pub struct ExitPlane {
     /// Axis of the plane; 3 for the start of a ray, which is no plane.
     pub axis: usize,
     /// Coordinate of the plane, raw.
@@ -43,9 +43,9 @@ pub struct Exit {
     pub slope: i32,
 }
 
-impl Exit {
+impl ExitPlane {
     /// Where a ray starts: t = 0.
-    pub const START: Exit = Exit { axis: 3, plane: 0, run: 0, slope: 1 };
+    pub const START: ExitPlane = ExitPlane { axis: 3, plane: 0, run: 0, slope: 1 };
 }
 
 /// A leaf of the kd tree.

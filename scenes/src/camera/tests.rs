@@ -104,7 +104,7 @@ fn raw_camera(view: &View, word: u32) -> (RawCamera, Rays, Grid, Formats) {
     let formats = Formats::new(&scene(), view, &grid, 1, &Default::default()).unwrap();
     let local = View { camera: mapped(&view.camera, |p| grid.local(p)), ..view.clone() };
     let rays = Rays::new(grid.local_corners(), &local).unwrap();
-    (RawCamera::new(&rays, view.size, &formats, &grid.bounds().grown(1)).unwrap(), rays, grid, formats)
+    (RawCamera::new(&rays, view.size, &formats, &grid.bounds().enlarged(1)).unwrap(), rays, grid, formats)
 }
 
 #[test]
@@ -175,6 +175,6 @@ fn a_picture_too_long_for_a_short_word_is_refused() {
     let grid = Grid::new(&scene(), &view, 8, None).unwrap();
     let formats = Formats::new(&scene(), &view, &grid, 1, &Default::default()).unwrap();
     let rays = Rays::new(grid.local_corners(), &view).unwrap();
-    let error = RawCamera::new(&rays, view.size, &formats, &grid.bounds().grown(1)).unwrap_err().render(false);
+    let error = RawCamera::new(&rays, view.size, &formats, &grid.bounds().enlarged(1)).unwrap_err().render(false);
     assert!(error.contains("1 x 1000000 pixels is too long"), "{error}");
 }

@@ -3,7 +3,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{Mesh, Surface};
+use super::mesh::{MeshBuilder, Surface};
 use crate::model::{Scene, Vec3};
 
 /// Half of the opening's width and height.
@@ -17,7 +17,7 @@ const VANISHING: [f64; 2] = [0.03, 0.22];
 
 /// The room, its blocks and two lights under the ceiling; `level` is the number of tiles along each edge of a wall.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("cornell", sizes.size);
+    let mut mesh = MeshBuilder::new("cornell", sizes.size);
     let white = mesh.matte([0.95, 0.93, 0.88], 0.72);
     let grey = mesh.matte([0.55, 0.53, 0.50], 0.72);
     let red = mesh.matte([0.90, 0.13, 0.09], 0.80);

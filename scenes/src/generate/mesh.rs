@@ -7,19 +7,19 @@ use super::frame::{Frame, add, cross, scale, unit};
 use crate::model::{Light, Material, Scene, Triangle, Vec3};
 
 /// A scene that grows.
-pub(super) struct Mesh {
+pub(super) struct MeshBuilder {
     /// What there is so far.
     pub scene: Scene,
 }
 
-/// A material by number, as [`Mesh`] hands it out.
+/// A material by number, as [`MeshBuilder`] hands it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Surface(pub u32);
 
-impl Mesh {
+impl MeshBuilder {
     /// An empty scene.
-    pub(super) fn new(name: &str, size: (u32, u32)) -> Mesh {
-        Mesh {
+    pub(super) fn new(name: &str, size: (u32, u32)) -> MeshBuilder {
+        MeshBuilder {
             scene: Scene {
                 name: name.to_string(),
                 size,

@@ -2,12 +2,12 @@
 
 use super::Sizes;
 use super::frame::{Frame, between};
-use super::mesh::Mesh;
+use super::mesh::MeshBuilder;
 use crate::model::{Scene, Vec3};
 
 /// Mirrors, floor and back wall open towards the viewer; `level` splits the sphere's triangles.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("mirrors", sizes.size);
+    let mut mesh = MeshBuilder::new("mirrors", sizes.size);
     let light_tile = mesh.matte([0.90, 0.88, 0.80], 0.66);
     let dark_tile = mesh.matte([0.30, 0.19, 0.15], 0.66);
     let wall = mesh.matte([0.42, 0.56, 0.72], 0.60);

@@ -19,7 +19,7 @@ use crate::model::Scene;
 
 /// What a user may ask of a generated scene; `None` leaves the scene's own default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct GenerateOptions {
     /// Fineness; what it counts is said by [`Generator::level`].
     pub level: Option<u32>,
     /// Exact number of triangles, for scenes that can be cut to any number.
@@ -28,9 +28,9 @@ pub struct Options {
     pub size: (u32, u32),
 }
 
-impl Default for Options {
-    fn default() -> Options {
-        Options { level: None, triangles: None, size: (320, 240) }
+impl Default for GenerateOptions {
+    fn default() -> GenerateOptions {
+        GenerateOptions { level: None, triangles: None, size: (320, 240) }
     }
 }
 
@@ -122,7 +122,7 @@ pub static SCENES: &[Generator] = &[
 
 /// The generated scene `name`. An unknown name, an option that the scene does not have, and a value out of its range
 /// are errors.
-pub fn scene(name: &str, options: &Options) -> Result<Scene, Report> {
+pub fn scene(name: &str, options: &GenerateOptions) -> Result<Scene, Report> {
     let Some(generator) = SCENES.iter().find(|generator| generator.name == name) else {
         let names: Vec<&str> = SCENES.iter().map(|generator| generator.name).collect();
         let hint = did_you_mean(name, names.iter().copied())

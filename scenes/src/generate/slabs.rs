@@ -3,12 +3,12 @@
 
 use super::Sizes;
 use super::frame::Frame;
-use super::mesh::Mesh;
+use super::mesh::MeshBuilder;
 use crate::model::Scene;
 
 /// The board fills the picture; `level` is the number of squares along its width.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("slabs", sizes.size);
+    let mut mesh = MeshBuilder::new("slabs", sizes.size);
     let white = mesh.matte([0.96, 0.94, 0.90], 0.66);
     let squares = [[0.90, 0.32, 0.18], [0.15, 0.42, 0.82], [0.95, 0.74, 0.16], [0.18, 0.60, 0.34], [0.20, 0.20, 0.26]];
     let squares = squares.map(|colour| mesh.matte(colour, 0.66));

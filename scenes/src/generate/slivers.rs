@@ -2,13 +2,13 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{Mesh, Surface};
+use super::mesh::{MeshBuilder, Surface};
 use crate::model::{Scene, Vec3};
 
 /// Strips of slivers of six widths before a wall, with degenerate and duplicate triangles; `level` is the number of
 /// slivers of each width.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("slivers", sizes.size);
+    let mut mesh = MeshBuilder::new("slivers", sizes.size);
     let wall = mesh.matte([0.62, 0.66, 0.74], 0.70);
     let colours =
         [[0.9, 0.3, 0.2], [0.9, 0.6, 0.2], [0.9, 0.9, 0.3], [0.3, 0.8, 0.3], [0.3, 0.7, 0.9], [0.8, 0.4, 0.8]];
@@ -52,7 +52,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
 }
 
 /// A strip of `count` slivers, each as long as `along` and as wide as `across`, points alternating.
-fn strip(mesh: &mut Mesh, start: Vec3, along: Vec3, across: Vec3, count: u32, surface: Surface) {
+fn strip(mesh: &mut MeshBuilder, start: Vec3, along: Vec3, across: Vec3, count: u32, surface: Surface) {
     let corner = |n: u32| {
         let side = scale(across, f64::from(n / 2) + 0.5 * f64::from(n % 2));
         let p = add(start, side);

@@ -2,7 +2,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{Mesh, Surface};
+use super::mesh::{MeshBuilder, Surface};
 use crate::model::{Scene, Vec3};
 
 /// Half of the tangent of the slant at which the ground is seen.
@@ -10,7 +10,7 @@ const SLANT: f64 = 0.27;
 
 /// The flake on a checkered ground that fills the picture; `level` is the number of generations after the first sphere.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("sphereflake", sizes.size);
+    let mut mesh = MeshBuilder::new("sphereflake", sizes.size);
     let light_tile = mesh.matte([0.88, 0.86, 0.80], 0.85);
     let dark_tile = mesh.matte([0.20, 0.29, 0.43], 0.85);
     let silver = mesh.mirror([0.90, 0.92, 0.96], 0.55, 0.45);
@@ -41,7 +41,7 @@ struct Flake {
 
 impl Flake {
     /// A sphere and its descendants; the frame's y axis points away from the parent.
-    fn grow(&self, mesh: &mut Mesh, centre: Vec3, radius: f64, frame: Frame, generation: u32, kind: usize) {
+    fn grow(&self, mesh: &mut MeshBuilder, centre: Vec3, radius: f64, frame: Frame, generation: u32, kind: usize) {
         let surface = self.surfaces[(generation as usize).min(2)][kind];
         mesh.sphere(centre, radius, frame, 2_u32.saturating_sub(generation), surface);
         if generation == self.generations {

@@ -3,7 +3,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, cross, unit};
-use super::mesh::Mesh;
+use super::mesh::MeshBuilder;
 use crate::model::{Scene, Vec3};
 
 /// Width of the landscape in scene units.
@@ -15,7 +15,7 @@ const LAKE: f64 = 0.20;
 
 /// A landscape of exactly `triangles` triangles.
 pub(super) fn build(sizes: &Sizes) -> Scene {
-    let mut mesh = Mesh::new("terrain", sizes.size);
+    let mut mesh = MeshBuilder::new("terrain", sizes.size);
     let water = mesh.matte([0.15, 0.34, 0.62], 0.80);
     let sand = mesh.matte([0.82, 0.72, 0.50], 0.80);
     let grass = mesh.matte([0.27, 0.52, 0.18], 0.80);

@@ -1,7 +1,7 @@
 //! An image read back: what its octets say, by the tables of [`crate::layout`] alone. Tests and the kernels' twins compare with it.
 
-use super::{MemoryImage, Kind};
-use crate::kdtree::{Bounds, Given, KdTree};
+use super::{MemoryImage, MemoryKind};
+use crate::kdtree::{Bounds, KdTree, UnlinkedNode};
 use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
 use crate::model::{Scene, Triangle};
 
@@ -16,7 +16,7 @@ pub struct StoredTriangle {
 
 /// Everything an image holds beside its frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Contents {
+pub struct DecodedImage {
     /// The kd tree, its nodes level by level.
     pub tree: KdTree,
     /// The triangles by index.
@@ -29,18 +29,21 @@ pub struct Contents {
 
 impl MemoryImage {
     /// Reads tree, triangles, materials and lights from the octets; `None` when an address leads out of its region or the tree is none.
-    pub fn decode(&self) -> Option<Contents> {
-        let nodes = (self.tree.nodes as u32).min(self.region(Kind::Nodes).len() as u32 / self.layout.node().octets());
-        Some(Contents {
+    pub fn decode(&self) -> Option<DecodedImage> {
+        let nodes =
+            (self.tree.nodes as u32).min(self.region(MemoryKind::Nodes).len() as u32 / self.layout.node().octets());
+        Some(DecodedImage {
             tree: match self.layout {
                 Layout::Report => self.report_tree(nodes)?,
                 Layout::Wide => self.wide_tree(nodes)?,
             },
             triangles: (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?,
             materials: (0..self.counts.materials)
-                .map(|k| self.element(Kind::Materials, &MATERIAL, k))
+                .map(|k| self.element(MemoryKind::Materials, &MATERIAL, k))
                 .collect::<Option<_>>()?,
-            lights: (0..self.counts.lights).map(|k| self.element(Kind::Lights, &LIGHT, k)).collect::<Option<_>>()?,
+            lights: (0..self.counts.lights)
+                .map(|k| self.element(MemoryKind::Lights, &LIGHT, k))
+                .collect::<Option<_>>()?,
         })
     }
 
@@ -58,7 +61,7 @@ impl MemoryImage {
 
     /// A triangle by its index.
     pub fn triangle(&self, index: u32) -> Option<StoredTriangle> {
-        let values = self.element(Kind::Triangles, self.layout.triangle(), index)?;
+        let values = self.element(MemoryKind::Triangles, self.layout.triangle(), index)?;
         let vertex = |k: usize| [0, 1, 2].map(|axis| self.loaded(values[3 * k + axis]));
         Some(StoredTriangle { vertices: [0, 1, 2].map(vertex), material: *values.last()? as u32 })
     }
@@ -68,7 +71,7 @@ impl MemoryImage {
     }
 
     /// Element `index` of an array that fills a region.
-    fn element(&self, kind: Kind, structure: &Structure, index: u32) -> Option<Vec<i64>> {
+    fn element(&self, kind: MemoryKind, structure: &Structure, index: u32) -> Option<Vec<i64>> {
         let region = self.region(kind);
         let address = region.start.checked_add(index.checked_mul(structure.octets())?)?;
         let end = address.checked_add(structure.octets())?;
@@ -79,7 +82,7 @@ impl MemoryImage {
     }
 
     /// Which element of a region lies at an address.
-    fn number(&self, kind: Kind, structure: &Structure, address: u32) -> Option<u32> {
+    fn number(&self, kind: MemoryKind, structure: &Structure, address: u32) -> Option<u32> {
         let region = self.region(kind);
         let offset = region.contains(&address).then(|| address - region.start)?;
         (offset % structure.octets() == 0).then_some(offset / structure.octets())
@@ -87,12 +90,12 @@ impl MemoryImage {
 
     fn report_tree(&self, count: u32) -> Option<KdTree> {
         let structure = self.layout.node();
-        let number = |address: i64| self.number(Kind::Nodes, structure, address as u32);
+        let number = |address: i64| self.number(MemoryKind::Nodes, structure, address as u32);
         let (mut nodes, mut places) = (Vec::new(), Vec::new());
         // Children come in pairs, in the order of their parents.
         let mut below = 1;
         for k in 0..count {
-            let values = self.element(Kind::Nodes, structure, k)?;
+            let values = self.element(MemoryKind::Nodes, structure, k)?;
             let &[left, right, next, first, count] = values.first_chunk()?;
             let corner = |at: usize| [0, 1, 2].map(|axis| self.loaded(values[at + axis]));
             let bounds = Bounds { low: corner(5), high: corner(8) };
@@ -103,16 +106,16 @@ impl MemoryImage {
                 }
             }
             nodes.push(if left == 0 {
-                Given::Leaf(self.list(first as u32, count as u32)?)
+                UnlinkedNode::Leaf(self.list(first as u32, count as u32)?)
             } else {
                 if (number(left)?, number(right)?) != (below, below + 1) {
                     return None;
                 }
                 let axis = *values.last()? as usize;
-                let child = self.element(Kind::Nodes, structure, below)?;
+                let child = self.element(MemoryKind::Nodes, structure, below)?;
                 below += 2;
                 // x1, y1 or z1 of the left child lies on the plane; all three are its upper corner.
-                Given::Inner { axis, at: self.loaded(*child.get(8 + axis)?) }
+                UnlinkedNode::Inner { axis, at: self.loaded(*child.get(8 + axis)?) }
             });
             places.push((bounds, if next == 0 { None } else { Some(number(next)?) }));
         }
@@ -125,9 +128,9 @@ impl MemoryImage {
         let structure = self.layout.reference();
         let mut triangles = Vec::new();
         while address != 0 {
-            let number = self.number(Kind::References, structure, address)?;
-            let &[triangle, next] = self.element(Kind::References, structure, number)?.first_chunk()?;
-            triangles.push(self.number(Kind::Triangles, self.layout.triangle(), triangle as u32)?);
+            let number = self.number(MemoryKind::References, structure, address)?;
+            let &[triangle, next] = self.element(MemoryKind::References, structure, number)?.first_chunk()?;
+            triangles.push(self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)?);
             if triangles.len() > count as usize {
                 return None;
             }
@@ -141,14 +144,14 @@ impl MemoryImage {
         let mut nodes = Vec::new();
         let mut addresses = vec![self.root];
         while let Some(&address) = addresses.get(nodes.len()) {
-            let number = self.number(Kind::Nodes, structure, address)?;
-            let &[plane, link] = self.element(Kind::Nodes, structure, number)?.first_chunk()?;
+            let number = self.number(MemoryKind::Nodes, structure, address)?;
+            let &[plane, link] = self.element(MemoryKind::Nodes, structure, number)?.first_chunk()?;
             let (tag, address) = (link as u32 & 3, link as u32 & !3);
             nodes.push(if tag == WIDE_LEAF {
-                Given::Leaf(self.array(address, plane)?)
+                UnlinkedNode::Leaf(self.array(address, plane)?)
             } else {
                 addresses.extend([address, address.checked_add(structure.octets())?]);
-                Given::Inner { axis: tag as usize, at: i32::try_from(plane).ok()? }
+                UnlinkedNode::Inner { axis: tag as usize, at: i32::try_from(plane).ok()? }
             });
             if addresses.len() > count as usize {
                 return None;
@@ -160,12 +163,12 @@ impl MemoryImage {
     /// The triangles of an array of `count` references.
     fn array(&self, address: u32, count: i64) -> Option<Vec<u32>> {
         let structure = self.layout.reference();
-        let first = if count == 0 { 0 } else { self.number(Kind::References, structure, address)? };
+        let first = if count == 0 { 0 } else { self.number(MemoryKind::References, structure, address)? };
         let end = first.checked_add(u32::try_from(count).ok()?)?;
         (first..end)
             .map(|k| {
-                let triangle = *self.element(Kind::References, structure, k)?.first()?;
-                self.number(Kind::Triangles, self.layout.triangle(), triangle as u32)
+                let triangle = *self.element(MemoryKind::References, structure, k)?.first()?;
+                self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)
             })
             .collect()
     }

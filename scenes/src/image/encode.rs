@@ -2,10 +2,10 @@
 
 use messages::{Diagnostic, Report};
 
-use super::{HEADER, Kind, Regions, out_of_range, stored, three};
+use super::{HEADER, MemoryKind, Regions, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};
 use crate::grid::Grid;
-use crate::kdtree::{Bounds, Content, Grown, Node, Placed, Triangles};
+use crate::kdtree::{Bounds, BuiltTree, Content, Node, NumberedNode, Triangles};
 use crate::layout::{LIGHT, Layout, MATERIAL, PIXEL, Structure, WIDE_LEAF};
 use crate::model::Scene;
 
@@ -64,7 +64,7 @@ impl Tables {
 
 /// All octets, and which addresses hold what.
 pub(super) fn memory(
-    tree: &Grown,
+    tree: &BuiltTree,
     scene: &Scene,
     triangles: &impl Triangles,
     tables: &Tables,
@@ -82,7 +82,7 @@ pub(super) fn memory(
         (u64::from(size.0) * u64::from(size.1)).saturating_mul(u64::from(PIXEL.octets())),
     ];
     let mut end = 0u64;
-    let mut regions = Kind::ALL.map(|kind| (kind, 0..0));
+    let mut regions = MemoryKind::ALL.map(|kind| (kind, 0..0));
     for ((_, range), length) in regions.iter_mut().zip(octets) {
         let start = end.next_multiple_of(8);
         end = start.saturating_add(length);
@@ -98,7 +98,7 @@ pub(super) fn memory(
     let mut put = |address: u32, structure: &Structure, values: &mut dyn Iterator<Item = i64>| {
         structure.write(&mut bytes[address as usize..], values);
     };
-    for Placed { number, first: reference, node } in tree.nodes() {
+    for NumberedNode { number, first: reference, node } in tree.nodes() {
         let packet = packet(node.content);
         let first = if packet.is_empty() { 0 } else { addresses.reference(reference) };
         let values = match layout {

@@ -16,14 +16,14 @@ use crate::grid::Grid;
 use crate::kdtree::{self, Bounds, Statistics, Triangles};
 use crate::layout::Layout;
 use crate::model::{Scene, Triangle, Vec3, View};
-pub use decode::{Contents, StoredTriangle};
+pub use decode::{DecodedImage, StoredTriangle};
 
 /// Octets from address 0 that are never used, so that 0 is no structure's address.
 pub const HEADER: u32 = 16;
 
 /// What a user may choose of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct MemoryOptions {
     /// Bits of a register: 8 to 32.
     pub word: u32,
     /// How triangles and tree are stored.
@@ -31,18 +31,18 @@ pub struct Options {
     /// How high the kd tree may be.
     pub kd_depth: kdtree::Depth,
     /// How the kd tree is built.
-    pub kd_method: kdtree::Method,
+    pub kd_method: kdtree::BuildMethod,
     /// Fraction bits set by the user.
     pub formats: Overrides,
 }
 
-impl Default for Options {
-    fn default() -> Options {
-        Options {
+impl Default for MemoryOptions {
+    fn default() -> MemoryOptions {
+        MemoryOptions {
             word: 32,
             layout: Layout::Wide,
             kd_depth: kdtree::Depth::default(),
-            kd_method: kdtree::Method::default(),
+            kd_method: kdtree::BuildMethod::default(),
             formats: Overrides::default(),
         }
     }
@@ -50,7 +50,7 @@ impl Default for Options {
 
 /// What a range of addresses holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Kind {
+pub enum MemoryKind {
     /// Nothing: no address in it is valid.
     Header,
     /// Nodes of the kd tree, level by level; the root is the first.
@@ -67,27 +67,34 @@ pub enum Kind {
     Frame,
 }
 
-impl Kind {
+impl MemoryKind {
     /// All kinds in the order of their addresses.
-    pub const ALL: [Kind; 7] =
-        [Kind::Header, Kind::Nodes, Kind::References, Kind::Triangles, Kind::Materials, Kind::Lights, Kind::Frame];
+    pub const ALL: [MemoryKind; 7] = [
+        MemoryKind::Header,
+        MemoryKind::Nodes,
+        MemoryKind::References,
+        MemoryKind::Triangles,
+        MemoryKind::Materials,
+        MemoryKind::Lights,
+        MemoryKind::Frame,
+    ];
 
     /// Name in listings and traces.
     pub const fn name(self) -> &'static str {
         match self {
-            Kind::Header => "header",
-            Kind::Nodes => "nodes",
-            Kind::References => "references",
-            Kind::Triangles => "triangles",
-            Kind::Materials => "materials",
-            Kind::Lights => "lights",
-            Kind::Frame => "frame",
+            MemoryKind::Header => "header",
+            MemoryKind::Nodes => "nodes",
+            MemoryKind::References => "references",
+            MemoryKind::Triangles => "triangles",
+            MemoryKind::Materials => "materials",
+            MemoryKind::Lights => "lights",
+            MemoryKind::Frame => "frame",
         }
     }
 }
 
-/// Addresses of each kind, in the order of [`Kind::ALL`].
-pub type Regions = [(Kind, Range<u32>); 7];
+/// Addresses of each kind, in the order of [`MemoryKind::ALL`].
+pub type Regions = [(MemoryKind, Range<u32>); 7];
 
 /// A memory image and the raw integers that go with it.
 #[derive(Clone, Debug)]
@@ -96,7 +103,7 @@ pub struct MemoryImage {
     pub bytes: Vec<u8>,
     /// How triangles and tree are stored.
     pub layout: Layout,
-    /// Addresses of each kind, in the order of [`Kind::ALL`]; they start at multiples of 8, and may be empty.
+    /// Addresses of each kind, in the order of [`MemoryKind::ALL`]; they start at multiples of 8, and may be empty.
     pub regions: Regions,
     /// Address of the tree's root.
     pub root: u32,
@@ -133,12 +140,12 @@ pub struct Counts {
 
 impl MemoryImage {
     /// The addresses of one kind.
-    pub fn region(&self, kind: Kind) -> Range<u32> {
+    pub fn region(&self, kind: MemoryKind) -> Range<u32> {
         self.regions.iter().find(|(k, _)| *k == kind).map_or(0..0, |(_, range)| range.clone())
     }
 
     /// What an address holds, `None` beyond the end and in the gaps between the regions.
-    pub fn kind(&self, address: u32) -> Option<Kind> {
+    pub fn kind(&self, address: u32) -> Option<MemoryKind> {
         self.regions.iter().find(|(_, range)| range.contains(&address)).map(|(kind, _)| *kind)
     }
 }
@@ -151,20 +158,20 @@ impl MemoryImage {
 /// # Errors
 /// What [`Grid::new`], [`Formats::new`], [`Rays::new`], [`RawCamera::new`] and [`kdtree::build`] refuse, more materials than a triangle can
 /// name, coefficients that do not fit their format, leaves with more triangles than a node can count, and an image beyond 32-bit addresses.
-pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<MemoryImage, Report> {
+pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<MemoryImage, Report> {
     let layout = options.layout;
     let grid = Grid::new(scene, view, options.word, options.formats.position)?;
     let shift = layout.coordinate_shift(options.word);
     let vertices: Vec<[i32; 3]> =
         scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
-    let mesh = Mesh { vertices: &vertices, triangles: &scene.triangles };
+    let mesh = GridMesh { vertices: &vertices, triangles: &scene.triangles };
     let unit = 1 << shift;
     let boxes = (0..mesh.count()).map(|index| Bounds::of_triangle(&mesh.vertices(index)));
     let inner = boxes.reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
         let Bounds { low, high } = grid.bounds();
         Bounds { low: low.map(|x| stored(x, shift) << shift), high: high.map(|x| stored(x, shift) << shift) }
     });
-    let bounds = inner.grown(unit);
+    let bounds = inner.enlarged(unit);
     let formats = Formats::new(scene, view, &grid, 2 * unit as u32 + 2, &options.formats)?;
     let local = View { camera: camera::mapped(&view.camera, |p| grid.local(p)), ..view.clone() };
     let rays = Rays::new(grid.local_corners(), &local)?;
@@ -175,7 +182,7 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<MemoryImag
     };
     let ambient = colour("the ambient intensity", view.ambient)?;
     let background = three(view.background, |x| colour("the background", x))?;
-    let tree = kdtree::grow(&mesh, bounds, options.kd_depth, options.kd_method)?;
+    let tree = kdtree::build_in_order(&mesh, bounds, options.kd_depth, options.kd_method)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
     let (bytes, regions) = encode::memory(&tree, scene, &mesh, &tables, layout, shift, view.size)?;
     let root = regions[1].1.start;
@@ -202,12 +209,12 @@ pub fn build(scene: &Scene, view: &View, options: &Options) -> Result<MemoryImag
 }
 
 /// The triangles of a scene with their vertices on the grid.
-struct Mesh<'a> {
+struct GridMesh<'a> {
     vertices: &'a [[i32; 3]],
     triangles: &'a [Triangle],
 }
 
-impl Triangles for Mesh<'_> {
+impl Triangles for GridMesh<'_> {
     fn count(&self) -> usize {
         self.triangles.len()
     }

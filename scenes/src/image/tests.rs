@@ -20,8 +20,8 @@ fn scene(vertices: &[Vec3]) -> Scene {
     }
 }
 
-fn options(layout: Layout, word: u32) -> Options {
-    Options { layout, word, ..Options::default() }
+fn options(layout: Layout, word: u32) -> MemoryOptions {
+    MemoryOptions { layout, word, ..MemoryOptions::default() }
 }
 
 fn image(scene: &Scene, layout: Layout, word: u32) -> MemoryImage {
@@ -52,14 +52,14 @@ fn a_small_wide_image_is_this() {
     assert_eq!(image.bytes[68..70], [0, 0]);
     assert_eq!(image.bytes[106..108], [1, 0]);
     let weight = |x: f64| (x * (1u64 << 30) as f64) as u32;
-    let glass = image.region(Kind::Materials).start + 32;
+    let glass = image.region(MemoryKind::Materials).start + 32;
     let index = [1.5, 1.0 / 1.5].map(|x: f64| (x * (1u64 << 28) as f64).round() as u32);
     assert_eq!(words(&image, glass, 8), [0, 0, 0, weight(0.125), weight(0.125), weight(0.75), index[0], index[1]]);
     let colour = |x: f64| (x * (1u64 << 29) as f64) as u32;
-    let light = image.region(Kind::Lights).start;
+    let light = image.region(MemoryKind::Lights).start;
     assert_eq!(words(&image, light, 6), [unit / 4, unit / 2, unit / 4 * 3, colour(1.0), colour(0.5), colour(0.25)]);
-    assert_eq!(image.region(Kind::Frame).len(), 4 * 3 * 12);
-    assert_eq!(image.bytes.len(), image.region(Kind::Frame).end as usize);
+    assert_eq!(image.region(MemoryKind::Frame).len(), 4 * 3 * 12);
+    assert_eq!(image.bytes.len(), image.region(MemoryKind::Frame).end as usize);
     assert_eq!(image.ambient, (0.1 * (1u64 << 29) as f64).round() as i32);
 }
 
@@ -92,10 +92,10 @@ fn regions_are_in_order_and_addresses_have_a_kind() {
         assert!(ranges.windows(2).all(|pair| pair[0].end <= pair[1].start && pair[1].start % 8 == 0));
         assert_eq!(
             (image.kind(0), image.kind(15), image.kind(16)),
-            (Some(Kind::Header), Some(Kind::Header), Some(Kind::Nodes))
+            (Some(MemoryKind::Header), Some(MemoryKind::Header), Some(MemoryKind::Nodes))
         );
         assert_eq!(image.kind(image.bytes.len() as u32), None);
-        for kind in Kind::ALL {
+        for kind in MemoryKind::ALL {
             assert!(image.region(kind).all(|address| image.kind(address) == Some(kind)));
         }
     }
@@ -136,7 +136,7 @@ proptest! {
         }
         // The tree is the one of the triangles as they are stored.
         let vertices: Vec<_> = contents.triangles.iter().map(|t| t.vertices).collect();
-        let tree = kdtree::build(&vertices, image.bounds, kdtree::Depth::default(), kdtree::Method::default());
+        let tree = kdtree::build(&vertices, image.bounds, kdtree::Depth::default(), kdtree::BuildMethod::default());
         prop_assert_eq!(tree.unwrap(), contents.tree);
     }
 
@@ -144,7 +144,7 @@ proptest! {
     fn a_damaged_image_is_read_without_harm(vertices in triangles(), is_wide: bool, damage in prop::collection::vec((any::<u32>(), any::<u8>()), 1..9)) {
         let layout = if is_wide { Layout::Wide } else { Layout::Report };
         let mut image = image(&scene(&vertices), layout, 32);
-        let length = image.region(Kind::Triangles).end;
+        let length = image.region(MemoryKind::Triangles).end;
         for (at, octet) in damage {
             image.bytes[(at % length) as usize] = octet;
         }
@@ -176,7 +176,7 @@ fn an_image_does_not_depend_on_the_scale_of_its_scene() {
     assert_eq!((large.formats.position, large.bytes == plain.bytes, large.camera), (19, true, plain.camera));
 }
 
-fn refusal(scene: &Scene, size: (u32, u32), options: &Options) -> String {
+fn refusal(scene: &Scene, size: (u32, u32), options: &MemoryOptions) -> String {
     build(scene, &View::new(size), options).map(|_| ()).unwrap_err().render(false)
 }
 

@@ -10,7 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Serialize, Serializer};
 
 pub use self::precision::Precision;
-use crate::image::{self, MemoryImage, Options};
+use crate::image::{self, MemoryImage, MemoryOptions};
 use crate::kdtree::Statistics;
 use crate::model::{Scene, Vec3, View};
 use crate::read::mesh::repeated;
@@ -115,7 +115,7 @@ impl SceneInfo {
     ///
     /// # Errors
     /// What [`image::build`] refuses.
-    pub fn new(scene: &Scene, options: &Options) -> Result<SceneInfo, Report> {
+    pub fn new(scene: &Scene, options: &MemoryOptions) -> Result<SceneInfo, Report> {
         let image = image::build(scene, &View::new(scene.size), options)?;
         Ok(SceneInfo::of_image(scene, &image))
     }
@@ -174,15 +174,15 @@ mod tests {
     use crate::generate;
     use crate::layout::Layout;
 
-    fn info(name: &str, options: Options) -> SceneInfo {
-        let scene = generate::scene(name, &generate::Options::default()).unwrap();
+    fn info(name: &str, options: MemoryOptions) -> SceneInfo {
+        let scene = generate::scene(name, &generate::GenerateOptions::default()).unwrap();
         SceneInfo::new(&scene, &options).unwrap()
     }
 
     #[test]
     fn parts_add_up() {
         for layout in Layout::ALL {
-            let info = info("cornell", Options { layout, ..Options::default() });
+            let info = info("cornell", MemoryOptions { layout, ..MemoryOptions::default() });
             assert_eq!(info.materials.iter().map(|material| material.triangles).sum::<usize>(), info.triangles);
             let octets: u64 = info.memory.octets.0.iter().map(|(_, octets)| octets).sum();
             let gaps = info.memory.total as u64 - octets;
@@ -199,21 +199,21 @@ mod tests {
 
     #[test]
     fn what_is_odd_is_counted() {
-        let mut scene = generate::scene("triangle", &generate::Options::default()).unwrap();
+        let mut scene = generate::scene("triangle", &generate::GenerateOptions::default()).unwrap();
         let first = scene.triangles[0];
         let [a, b, c] = first.vertices;
         for vertices in [[b, a, c], [c, a, b], [a, a, b]] {
             scene.triangles.push(crate::model::Triangle { vertices, ..first });
         }
         scene.vertices.push([0.25, 0.25, 0.0]);
-        let info = SceneInfo::new(&scene, &Options::default()).unwrap();
+        let info = SceneInfo::new(&scene, &MemoryOptions::default()).unwrap();
         assert_eq!((info.repeated, info.unused_vertices, info.precision.degenerate), (2, 1, 1));
         assert_eq!(info.materials[0].triangles, 4);
     }
 
     #[test]
     fn nothing_has_no_box() {
-        let info = info("empty", Options::default());
+        let info = info("empty", MemoryOptions::default());
         assert_eq!((info.triangles, info.bounds, info.precision.largest_move), (0, None, 0.0));
         assert_eq!((info.precision.largest_share, info.precision.rms_share), (0.0, 0.0));
     }

@@ -85,18 +85,18 @@ fn is_flat_raw([a, b, c]: [[i32; 3]; 3]) -> bool {
 mod tests {
     use super::*;
     use crate::generate;
-    use crate::image::{self, Options};
+    use crate::image::{self, MemoryOptions};
     use crate::layout::Layout;
     use crate::model::View;
 
-    fn precision(name: &str, options: Options) -> Precision {
-        let scene = generate::scene(name, &generate::Options::default()).unwrap();
+    fn precision(name: &str, options: MemoryOptions) -> Precision {
+        let scene = generate::scene(name, &generate::GenerateOptions::default()).unwrap();
         Precision::new(&scene, &image::build(&scene, &View::new(scene.size), &options).unwrap())
     }
 
     #[test]
     fn shorter_words_move_corners_further() {
-        let of = |word| precision("sphereflake", Options { word, ..Options::default() });
+        let of = |word| precision("sphereflake", MemoryOptions { word, ..MemoryOptions::default() });
         let (long, short) = (of(32), of(16));
         assert_eq!(short.step, long.step * 65_536.0);
         // Half a step along each of three axes is the worst.
@@ -110,14 +110,14 @@ mod tests {
 
     #[test]
     fn the_reports_layout_has_the_steps_of_16_bits() {
-        let of = |layout, word| precision("terrain", Options { layout, word, ..Options::default() });
+        let of = |layout, word| precision("terrain", MemoryOptions { layout, word, ..MemoryOptions::default() });
         assert_eq!(of(Layout::Report, 32).step, of(Layout::Report, 16).step);
         assert!(of(Layout::Report, 32).rms_move > 1000.0 * of(Layout::Wide, 32).rms_move);
     }
 
     #[test]
     fn slivers_lose_their_area_in_short_words() {
-        let of = |word| precision("slivers", Options { word, ..Options::default() });
+        let of = |word| precision("slivers", MemoryOptions { word, ..MemoryOptions::default() });
         assert!(of(12).collapsed > of(32).collapsed, "{:?} {:?}", of(12), of(32));
         assert_eq!(of(12).degenerate, of(32).degenerate);
     }

@@ -2,7 +2,7 @@
 
 use super::Bounds;
 
-/// Units by which the box is grown before the triangle is cut, and that a computed coordinate is never off: coordinates have 32 bits and
+/// Units by which the box is enlarged before the triangle is cut, and that a computed coordinate is never off: coordinates have 32 bits and
 /// f64 has 53, so a point on an edge is off by less than 2^-18.
 const MARGIN: f64 = 1.0 / 1024.0;
 

@@ -1,7 +1,7 @@
 //! Two ways to say which triangles a node holds: by their boxes, as the report does, and by what of them really lies in the node.
 
+use super::builder::Membership;
 use super::clip::clipped;
-use super::growth::Membership;
 use super::split::{Division, Side, Sweep};
 use super::{Bounds, Triangles};
 

@@ -1,9 +1,9 @@
 //! The report's kd tree, level by level, on the grid's integers (report 5.3). How a node is divided is decided in [`split`], by exact
 //! comparisons; nothing here knows of memory layouts or of how rays walk through the tree.
 
+mod builder;
+mod built;
 mod clip;
-mod grown;
-mod growth;
 mod membership;
 pub mod split;
 mod statistics;
@@ -13,11 +13,11 @@ mod tree;
 
 use messages::{Diagnostic, Report};
 
-pub(crate) use grown::{Grown, Placed};
-use growth::TooMany;
+use builder::TooManyReferences;
+pub(crate) use built::{BuiltTree, NumberedNode};
 use membership::{ByBox, ByPart};
 pub use statistics::Statistics;
-pub(crate) use tree::Given;
+pub(crate) use tree::UnlinkedNode;
 pub use tree::{Content, KdTree, Node};
 
 /// Levels below the root that the report's tree has at most.
@@ -57,7 +57,7 @@ impl Bounds {
     }
 
     /// The box with each face moved outwards by `unit` (stopping at the ends of 32 bits).
-    pub fn grown(&self, unit: i32) -> Bounds {
+    pub fn enlarged(&self, unit: i32) -> Bounds {
         Bounds { low: self.low.map(|x| x.saturating_sub(unit)), high: self.high.map(|x| x.saturating_add(unit)) }
     }
 
@@ -109,7 +109,7 @@ impl Depth {
 
 /// Which triangles a node holds, and where it may be divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum BuildMethod {
     /// The report's: a triangle is in a node when its box reaches into it, planes cross the longest axis.
     #[default]
     Report,
@@ -117,15 +117,15 @@ pub enum Method {
     Exact,
 }
 
-impl Method {
+impl BuildMethod {
     /// All methods.
-    pub const ALL: [Method; 2] = [Method::Report, Method::Exact];
+    pub const ALL: [BuildMethod; 2] = [BuildMethod::Report, BuildMethod::Exact];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
-            Method::Report => "report",
-            Method::Exact => "exact",
+            BuildMethod::Report => "report",
+            BuildMethod::Exact => "exact",
         }
     }
 }
@@ -164,31 +164,31 @@ pub fn build(
     triangles: &(impl Triangles + ?Sized),
     root: Bounds,
     depth: Depth,
-    method: Method,
+    method: BuildMethod,
 ) -> Result<KdTree, Report> {
-    grow(triangles, root, depth, method).map(|grown| grown.by_levels())
+    build_in_order(triangles, root, depth, method).map(|tree| tree.by_levels())
 }
 
-/// The same tree, as the memory image is written from it.
-pub(crate) fn grow(
+/// The tree of [`build`] in the order of a walk, from which the memory image is written.
+pub(crate) fn build_in_order(
     triangles: &(impl Triangles + ?Sized),
     root: Bounds,
     depth: Depth,
-    method: Method,
-) -> Result<Grown, Report> {
+    method: BuildMethod,
+) -> Result<BuiltTree, Report> {
     let count = triangles.count();
     let levels = depth.levels(count);
-    let grown = match method {
-        Method::Report => {
+    let tree = match method {
+        BuildMethod::Report => {
             let boxes: Vec<Bounds> = (0..count).map(|index| Bounds::of_triangle(&triangles.vertices(index))).collect();
-            growth::grow(&ByBox { triangles: &boxes }, (0..count as u32).collect(), root, levels)
+            builder::build(&ByBox { triangles: &boxes }, (0..count as u32).collect(), root, levels)
         }
-        Method::Exact => {
+        BuildMethod::Exact => {
             let membership = ByPart { triangles };
-            growth::grow(&membership, membership.whole(), root, levels)
+            builder::build(&membership, membership.whole(), root, levels)
         }
     };
-    grown.map_err(|TooMany| {
+    tree.map_err(|TooManyReferences| {
         Diagnostic::error(format!("the kd tree would hold more than {MOST_REFERENCES} references to {count} triangles"))
             .hint("ask for a lower tree with --kd-depth")
             .into()

@@ -7,8 +7,8 @@ use super::*;
 
 /// A node of the model: box, and either (axis, plane, children) or the packet.
 #[derive(Debug, PartialEq)]
-enum Model {
-    Inner(Bounds, usize, i32, Box<(Model, Model)>),
+enum NaiveTree {
+    Inner(Bounds, usize, i32, Box<(NaiveTree, NaiveTree)>),
     Leaf(Bounds, Vec<u32>),
 }
 
@@ -18,13 +18,13 @@ fn surface(b: &Bounds) -> i128 {
     2 * (side(0) * side(1) + side(1) * side(2) + side(0) * side(2))
 }
 
-fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> Model {
+fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> NaiveTree {
     let sides = [0, 1, 2].map(|k| i64::from(node.high[k]) - i64::from(node.low[k]));
     let longest = *sides.iter().max().unwrap();
     let axis = sides.iter().position(|&side| side == longest).unwrap();
     let area = surface(&node);
     if levels == 0 || area == 0 {
-        return Model::Leaf(node, packet);
+        return NaiveTree::Leaf(node, packet);
     }
     let extent = |&i: &u32| (triangles[i as usize].low[axis], triangles[i as usize].high[axis]);
     let mut candidates: Vec<i32> = packet.iter().map(extent).flat_map(|(low, high)| [low, high]).collect();
@@ -49,20 +49,20 @@ fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> M
             found = Some((s, is_right, below, above));
         }
     }
-    let Some((s, is_right, below, above)) = found else { return Model::Leaf(node, packet) };
+    let Some((s, is_right, below, above)) = found else { return NaiveTree::Leaf(node, packet) };
     let is_flat = |i: &u32| extent(i) == (s, s);
     let lower = packet.iter().copied().filter(|i| extent(i).0 < s || is_flat(i) && !is_right).collect();
     let upper = packet.iter().copied().filter(|i| extent(i).1 > s || is_flat(i) && is_right).collect();
     let children = (model(lower, triangles, below, levels - 1), model(upper, triangles, above, levels - 1));
-    Model::Inner(node, axis, s, Box::new(children))
+    NaiveTree::Inner(node, axis, s, Box::new(children))
 }
 
-fn as_model(tree: &KdTree, number: u32) -> Model {
+fn as_model(tree: &KdTree, number: u32) -> NaiveTree {
     let node = tree.nodes().nth(number as usize).unwrap();
     match node.content {
-        Content::Leaf { triangles } => Model::Leaf(node.bounds, triangles.to_vec()),
+        Content::Leaf { triangles } => NaiveTree::Leaf(node.bounds, triangles.to_vec()),
         Content::Inner { axis, at, left } => {
-            Model::Inner(node.bounds, axis, at, Box::new((as_model(tree, left), as_model(tree, left + 1))))
+            NaiveTree::Inner(node.bounds, axis, at, Box::new((as_model(tree, left), as_model(tree, left + 1))))
         }
     }
 }
@@ -97,8 +97,8 @@ fn check(triangles: &[Bounds], unit: i32, depth: u32) -> KdTree {
         .copied()
         .reduce(|a, b| a.union(&b))
         .unwrap_or(Bounds { low: [0; 3], high: [0; 3] })
-        .grown(unit);
-    let tree = build(&with_boxes(triangles), root, Depth::Levels(depth), Method::Report).unwrap();
+        .enlarged(unit);
+    let tree = build(&with_boxes(triangles), root, Depth::Levels(depth), BuildMethod::Report).unwrap();
     assert_eq!(as_model(&tree, 0), model((0..triangles.len() as u32).collect(), triangles, root, depth));
     let nexts: Vec<Option<u32>> = tree.nodes().map(|node| node.next).collect();
     let mut expected = 0;
@@ -238,13 +238,13 @@ fn terrain(n: i32) -> Vec<[[i32; 3]; 3]> {
 }
 
 fn root(triangles: &[[[i32; 3]; 3]]) -> Bounds {
-    triangles.iter().map(Bounds::of_triangle).reduce(|a, b| a.union(&b)).unwrap().grown(1)
+    triangles.iter().map(Bounds::of_triangle).reduce(|a, b| a.union(&b)).unwrap().enlarged(1)
 }
 
 #[test]
 fn a_terrain_of_sixty_thousand_triangles_takes_moments() {
     let triangles = terrain(173);
-    let tree = build(&triangles, root(&triangles), Depth::default(), Method::Report).unwrap();
+    let tree = build(&triangles, root(&triangles), Depth::default(), BuildMethod::Report).unwrap();
     assert_eq!(tree.statistics().depth, DEPTH);
     // Every triangle is in every leaf that its box reaches into.
     for node in tree.nodes() {
@@ -261,7 +261,7 @@ fn a_terrain_of_sixty_thousand_triangles_takes_moments() {
 #[test]
 fn the_tree_does_not_depend_on_threads() {
     let triangles = terrain(60);
-    for method in Method::ALL {
+    for method in BuildMethod::ALL {
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| build(&triangles, root(&triangles), Depth::Auto, method).unwrap())
@@ -287,7 +287,7 @@ fn parts_make_a_better_tree_than_boxes() {
         let tree = build(&triangles, root(&triangles), Depth::Levels(12), method).unwrap();
         tree.statistics().expected_cost
     };
-    let (boxes, parts) = (cost(Method::Report), cost(Method::Exact));
+    let (boxes, parts) = (cost(BuildMethod::Report), cost(BuildMethod::Exact));
     assert!(parts < 0.95 * boxes, "{parts} by parts, {boxes} by boxes");
 }
 
@@ -308,7 +308,7 @@ proptest! {
         scale in 0u32..23,
     ) {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| x << scale))).collect();
-        let tree = build(&triangles, root(&triangles), Depth::Levels(10), Method::Exact).unwrap();
+        let tree = build(&triangles, root(&triangles), Depth::Levels(10), BuildMethod::Exact).unwrap();
         for node in tree.nodes() {
             let Content::Leaf { triangles: packet } = node.content else { continue };
             prop_assert!(packet.is_sorted());

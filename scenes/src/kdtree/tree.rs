@@ -1,4 +1,4 @@
-//! A tree as it is kept: twelve octets a node and one list of all packets. Boxes and neighbours follow from the order of the nodes, so
+//! A tree level by level: twelve octets a node and one list of all packets. Boxes and neighbours follow from the order of the nodes, so
 //! they are worked out while one goes through them. How a tree comes about is not said here.
 
 use std::collections::VecDeque;
@@ -39,42 +39,45 @@ pub enum Content<'a> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KdTree {
     root: Bounds,
-    nodes: Vec<Kept>,
+    nodes: Vec<StoredNode>,
     /// The packets, leaf by leaf in the order of the nodes.
     triangles: Vec<u32>,
 }
 
-/// What is kept of a node.
+/// A node in twelve octets: its box and its neighbour follow from the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kept {
+pub(super) enum StoredNode {
     /// A plane, and the number of the left child.
     Inner { axis: u8, at: i32, left: u32 },
     /// Where the packet lies in the list of all.
     Leaf { first: u32, count: u32 },
 }
 
-const _: () = assert!(size_of::<Kept>() == 12);
+const _: () = assert!(size_of::<StoredNode>() == 12);
 
 impl KdTree {
     /// A tree in the box `root`, from nodes in their order.
-    pub(super) fn new(root: Bounds, nodes: Vec<Kept>, triangles: Vec<u32>) -> KdTree {
+    pub(super) fn new(root: Bounds, nodes: Vec<StoredNode>, triangles: Vec<u32>) -> KdTree {
         KdTree { root, nodes, triangles }
     }
 
-    /// The tree of nodes that are given in their order; `None` when they are not the nodes of a tree level by level.
-    pub(crate) fn from_nodes<P: AsRef<[u32]>>(root: Bounds, nodes: impl Iterator<Item = Given<P>>) -> Option<KdTree> {
+    /// The tree of nodes in their order; `None` when they are not the nodes of a tree level by level.
+    pub(crate) fn from_nodes<P: AsRef<[u32]>>(
+        root: Bounds,
+        nodes: impl Iterator<Item = UnlinkedNode<P>>,
+    ) -> Option<KdTree> {
         let mut tree = KdTree { root, nodes: Vec::new(), triangles: Vec::new() };
         let mut below = 1;
         for node in nodes {
             tree.nodes.push(match node {
-                Given::Inner { axis, at } => {
+                UnlinkedNode::Inner { axis, at } => {
                     below += 2;
-                    Kept::Inner { axis: u8::try_from(axis).ok().filter(|axis| *axis < 3)?, at, left: below - 2 }
+                    StoredNode::Inner { axis: u8::try_from(axis).ok().filter(|axis| *axis < 3)?, at, left: below - 2 }
                 }
-                Given::Leaf(packet) => {
+                UnlinkedNode::Leaf(packet) => {
                     let (first, count) = (tree.triangles.len(), packet.as_ref().len());
                     tree.triangles.extend_from_slice(packet.as_ref());
-                    Kept::Leaf { first: u32::try_from(first).ok()?, count: u32::try_from(count).ok()? }
+                    StoredNode::Leaf { first: u32::try_from(first).ok()?, count: u32::try_from(count).ok()? }
                 }
             });
         }
@@ -97,8 +100,8 @@ impl KdTree {
     /// When there is no such node.
     pub fn content(&self, number: u32) -> Content<'_> {
         match self.nodes[number as usize] {
-            Kept::Inner { axis, at, left } => Content::Inner { axis: axis.into(), at, left },
-            Kept::Leaf { first, count } => {
+            StoredNode::Inner { axis, at, left } => Content::Inner { axis: axis.into(), at, left },
+            StoredNode::Leaf { first, count } => {
                 Content::Leaf { triangles: &self.triangles[first as usize..][..count as usize] }
             }
         }
@@ -124,8 +127,8 @@ impl KdTree {
     }
 }
 
-/// A node of which children and neighbours are yet to be found.
-pub(crate) enum Given<P> {
+/// A node that does not know its children and neighbours yet.
+pub(crate) enum UnlinkedNode<P> {
     /// A plane.
     Inner {
         /// Its axis.

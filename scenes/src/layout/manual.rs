@@ -3,20 +3,20 @@
 use std::fmt::Write;
 
 use super::{Field, LIGHT, Layout, MATERIAL, PIXEL, Structure};
-use crate::image::{HEADER, Kind};
+use crate::image::{HEADER, MemoryKind};
 
 /// The manual of both layouts: `docs/layouts.md`.
 pub fn manual() -> String {
     let mut text = INTRODUCTION.to_string();
-    for (number, kind) in Kind::ALL.into_iter().enumerate() {
+    for (number, kind) in MemoryKind::ALL.into_iter().enumerate() {
         let holds = match kind {
-            Kind::Header => format!("{HEADER} octets that are never used, so that 0 is no structure's address"),
-            Kind::Nodes => "nodes of the kd tree, level by level; the root is the first".to_string(),
-            Kind::References => "references of the leaves to their triangles, leaf by leaf".to_string(),
-            Kind::Triangles => "triangles, by index".to_string(),
-            Kind::Materials => "materials, by number".to_string(),
-            Kind::Lights => "lights, by number".to_string(),
-            Kind::Frame => "pixels, row 0 (the top) first, from left to right; zero at the start".to_string(),
+            MemoryKind::Header => format!("{HEADER} octets that are never used, so that 0 is no structure's address"),
+            MemoryKind::Nodes => "nodes of the kd tree, level by level; the root is the first".to_string(),
+            MemoryKind::References => "references of the leaves to their triangles, leaf by leaf".to_string(),
+            MemoryKind::Triangles => "triangles, by index".to_string(),
+            MemoryKind::Materials => "materials, by number".to_string(),
+            MemoryKind::Lights => "lights, by number".to_string(),
+            MemoryKind::Frame => "pixels, row 0 (the top) first, from left to right; zero at the start".to_string(),
         };
         line(&mut text, &format!("{}. `{}`: {holds}.", number + 1, kind.name()));
     }

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::search::{Hit, Search, better};
-use super::triangle::{Ray, Shapes, Triangle};
+use super::triangle::{PreparedTriangle, Ray, Shapes};
 use crate::model::Vec3;
 use crate::vector::AXES;
 
@@ -14,11 +14,11 @@ pub struct Hierarchy<'a> {
     shapes: Shapes<'a>,
     /// The numbers of the triangles, leaf by leaf.
     indices: Vec<u32>,
-    nodes: Vec<Node>,
+    nodes: Vec<BoxNode>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
+struct BoxNode {
     /// Its box in single precision, rounded outwards.
     low: [f32; 3],
     high: [f32; 3],
@@ -28,10 +28,10 @@ struct Node {
     count: u32,
 }
 
-impl Node {
+impl BoxNode {
     /// A leaf.
-    fn new((low, high): Box3, range: &Range<usize>) -> Node {
-        Node {
+    fn new((low, high): Box3, range: &Range<usize>) -> BoxNode {
+        BoxNode {
             low: low.map(|x| if f64::from(x as f32) > x { (x as f32).next_down() } else { x as f32 }),
             high: high.map(|x| if f64::from(x as f32) < x { (x as f32).next_up() } else { x as f32 }),
             first: range.start as u32,
@@ -74,12 +74,12 @@ impl<'a> Hierarchy<'a> {
     pub fn new(shapes: Shapes<'a>, mut indices: Vec<u32>) -> Hierarchy<'a> {
         // Mostly half as many; growing by doubling would hold three times of it at once.
         let mut nodes = Vec::with_capacity(indices.len().max(1));
-        nodes.push(Node::new(EMPTY, &(0..0)));
+        nodes.push(BoxNode::new(EMPTY, &(0..0)));
         let mut open = vec![(0usize, 0..indices.len(), 0)];
         while let Some((number, range, level)) = open.pop() {
             let part = &mut indices[range.clone()];
             let split = if part.len() <= SMALL { None } else { Some(divide(&shapes, part, level)) };
-            nodes[number] = Node::new(part.iter().map(|&index| box_of(&shapes, index)).fold(EMPTY, joined), &range);
+            nodes[number] = BoxNode::new(part.iter().map(|&index| box_of(&shapes, index)).fold(EMPTY, joined), &range);
             if let Some(at) = split {
                 let left = nodes.len();
                 nodes[number].first = left as u32;
@@ -95,7 +95,7 @@ impl<'a> Hierarchy<'a> {
     /// Visits the leaves that the ray passes before `end`, near ones first; `visit` returns the new end.
     fn walk(&self, ray: &Ray, mut end: f64, mut visit: impl FnMut(&[u32]) -> f64) {
         let reciprocal = ray.direction.map(|d| 1.0 / d);
-        let entry = |node: &Node, end: f64| enters(node, ray.origin, reciprocal, end);
+        let entry = |node: &BoxNode, end: f64| enters(node, ray.origin, reciprocal, end);
         let mut stack = [(0u32, 0.0f64); STACK];
         let mut height = 0;
         let mut number = 0;
@@ -140,7 +140,7 @@ impl<'a> Hierarchy<'a> {
 
 /// Where the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
 /// in the test of a triangle, so that no hit is lost.
-fn enters(node: &Node, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
+fn enters(node: &BoxNode, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
     const SLACK: f64 = 1e-12;
     let (mut near, mut far) = (0.0f64, end);
     for k in AXES {
@@ -190,7 +190,7 @@ fn divide(shapes: &Shapes, part: &mut [u32], level: u32) -> usize {
 }
 
 impl Search for Hierarchy<'_> {
-    fn triangle(&self, index: u32) -> Triangle {
+    fn triangle(&self, index: u32) -> PreparedTriangle {
         self.shapes.triangle(index)
     }
 

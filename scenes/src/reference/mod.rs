@@ -58,7 +58,7 @@ pub struct Rendering {
 
 /// How the triangle that a ray meets is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum SearchMethod {
     /// By a hierarchy of boxes.
     #[default]
     Hierarchy,
@@ -80,7 +80,7 @@ impl<'a> Reference<'a> {
     ///
     /// # Errors
     /// What [`Scene::check`], [`View::check`] and [`Rays::new`] refuse, and pictures of more than [`MOST_PIXELS`].
-    pub fn new(scene: &'a Scene, view: &View, method: Method) -> Result<Reference<'a>, Report> {
+    pub fn new(scene: &'a Scene, view: &View, method: SearchMethod) -> Result<Reference<'a>, Report> {
         Reference::framed(scene, scene.bounds(), view, method)
     }
 
@@ -92,7 +92,7 @@ impl<'a> Reference<'a> {
         scene: &'a Scene,
         corners: Option<Corners>,
         view: &View,
-        method: Method,
+        method: SearchMethod,
     ) -> Result<Reference<'a>, Report> {
         let mut report = scene.check();
         report.0.extend(view.check().0);
@@ -118,8 +118,8 @@ impl<'a> Reference<'a> {
         let local_view = View { camera: camera::mapped(&view.camera, local), ..view.clone() };
         let rays = Rays::new((local(corners.0), local(corners.1)), &local_view)?;
         let search: Box<dyn Search + 'a> = match method {
-            Method::Hierarchy => Box::new(Hierarchy::new(shapes, indices)),
-            Method::Exhaustive => Box::new(Exhaustive { shapes, indices }),
+            SearchMethod::Hierarchy => Box::new(Hierarchy::new(shapes, indices)),
+            SearchMethod::Exhaustive => Box::new(Exhaustive { shapes, indices }),
         };
         Ok(Reference { search, world: whitted::World::new(scene, view, local), rays, size: view.size })
     }
@@ -156,7 +156,7 @@ impl<'a> Reference<'a> {
 /// # Errors
 /// See [`Reference::new`].
 pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
-    Ok(Reference::new(scene, view, Method::Hierarchy)?.picture())
+    Ok(Reference::new(scene, view, SearchMethod::Hierarchy)?.picture())
 }
 
 /// The same picture, each ray tried against all triangles.
@@ -164,5 +164,5 @@ pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
 /// # Errors
 /// See [`Reference::new`].
 pub fn render_exhaustively(scene: &Scene, view: &View) -> Result<Rendering, Report> {
-    Ok(Reference::new(scene, view, Method::Exhaustive)?.picture())
+    Ok(Reference::new(scene, view, SearchMethod::Exhaustive)?.picture())
 }

@@ -1,7 +1,7 @@
 //! Which triangle a ray meets first, and whether it meets any: what is asked, and the answer by trying all triangles. The quick answer is in
 //! [`super::hierarchy`]; it is the same, bit for bit, because both use the same test of one triangle and the same order of hits.
 
-use super::triangle::{Ray, Shapes, Triangle};
+use super::triangle::{PreparedTriangle, Ray, Shapes};
 
 /// A triangle that is hit, and the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct Hit {
 /// Triangles that rays can be sent at.
 pub trait Search: Sync {
     /// A triangle by its number in the scene.
-    fn triangle(&self, index: u32) -> Triangle;
+    fn triangle(&self, index: u32) -> PreparedTriangle;
 
     /// The hit with the smallest distance; of equal ones that of the triangle with the lowest number.
     fn nearest(&self, ray: &Ray) -> Option<Hit>;
@@ -42,7 +42,7 @@ pub fn better(best: Option<Hit>, hit: Hit) -> Option<Hit> {
 }
 
 impl Search for Exhaustive<'_> {
-    fn triangle(&self, index: u32) -> Triangle {
+    fn triangle(&self, index: u32) -> PreparedTriangle {
         self.shapes.triangle(index)
     }
 

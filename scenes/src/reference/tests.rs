@@ -248,7 +248,8 @@ fn generated_scenes_are_the_same_by_hierarchy_and_by_trying_all() {
     let mut seen = 0;
     for generator in generate::SCENES {
         let scene =
-            generate::scene(generator.name, &generate::Options { size: (32, 24), ..Default::default() }).unwrap();
+            generate::scene(generator.name, &generate::GenerateOptions { size: (32, 24), ..Default::default() })
+                .unwrap();
         if scene.triangles.len() >= 3000 {
             continue;
         }
@@ -264,7 +265,8 @@ fn generated_scenes_are_the_same_by_hierarchy_and_by_trying_all() {
 
 #[test]
 fn a_picture_does_not_depend_on_the_size_and_place_of_its_scene() {
-    let scene = generate::scene("cornell", &generate::Options { size: (24, 18), ..Default::default() }).unwrap();
+    let scene =
+        generate::scene("cornell", &generate::GenerateOptions { size: (24, 18), ..Default::default() }).unwrap();
     let view = View { shift: [0.137, 0.071], ..View::new((24, 18)) };
     let plain = render(&scene, &view).unwrap();
     for power in [-1000, -10, 10, 1000] {

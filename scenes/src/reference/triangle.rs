@@ -49,8 +49,10 @@ pub struct Shapes<'a> {
 
 impl Shapes<'_> {
     /// A triangle by its number in the scene.
-    pub fn triangle(&self, index: u32) -> Triangle {
-        Triangle { vertices: self.triangles[index as usize].vertices.map(|vertex| self.vertices[vertex as usize]) }
+    pub fn triangle(&self, index: u32) -> PreparedTriangle {
+        PreparedTriangle {
+            vertices: self.triangles[index as usize].vertices.map(|vertex| self.vertices[vertex as usize]),
+        }
     }
 
     /// The numbers of the triangles that can be hit: those with an area.
@@ -61,12 +63,12 @@ impl Shapes<'_> {
 
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct Triangle {
+pub struct PreparedTriangle {
     /// Its vertices.
     pub vertices: [Vec3; 3],
 }
 
-impl Triangle {
+impl PreparedTriangle {
     /// A normal of length 1; the side it is on depends on the order of the vertices. `None` where the triangle has no area.
     pub fn normal(&self) -> Option<Vec3> {
         let [a, b, c] = self.vertices;

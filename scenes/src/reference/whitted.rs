@@ -3,7 +3,7 @@
 
 use super::RayCounts;
 use super::search::Search;
-use super::triangle::{Ray, Triangle};
+use super::triangle::{PreparedTriangle, Ray};
 use crate::model::{self, Light, Material, Scene, Vec3, View};
 use crate::vector::{add, dot, scale, sub, unit};
 
@@ -135,7 +135,7 @@ impl<'a> World<'a> {
 }
 
 /// The triangle's normal on the side that a ray comes from.
-fn facing(triangle: &Triangle, direction: Vec3) -> Vec3 {
+fn facing(triangle: &PreparedTriangle, direction: Vec3) -> Vec3 {
     let normal = triangle.normal().expect("a triangle that is hit has an area");
     if dot(normal, direction) > 0.0 { scale(normal, -1.0) } else { normal }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use messages::{Diagnostic, Report};
-use scenes::generate::{self, Options, SCENES};
+use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::write;
 
 use super::parts;
@@ -74,7 +74,7 @@ fn check_folder(folder: &Path) -> Result<(), Report> {
 
 /// Generates and writes.
 pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let options = Options { level: arguments.level, triangles: arguments.triangles, size: arguments.size };
+    let options = GenerateOptions { level: arguments.level, triangles: arguments.triangles, size: arguments.size };
     let folder = arguments.output.clone().unwrap_or_default();
     let paths = ["dsc", "off"].map(|extension| folder.join(format!("{}.{extension}", arguments.name)));
     let is_new = !folder.as_os_str().is_empty() && !folder.exists();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use scenes::image::Options;
+use scenes::image::MemoryOptions;
 use scenes::info::SceneInfo;
 use scenes::layout::Layout;
 
@@ -57,7 +57,7 @@ fn layout() -> impl TypedValueParser<Value = Layout> {
 pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
     terminal.show(&loaded.warnings);
-    let options = Options {
+    let options = MemoryOptions {
         word: arguments.word,
         layout: arguments.layout,
         kd_depth: arguments.tree.kd_depth,

@@ -14,7 +14,7 @@ use crate::twin::stage::Stage;
 
 /// Where a ray leaves a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Exit {
+pub struct ExitPoint {
     /// Axis of the plane; 3 for a ray without a direction, which leaves by none.
     pub axis: usize,
     /// Coordinate of the plane, raw; 0 where there is none.
@@ -61,13 +61,13 @@ fn crossings(
 }
 
 /// The nearest of the crossings by which the ray leaves; of equal ones the last. Each point is brought into the packet.
-pub fn exit_face(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, bounds: &Bounds) -> Exit {
-    let mut exit = Exit { axis: 3, plane: 0, t: constants.missed, point: [0; 3] };
+pub fn exit_face(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, bounds: &Bounds) -> ExitPoint {
+    let mut exit = ExitPoint { axis: 3, plane: 0, t: constants.missed, point: [0; 3] };
     for Crossing { axis, plane, t, mut point, slope } in crossings(arithmetic, constants, ray, bounds) {
         if slope > 0 && t <= exit.t {
             point = from_fn(|k| point[k].max(bounds.low[k]).min(bounds.high[k]));
             point[axis] = plane;
-            exit = Exit { axis, plane, t, point };
+            exit = ExitPoint { axis, plane, t, point };
         }
     }
     exit

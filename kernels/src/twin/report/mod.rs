@@ -6,8 +6,8 @@ mod surface;
 mod triangle;
 mod walk;
 
-pub use crossing::{Exit, exit_face, first_packet};
+pub use crossing::{ExitPoint, exit_face, first_packet};
 pub use scalar::dot;
-pub use surface::{Refraction, lit, normal, reflect, refract, sides, transmitted, unit};
+pub use surface::{Transmission, lit, normal, reflect, refract, sides, transmitted, unit};
 pub use triangle::{barycentric, triangle};
 pub use walk::{descend, next_packet, own_packet};

@@ -52,7 +52,7 @@ pub fn reflect(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface
 
 /// What becomes of a ray that goes through a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refraction {
+pub enum Transmission {
     /// Nothing: it is totally reflected.
     Total,
     /// It goes in this direction.
@@ -60,7 +60,7 @@ pub enum Refraction {
 }
 
 /// The refracted ray, T = eta (D + c N) - sqrt(k) N with eta = ni / nt divided anew.
-pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface, inside: bool) -> Refraction {
+pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface, inside: bool) -> Transmission {
     let (bits, index) = (constants.formats.direction, constants.formats.index);
     let (one, unit_index) = (1 << bits, 1 << index);
     let (from, to) = if inside { (surface.material.index, unit_index) } else { (unit_index, surface.material.index) };
@@ -70,12 +70,12 @@ pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface
     let twice = arithmetic.times(once, eta, (2 * index).saturating_sub(bits));
     let k = arithmetic.minus(one, twice);
     if k < 0 {
-        return Refraction::Total;
+        return Transmission::Total;
     }
     let root = sqrt(arithmetic, arithmetic.widen(i128::from(k) << bits, 0));
     let along = arithmetic.sum(surface.incident, arithmetic.scaled(surface.facing, surface.cosine, bits));
     let along = arithmetic.scaled(along, eta, index);
-    Refraction::Through(arithmetic.difference(along, arithmetic.scaled(surface.facing, root, bits)))
+    Transmission::Through(arithmetic.difference(along, arithmetic.scaled(surface.facing, root, bits)))
 }
 
 /// What becomes of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
@@ -92,8 +92,8 @@ pub fn transmitted(
     }
     let weight = arithmetic.times(weight, surface.material.transmission, constants.formats.weight);
     match refract(arithmetic, constants, surface, inside) {
-        Refraction::Total => (weight, None),
-        Refraction::Through(direction) => (0, Some((weight, direction))),
+        Transmission::Total => (weight, None),
+        Transmission::Through(direction) => (0, Some((weight, direction))),
     }
 }
 

@@ -6,13 +6,13 @@ use super::super::words::{Word, Words};
 
 /// What has been seen of a file's colours.
 #[derive(Default)]
-pub(super) struct Colours<'a> {
+pub(super) struct ColourScale<'a> {
     above_one: Option<Word<'a>>,
     fraction: Option<Word<'a>>,
     above_octet: Option<Word<'a>>,
 }
 
-impl<'a> Colours<'a> {
+impl<'a> ColourScale<'a> {
     /// Looks at one colour's components.
     pub(super) fn note(&mut self, words: &mut Words<'a>, components: [(f64, Word<'a>); 3]) {
         for (value, word) in components {

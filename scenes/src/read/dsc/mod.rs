@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use messages::{Diagnostic, Place, Report, Source};
 
-use self::colour::Colours;
+use self::colour::ColourScale;
 use super::words::{Word, Words, counted};
 use crate::model::{Light, Material};
 
@@ -32,7 +32,7 @@ pub struct Description {
 }
 
 /// A count as the file announces it, and its word.
-type Count<'a> = (u32, Word<'a>);
+type WordedCount<'a> = (u32, Word<'a>);
 
 /// What a line of six numbers holds.
 struct Shape {
@@ -67,7 +67,7 @@ fn read(words: &mut Words<'_>) -> Option<Description> {
     words.room(materials.0, materials.1, "materials", 12)?;
     words.room(lights.0, lights.1, "lights", 12)?;
 
-    let mut colours = Colours::default();
+    let mut colours = ColourScale::default();
     let mut surfaces = Vec::new();
     for n in 0..materials.0 {
         if let Some((values, at)) = six(words, &MATERIAL, n, materials)? {
@@ -144,7 +144,7 @@ fn side(words: &mut Words<'_>, what: &str) -> Option<u32> {
 }
 
 /// The number of `what`, with its word.
-fn count<'a>(words: &mut Words<'a>, what: &str) -> Option<Count<'a>> {
+fn count<'a>(words: &mut Words<'a>, what: &str) -> Option<WordedCount<'a>> {
     let Some(word) = words.next() else {
         return cut(words, &format!("before the number of {what}"), None);
     };
@@ -152,7 +152,7 @@ fn count<'a>(words: &mut Words<'a>, what: &str) -> Option<Count<'a>> {
 }
 
 /// Refuses another line of six numbers where the number of triangles is expected: a count before is too small.
-fn is_not_a_light(words: &mut Words<'_>, materials: Count<'_>, lights: Count<'_>) -> Option<()> {
+fn is_not_a_light(words: &mut Words<'_>, materials: WordedCount<'_>, lights: WordedCount<'_>) -> Option<()> {
     let at = words.position();
     let first = words.next();
     let (in_line, end) = first.map_or((0, at), |first| words.rest_of_line(first));
@@ -175,7 +175,7 @@ fn six<'a>(
     words: &mut Words<'a>,
     shape: &Shape,
     n: u32,
-    announced: Count<'a>,
+    announced: WordedCount<'a>,
 ) -> Option<Option<([f64; 6], [Word<'a>; 6])>> {
     let name = shape.name;
     let Some(first) = words.next() else {
@@ -242,8 +242,8 @@ fn check_material(words: &mut Words<'_>, n: u32, material: &Material, at: [Word<
 /// The material of each triangle.
 fn triangle_materials(
     words: &mut Words<'_>,
-    triangles: Count<'_>,
-    materials: Count<'_>,
+    triangles: WordedCount<'_>,
+    materials: WordedCount<'_>,
     room: usize,
 ) -> Option<Vec<u32>> {
     let mut list = Vec::with_capacity(room);

@@ -6,13 +6,13 @@ use std::collections::{HashMap, HashSet};
 use messages::{Diagnostic, Report};
 
 use super::super::words::{self, Word, Words, shortened};
-use super::{Contents, Libraries, material};
+use super::{Libraries, ObjContents, material};
 use crate::model::Material;
 
 /// The material of each name that is used, where a library defines it.
 pub(super) fn find(
     words: &mut Words<'_>,
-    contents: &Contents<'_>,
+    contents: &ObjContents<'_>,
     is_used: &[bool],
     libraries: &mut Libraries<'_>,
     others: &mut Report,

@@ -5,27 +5,27 @@ use messages::{Diagnostic, nearest, question};
 use super::super::words::{Word, Words, counted, shortened};
 
 /// What is lost for one reason.
-struct Kind {
+struct LostKind {
     keywords: &'static [&'static str],
     /// What is counted, as the subject of a sentence; its plural; and the rest of the sentence.
     says: [&'static str; 3],
 }
 
-const KINDS: [Kind; 7] = [
-    Kind {
+const LOST_KINDS: [LostKind; 7] = [
+    LostKind {
         keywords: &["vn", "s"],
         says: ["normal or smoothing group is", "normals and smoothing groups are", "not used: triangles are flat"],
     },
-    Kind { keywords: &["vt"], says: ["texture position is", "texture positions are", "not used"] },
-    Kind { keywords: &["p", "l"], says: ["point or line", "points and lines", "cannot be seen"] },
-    Kind {
+    LostKind { keywords: &["vt"], says: ["texture position is", "texture positions are", "not used"] },
+    LostKind { keywords: &["p", "l"], says: ["point or line", "points and lines", "cannot be seen"] },
+    LostKind {
         keywords: &[
             "vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp",
             "end", "con", "bsp", "bzp", "cdc", "cdp", "res",
         ],
         says: ["statement of a curved shape is", "statements of curved shapes are", "not read: only faces are"],
     },
-    Kind {
+    LostKind {
         keywords: &[
             "bevel",
             "c_interp",
@@ -41,8 +41,8 @@ const KINDS: [Kind; 7] = [
         ],
         says: ["statement about display is", "statements about display are", "not used"],
     },
-    Kind { keywords: &[], says: ["vertex has a colour,", "vertices have colours,", "which are not used"] },
-    Kind {
+    LostKind { keywords: &[], says: ["vertex has a colour,", "vertices have colours,", "which are not used"] },
+    LostKind {
         keywords: &[],
         says: ["vertex has a weight,", "vertices have weights,", "which are not used: they are for curved shapes"],
     },
@@ -59,13 +59,13 @@ const USED: [&str; 9] = ["v", "f", "fo", "usemtl", "mtllib", "o", "g", "call", "
 
 /// What is lost of a file.
 #[derive(Default)]
-pub(super) struct Lost<'a> {
-    counts: [usize; KINDS.len()],
+pub(super) struct LostStatements<'a> {
+    counts: [usize; LOST_KINDS.len()],
     unknown: Option<Word<'a>>,
     more_unknown: usize,
 }
 
-impl<'a> Lost<'a> {
+impl<'a> LostStatements<'a> {
     /// Notes one loss of a kind.
     pub(super) fn note(&mut self, kind: usize) {
         self.counts[kind] += 1;
@@ -74,7 +74,7 @@ impl<'a> Lost<'a> {
     /// Notes a statement that is not used.
     pub(super) fn statement(&mut self, keyword: Word<'a>, arguments: &[Word<'a>]) {
         let is_off = keyword.text == "s" && arguments.first().is_some_and(|word| ["off", "0"].contains(&word.text));
-        match KINDS.iter().position(|kind| kind.keywords.contains(&keyword.text)) {
+        match LOST_KINDS.iter().position(|kind| kind.keywords.contains(&keyword.text)) {
             Some(_) if is_off => {}
             Some(kind) => self.note(kind),
             None if USED.contains(&keyword.text) => {}
@@ -85,7 +85,7 @@ impl<'a> Lost<'a> {
 
     /// Says what is lost. Text that has nothing of an OBJ file, not even a vertex, is an error.
     pub(super) fn complain(self, words: &mut Words<'_>, name: &str, is_empty: bool) {
-        for (kind, count) in KINDS.iter().zip(self.counts).filter(|(_, count)| *count > 0) {
+        for (kind, count) in LOST_KINDS.iter().zip(self.counts).filter(|(_, count)| *count > 0) {
             let [one, many, rest] = kind.says;
             words.complain(Diagnostic::warning(format!("{name}: {} {rest}", counted(count, one, many))));
         }
@@ -103,7 +103,7 @@ impl<'a> Lost<'a> {
             message.push_str(&format!("; {more} not known either"));
         }
         let warning = Diagnostic::warning(message).at(place, "not known");
-        let known = USED.iter().chain(KINDS.iter().flat_map(|kind| kind.keywords)).copied();
+        let known = USED.iter().chain(LOST_KINDS.iter().flat_map(|kind| kind.keywords)).copied();
         // A letter too many is more likely a statement of some program's own than a slip.
         let near = nearest(&text, known).filter(|near| near.len() > 1);
         words.complain(match near {

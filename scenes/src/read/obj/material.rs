@@ -27,7 +27,7 @@ struct Draft<'a> {
 
 /// What a library says that no material of a scene can have.
 #[derive(Default)]
-struct Lost<'a> {
+struct LostProperties<'a> {
     textures: usize,
     highlights: usize,
     emissions: usize,
@@ -42,7 +42,7 @@ struct Lost<'a> {
 pub(super) fn parse(source: &Arc<Source>) -> (Vec<(String, Material)>, Report) {
     let mut words = Words::new(source, if source.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 });
     let mut materials = Vec::new();
-    let mut lost = Lost::default();
+    let mut lost = LostProperties::default();
     let mut draft = None;
     let mut arguments = Vec::new();
     while let Some(keyword) = statement::next(&mut words, &mut arguments) {
@@ -76,7 +76,7 @@ fn read<'a>(
     keyword: Word<'a>,
     arguments: &[Word<'a>],
     draft: &mut Draft<'_>,
-    lost: &mut Lost<'a>,
+    lost: &mut LostProperties<'a>,
 ) {
     let mut clamp = |value: f64| {
         let clamped = value.clamp(0.0, 1.0);
@@ -159,7 +159,7 @@ fn one(words: &mut Words<'_>, keyword: Word<'_>, arguments: &[Word<'_>]) -> Opti
 /// - Where d is below 1, the material is transparent: what ks leaves is shared in the ratio of d to 1 - d by kd and
 ///   kt, the colour is Kd, the index of refraction Ni.
 /// - Otherwise kd times the colour is Kd, and kd is 1 - ks if Kd is no brighter than that.
-fn finish(draft: Draft<'_>, lost: &mut Lost<'_>) -> (String, Material) {
+fn finish(draft: Draft<'_>, lost: &mut LostProperties<'_>) -> (String, Material) {
     let is_reflecting = (3..=9).contains(&draft.model);
     let [red, green, blue] = draft.specular;
     // The mean of three equal numbers is not always the same bits.
@@ -177,7 +177,7 @@ fn finish(draft: Draft<'_>, lost: &mut Lost<'_>) -> (String, Material) {
     (draft.name.to_string(), material)
 }
 
-impl<'a> Lost<'a> {
+impl<'a> LostProperties<'a> {
     fn unread(&mut self, keyword: Word<'a>) {
         match self.unread {
             None => self.unread = Some(keyword),

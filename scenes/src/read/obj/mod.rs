@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 use messages::{Diagnostic, Report};
 
-use self::lost::Lost;
+use self::lost::LostStatements;
 use super::colour::Spec;
 use super::faces::Faces;
 use super::mesh::{GREY, Mesh};
@@ -56,7 +56,7 @@ pub fn parse<'a>(
 
 /// What stands in the file. Faces may come before their vertices, so they are cut at the end.
 #[derive(Default)]
-struct Contents<'a> {
+struct ObjContents<'a> {
     vertices: Vec<Vec3>,
     /// Vertices of all faces by number from 0.
     corners: Vec<u32>,
@@ -70,13 +70,13 @@ struct Contents<'a> {
     libraries: Vec<Word<'a>>,
 }
 
-fn read<'a>(words: &mut Words<'a>, name: &str) -> Option<Contents<'a>> {
+fn read<'a>(words: &mut Words<'a>, name: &str) -> Option<ObjContents<'a>> {
     if words.is_at_end() && words.line_from(0).text.is_empty() {
         words.complain(Diagnostic::error("the file is empty").at(words.end(), "expected vertices and faces"));
         return None;
     }
-    let mut contents = Contents::default();
-    let mut lost = Lost::default();
+    let mut contents = ObjContents::default();
+    let mut lost = LostStatements::default();
     let mut numbers = HashMap::new();
     let mut material = None;
     let mut arguments = Vec::new();
@@ -114,7 +114,7 @@ fn vertex<'a>(
     number: usize,
     keyword: Word<'a>,
     arguments: &[Word<'a>],
-    lost: &mut Lost<'a>,
+    lost: &mut LostStatements<'a>,
 ) -> Vec3 {
     let count = arguments.len();
     if !matches!(count, 3 | 4 | 6 | 7) {
@@ -143,7 +143,7 @@ fn vertex<'a>(
     [values[0], values[1], values[2]]
 }
 
-impl<'a> Contents<'a> {
+impl<'a> ObjContents<'a> {
     /// Takes a face.
     fn face(&mut self, words: &mut Words<'a>, keyword: Word<'a>, arguments: &[Word<'a>], material: Option<u32>) {
         let face = self.faces.len() + 1;

@@ -13,7 +13,7 @@ use super::position;
 use crate::model::Vec3;
 
 /// A count and its word.
-type Count<'a> = (u32, Word<'a>);
+type SpannedCount<'a> = (u32, Word<'a>);
 
 /// Reads what follows the header; `None` when it is no longer clear what must follow.
 pub(super) fn read(words: &mut Words<'_>, header: &Header) -> Option<Mesh> {
@@ -32,7 +32,7 @@ pub(super) fn read(words: &mut Words<'_>, header: &Header) -> Option<Mesh> {
 }
 
 /// The numbers of vertices and faces. The number of edges is not used, and may be left out on a line of its own.
-fn counts<'a>(words: &mut Words<'a>) -> Option<(Count<'a>, Count<'a>)> {
+fn counts<'a>(words: &mut Words<'a>) -> Option<(SpannedCount<'a>, SpannedCount<'a>)> {
     let mut count = |what: &str| {
         let Some(word) = words.next() else {
             let error = Diagnostic::error(format!("the file ends before the number of {what}"));
@@ -74,7 +74,7 @@ fn edges(words: &mut Words<'_>, word: Word<'_>) {
     }
 }
 
-/// Numbers that each vertex has in this file. Colours of vertices have four, but three are about as well: the line of
+/// Numbers that each vertex has in this file. FaceColours of vertices have four, but three are about as well: the line of
 /// the first vertex tells.
 fn numbers_of_vertex(words: &mut Words<'_>, header: &Header) -> usize {
     let others = header.components + 3 * usize::from(header.has_normals) + 2 * usize::from(header.has_texture);
@@ -91,7 +91,7 @@ fn numbers_of_vertex(words: &mut Words<'_>, header: &Header) -> usize {
 fn vertices(
     words: &mut Words<'_>,
     header: &Header,
-    points: Count<'_>,
+    points: SpannedCount<'_>,
     numbers: usize,
     room: usize,
 ) -> Option<Vec<Vec3>> {
@@ -147,14 +147,14 @@ struct Beyond<'a> {
 fn faces<'a>(
     words: &mut Words<'a>,
     vertices: &[Vec3],
-    polygons: Count<'a>,
-    points: Count<'a>,
+    polygons: SpannedCount<'a>,
+    points: SpannedCount<'a>,
     room: usize,
 ) -> Option<Faces> {
     let mut faces = Faces::with_room(room);
     let mut corners = Vec::new();
     let mut beyond: Option<Beyond<'a>> = None;
-    let mut colours = Colours::default();
+    let mut colours = FaceColours::default();
     for n in 0..polygons.0 {
         let Some(word) = words.next() else {
             let error = Diagnostic::error(format!(
@@ -214,12 +214,12 @@ fn faces<'a>(
 
 /// Reads the colours of faces, and remembers the first that is none.
 #[derive(Default)]
-struct Colours {
+struct FaceColours {
     unused: Option<(u32, Range<usize>)>,
     more: usize,
 }
 
-impl Colours {
+impl FaceColours {
     /// The colour of face `n`: whatever stands between its last corner and the end of the line. `None` when that
     /// cannot be a colour, but is likely more faces.
     fn read(&mut self, words: &mut Words<'_>, n: u32) -> Option<Spec> {
@@ -274,7 +274,7 @@ impl Colours {
 }
 
 /// Whatever follows the last face: numbers mean that a count is wrong (then true), other text belongs to someone else.
-fn trailing(words: &mut Words<'_>, points: Count<'_>, polygons: Count<'_>) -> bool {
+fn trailing(words: &mut Words<'_>, points: SpannedCount<'_>, polygons: SpannedCount<'_>) -> bool {
     let Some(word) = words.next() else { return false };
     let place = words.place(word.span());
     let (vertices, faces) =

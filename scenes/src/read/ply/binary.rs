@@ -10,7 +10,7 @@ use super::super::mesh::Mesh;
 use super::super::words::{Words, counted};
 use super::header::Element;
 use super::row::Row;
-use super::{Contents, has_room, is_empty, which};
+use super::{PlyContents, has_room, is_empty, which};
 
 /// Reads the elements from octet `start` on; `None` after a complaint.
 pub(super) fn read(
@@ -22,7 +22,7 @@ pub(super) fn read(
 ) -> Option<Mesh> {
     let name = words.place(0..0).source.name.clone();
     let parser = Parser::<Row>::new();
-    let mut contents = Contents::default();
+    let mut contents = PlyContents::default();
     let mut cursor = Cursor::new(bytes);
     cursor.set_position(start as u64);
     for element in elements.iter().filter(|element| !is_empty(element)) {

@@ -84,14 +84,14 @@ impl Complaint {
 
 /// The elements of a file on their way to a mesh.
 #[derive(Default)]
-struct Contents {
+struct PlyContents {
     vertices: Vec<Vec3>,
     faces: Faces,
     has_vertex_colours: bool,
     corners: Vec<u32>,
 }
 
-impl Contents {
+impl PlyContents {
     /// Takes an element of a role; `number` counts from 0.
     fn push(&mut self, role: Role, number: usize, row: &Row) -> Result<(), Complaint> {
         match role {

@@ -8,12 +8,12 @@ use super::super::mesh::Mesh;
 use super::super::words::{Word, Words, counted, shortened};
 use super::header::{Element, Expected, expected};
 use super::row::Row;
-use super::{Contents, has_room, is_empty, which};
+use super::{PlyContents, has_room, is_empty, which};
 
 /// Reads the elements that follow the header; `None` after a complaint.
 pub(super) fn read(words: &mut Words<'_>, elements: &[Element<'_>], name: &str) -> Option<Mesh> {
     let parser = Parser::<Row>::new();
-    let mut contents = Contents::default();
+    let mut contents = PlyContents::default();
     for element in elements.iter().filter(|element| !is_empty(element)) {
         if !has_room(words, element, words.remaining(), true) {
             return None;

@@ -7,7 +7,7 @@ use messages::{Diagnostic, Report};
 
 use super::super::mesh::Mesh;
 use super::super::words::counted;
-use super::Corners;
+use super::SharedCorners;
 
 /// Octets before the first triangle.
 const HEADER: usize = 84;
@@ -62,7 +62,7 @@ pub(super) fn parse(bytes: Cow<'_, [u8]>, name: &str) -> Result<Mesh, Report> {
         // The library takes this word for a text's.
         bytes.to_mut()[..5].fill(0);
     }
-    let mut corners = Corners::default();
+    let mut corners = SharedCorners::default();
     let mut reader = Cursor::new(&bytes[..]);
     let triangles = stl_io::create_stl_reader(&mut reader)
         .map_err(|error| Diagnostic::error(format!("{name} cannot be read as STL: {error}")))?;

@@ -18,7 +18,7 @@ use crate::model::Vec3;
 
 /// Reads an STL file; `name` is shown in messages. Numbers are of single precision, in text too.
 ///
-/// - Corners with the same coordinates become one vertex; normals are not used.
+/// - SharedCorners with the same coordinates become one vertex; normals are not used.
 /// - A file is binary when its length is that of the triangles it announces, whatever its first word is.
 /// - Colours, which some programs hide in binary files, are read over with a warning.
 ///
@@ -46,13 +46,13 @@ pub(super) fn is_binary(bytes: &[u8]) -> bool {
 
 /// Triangles on their way to a mesh.
 #[derive(Default)]
-struct Corners {
+struct SharedCorners {
     vertices: Vec<Vec3>,
     numbers: HashMap<[u32; 3], u32>,
     faces: Faces,
 }
 
-impl Corners {
+impl SharedCorners {
     /// Takes a triangle; false when a coordinate is not finite.
     fn push(&mut self, triangle: &Triangle) -> bool {
         if !triangle.vertices.iter().flat_map(|corner| corner.0).all(f32::is_finite) {

@@ -11,7 +11,7 @@ use messages::{Diagnostic, Report};
 
 use super::super::mesh::Mesh;
 use super::super::words::{self, Word, Words, counted, shortened};
-use super::Corners;
+use super::SharedCorners;
 
 /// The statements of a triangle in their order, each with the number of words that it has.
 const STEPS: [(&str, usize); 7] = [
@@ -52,7 +52,7 @@ pub(super) fn parse(bytes: Cow<'_, [u8]>, name: &str) -> Result<Mesh, Report> {
     let last = Rc::new(Cell::new(Last::default()));
     let mut statements =
         Statements { words, start, last: last.clone(), step: None, rest: Vec::new(), text: Vec::new(), at: 0 };
-    let mut corners = Corners::default();
+    let mut corners = SharedCorners::default();
     let mut is_good = true;
     match stl_io::create_stl_reader(&mut statements) {
         Ok(triangles) => {

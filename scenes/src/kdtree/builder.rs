@@ -1,9 +1,9 @@
-//! How a tree grows: node by node from the root down, both sides of a plane at the same time where they are large. Which triangles a node
+//! Building of a tree: node by node from the root down, both sides of a plane at the same time where they are large. Which triangles a node
 //! holds and where it may be divided is a [`Membership`]'s to say; nothing here looks at a coordinate.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::grown::{Grown, Shoot, Sprout};
+use super::built::{BuildNode, BuiltTree, Subtree};
 use super::split::{Division, Side, Sweep};
 use super::{Bounds, MOST_REFERENCES};
 
@@ -26,36 +26,36 @@ pub(super) trait Membership: Sync {
 }
 
 /// There are more references than [`MOST_REFERENCES`].
-pub(super) struct TooMany;
+pub(super) struct TooManyReferences;
 
-/// Grows the tree of `packet` in the box `root`, at most `depth` levels high.
+/// Builds the tree of `packet` in the box `root`, at most `depth` levels high.
 ///
 /// # Errors
 /// When the leaves together would hold more than [`MOST_REFERENCES`] triangles.
-pub(super) fn grow<M: Membership>(
+pub(super) fn build<M: Membership>(
     membership: &M,
     packet: Vec<M::Member>,
     root: Bounds,
     depth: u32,
-) -> Result<Grown, TooMany> {
-    let growth = Growth { membership, references: AtomicUsize::new(packet.len()) };
-    Ok(Grown::new(root, growth.large(packet, root, depth, &mut Sweep::default())?))
+) -> Result<BuiltTree, TooManyReferences> {
+    let builder = Builder { membership, references: AtomicUsize::new(packet.len()) };
+    Ok(BuiltTree::new(root, builder.large(packet, root, depth, &mut Sweep::default())?))
 }
 
-struct Growth<'a, M> {
+struct Builder<'a, M> {
     membership: &'a M,
     /// Members of all nodes that are not divided (yet). It never shrinks, so whether it passes the limit does not depend on the order.
     references: AtomicUsize,
 }
 
-/// What becomes of a node.
-enum Fate<T> {
+/// Outcome of looking for a plane through a node.
+enum Divided<T> {
     Leaf(Vec<T>),
     /// The plane, and what is on either side of it.
-    Inner(Sprout, [(Vec<T>, Bounds); 2]),
+    Inner(BuildNode, [(Vec<T>, Bounds); 2]),
 }
 
-impl<M: Membership> Growth<'_, M> {
+impl<M: Membership> Builder<'_, M> {
     /// A node of which both sides may be worth a thread each.
     fn large(
         &self,
@@ -63,53 +63,53 @@ impl<M: Membership> Growth<'_, M> {
         node: Bounds,
         levels: u32,
         sweep: &mut Sweep,
-    ) -> Result<Vec<Shoot>, TooMany> {
-        let mut shoot = Shoot::default();
+    ) -> Result<Vec<Subtree>, TooManyReferences> {
+        let mut subtree = Subtree::default();
         if packet.len() < WORTH_A_THREAD {
-            self.small(packet, node, levels, sweep, &mut shoot)?;
-            shoot.nodes.shrink_to_fit();
-            shoot.triangles.shrink_to_fit();
-            return Ok(vec![shoot]);
+            self.small(packet, node, levels, sweep, &mut subtree)?;
+            subtree.nodes.shrink_to_fit();
+            subtree.triangles.shrink_to_fit();
+            return Ok(vec![subtree]);
         }
         match self.divide(packet, node, levels, sweep)? {
-            Fate::Leaf(packet) => {
-                self.leaf(&packet, &mut shoot);
-                Ok(vec![shoot])
+            Divided::Leaf(packet) => {
+                self.leaf(&packet, &mut subtree);
+                Ok(vec![subtree])
             }
-            Fate::Inner(sprout, [(below, lower), (above, upper)]) => {
-                shoot.nodes.push(sprout);
+            Divided::Inner(node, [(below, lower), (above, upper)]) => {
+                subtree.nodes.push(node);
                 let (left, right) = rayon::join(
                     || self.large(below, lower, levels - 1, sweep),
                     || self.large(above, upper, levels - 1, &mut Sweep::default()),
                 );
-                Ok([vec![shoot], left?, right?].into_iter().flatten().collect())
+                Ok([vec![subtree], left?, right?].into_iter().flatten().collect())
             }
         }
     }
 
-    /// A node that one thread grows, at the end of a shoot.
+    /// A node that one thread builds, at the end of a subtree.
     fn small(
         &self,
         packet: Vec<M::Member>,
         node: Bounds,
         levels: u32,
         sweep: &mut Sweep,
-        shoot: &mut Shoot,
-    ) -> Result<(), TooMany> {
+        subtree: &mut Subtree,
+    ) -> Result<(), TooManyReferences> {
         match self.divide(packet, node, levels, sweep)? {
-            Fate::Leaf(packet) => self.leaf(&packet, shoot),
-            Fate::Inner(sprout, [(below, lower), (above, upper)]) => {
-                shoot.nodes.push(sprout);
-                self.small(below, lower, levels - 1, sweep, shoot)?;
-                self.small(above, upper, levels - 1, sweep, shoot)?;
+            Divided::Leaf(packet) => self.leaf(&packet, subtree),
+            Divided::Inner(node, [(below, lower), (above, upper)]) => {
+                subtree.nodes.push(node);
+                self.small(below, lower, levels - 1, sweep, subtree)?;
+                self.small(above, upper, levels - 1, sweep, subtree)?;
             }
         }
         Ok(())
     }
 
-    fn leaf(&self, packet: &[M::Member], shoot: &mut Shoot) {
-        shoot.nodes.push(Sprout::Leaf { count: packet.len() as u32 });
-        shoot.triangles.extend(packet.iter().map(|member| self.membership.index(member)));
+    fn leaf(&self, packet: &[M::Member], subtree: &mut Subtree) {
+        subtree.nodes.push(BuildNode::Leaf { count: packet.len() as u32 });
+        subtree.triangles.extend(packet.iter().map(|member| self.membership.index(member)));
     }
 
     fn divide(
@@ -118,9 +118,9 @@ impl<M: Membership> Growth<'_, M> {
         node: Bounds,
         levels: u32,
         sweep: &mut Sweep,
-    ) -> Result<Fate<M::Member>, TooMany> {
+    ) -> Result<Divided<M::Member>, TooManyReferences> {
         let division = if levels == 0 { None } else { self.membership.best(&node, &packet, sweep) };
-        let Some(division) = division else { return Ok(Fate::Leaf(packet)) };
+        let Some(division) = division else { return Ok(Divided::Leaf(packet)) };
         let [lower, upper] = node.divided(division.axis, division.at);
         let passed = |side, child: Bounds| -> Vec<M::Member> {
             packet.iter().filter_map(|member| self.membership.passed(member, &division, side, &child)).collect()
@@ -128,9 +128,9 @@ impl<M: Membership> Growth<'_, M> {
         let (below, above) = (passed(Side::Left, lower), passed(Side::Right, upper));
         let more = (below.len() + above.len()).saturating_sub(packet.len());
         if self.references.fetch_add(more, Ordering::Relaxed) + more > MOST_REFERENCES {
-            return Err(TooMany);
+            return Err(TooManyReferences);
         }
-        let sprout = Sprout::Inner { axis: division.axis as u8, at: division.at };
-        Ok(Fate::Inner(sprout, [(below, lower), (above, upper)]))
+        let node = BuildNode::Inner { axis: division.axis as u8, at: division.at };
+        Ok(Divided::Inner(node, [(below, lower), (above, upper)]))
     }
 }

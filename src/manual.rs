@@ -3,9 +3,9 @@
 
 use std::fmt::Write;
 
-use isa::row::Room;
+use isa::definition::Room;
 use isa::table::ROOMS;
-use isa::{Class, Isa, Kind, Row};
+use isa::{Class, InstructionDef, Isa, Kind};
 
 /// What the letters and kinds of operands mean; the kinds' own rows are generated.
 const OPERANDS: &str = "\
@@ -56,7 +56,8 @@ pub fn markdown(isa: &Isa) -> String {
     for room in ROOMS {
         chapter(&mut text, room, isa);
     }
-    let extensions: Vec<&Row> = rows(isa).filter(|row| ROOMS.iter().all(|room| room.name != row.room)).collect();
+    let extensions: Vec<&InstructionDef> =
+        rows(isa).filter(|row| ROOMS.iter().all(|room| room.name != row.room)).collect();
     if !extensions.is_empty() {
         text.push_str("\n## Extensions\n");
         extensions.into_iter().for_each(|row| entry(&mut text, row));
@@ -88,8 +89,8 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-fn rows(isa: &Isa) -> impl Iterator<Item = &Row> {
-    isa.ops().map(|op| isa.row(op))
+fn rows(isa: &Isa) -> impl Iterator<Item = &InstructionDef> {
+    isa.ops().map(|op| isa.definition(op))
 }
 
 fn chapter(text: &mut String, room: &Room, isa: &Isa) {
@@ -99,7 +100,7 @@ fn chapter(text: &mut String, room: &Room, isa: &Isa) {
     rows(isa).filter(|row| row.room == room.name).for_each(|row| entry(text, row));
 }
 
-fn entry(text: &mut String, row: &Row) {
+fn entry(text: &mut String, row: &InstructionDef) {
     let _ = writeln!(text, "\n### {}\n\n    {}\n", row.name, row.line());
     for line in row.doc.lines() {
         let _ = writeln!(text, "{}", line.trim());

@@ -26,7 +26,7 @@ use std::fmt::Write;
 use case::observation::{ENGINES, observe};
 use case::verdict::differences;
 use case::{Case, bless};
-use isa::ROWS;
+use isa::INSTRUCTIONS;
 
 /// Set to rewrite the claims of the cases that fail, so that they say what happens now.
 const BLESS: &str = "LANCER_BLESS";
@@ -70,7 +70,7 @@ fn every_exit_of_every_row_is_taken_in_a_case_of_its_room() {
         let exits = observe(&case, &ENGINES[0]).run.map_or(Vec::new(), |run| run.exits());
         taken.extend(exits.into_iter().map(|(row, exit)| (case.room().to_owned(), row, exit)));
     }
-    let exits = ROWS.iter().flat_map(|row| row.outcomes.iter().map(move |exit| (row, exit)));
+    let exits = INSTRUCTIONS.iter().flat_map(|row| row.outcomes.iter().map(move |exit| (row, exit)));
     let missing: Vec<String> = exits
         .filter(|(row, exit)| !taken.contains(&(row.room.to_string(), row.name.to_string(), exit.name.to_string())))
         .map(|(row, exit)| format!("{} of `{}` in tests/cases/{}", exit.name, row.name, row.room))

@@ -188,7 +188,7 @@ fn tables(list: &mut Vec<String>) {
 
 /// Instructions, directives, functions and codes of messages.
 fn language(list: &mut Vec<String>) {
-    for row in isa::ROWS {
+    for row in isa::INSTRUCTIONS {
         let operands = row.operands.iter().map(|one| format!("{}:{}", char::from(one.letter), one.kind.name()));
         let exits = row.outcomes.iter().map(|outcome| &*outcome.name);
         list.push(format!("instruction {} ({}) \"{}\" [{}]", row.name, joined(operands), row.drawn, joined(exits)));
@@ -199,7 +199,7 @@ fn language(list: &mut Vec<String>) {
         list.push(format!("directive {} {}", joined(names), directive.operands).trim_end().to_owned());
     }
     list.extend(asm::function::FUNCTIONS.iter().map(|function| format!("function {}", function.usage)));
-    list.extend(isa::row::Kind::ALL.map(|kind| format!("kind of operand {}", kind.name())));
+    list.extend(isa::definition::Kind::ALL.map(|kind| format!("kind of operand {}", kind.name())));
     list.extend(isa::Class::ALL.iter().map(|class| format!("class {}", class.name())));
     list.extend(asm::explain::CODES.iter().map(|code| format!("message {}", code.code)));
 }

@@ -94,7 +94,7 @@ pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> At
 
 /// An assembler that has read nothing.
 pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
-    let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.row(op).name, op)).collect();
+    let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.definition(op).name, op)).collect();
     let nop = operations.get("mov").and_then(|&op| isa.encode(op, &[0, 0]).ok()).unwrap_or(0);
     Assembler {
         isa,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-use isa::row::Kind;
+use isa::definition::Kind;
 use isa::{Instruction, Isa, Program};
 
 /// The text of a program: its words as [`disassemble`] has them, with the names of its functions, its entry, and its
@@ -82,6 +82,6 @@ fn code(words: &[u32], names: BTreeMap<i64, String>, isa: &Isa) -> String {
 }
 
 fn target(instruction: &Instruction, isa: &Isa, pc: usize) -> Option<i64> {
-    let operand = isa.row(instruction.op).operands.iter().find(|operand| operand.kind == Kind::Rel)?;
+    let operand = isa.definition(instruction.op).operands.iter().find(|operand| operand.kind == Kind::Rel)?;
     Some(pc as i64 + instruction.fields.get(operand.letter))
 }

@@ -1,6 +1,6 @@
 //! Instructions: written operands held against a row, encoded now or when the names that they use are known.
 
-use isa::row::{Kind, Row};
+use isa::definition::{InstructionDef, Kind};
 use isa::table::Op;
 
 use crate::assembler::{Assembler, Fixup};
@@ -49,12 +49,12 @@ pub(crate) fn describe(kind: Kind) -> &'static str {
     }
 }
 
-fn takes_offset(row: &Row, at: usize) -> bool {
+fn takes_offset(row: &InstructionDef, at: usize) -> bool {
     row.operands[at].kind.register_file() == Some('s') && row.operands.get(at + 1).is_some_and(|o| o.kind == Kind::Off)
 }
 
 /// The row as a person writes it, such as `lw d, i(a)`.
-pub fn usage(row: &Row) -> String {
+pub fn usage(row: &InstructionDef) -> String {
     let mut parts = Vec::new();
     let mut at = 0;
     while at < row.operands.len() {
@@ -70,7 +70,7 @@ pub fn usage(row: &Row) -> String {
     format!("{} {}", row.name, parts.join(", ")).trim_end().to_string()
 }
 
-fn legend(row: &Row) -> String {
+fn legend(row: &InstructionDef) -> String {
     let parts: Vec<String> =
         row.operands.iter().map(|o| format!("{} is {}", o.letter as char, describe(o.kind))).collect();
     if parts.is_empty() { "it takes no operands".into() } else { parts.join(", ") }
@@ -122,7 +122,7 @@ impl Assembler<'_> {
     /// Assembles one instruction of a row.
     pub(crate) fn row_instruction(&mut self, op: Op, operands: &[Operand], at: At, cursor: &Cursor) {
         let isa = self.isa;
-        let row = isa.row(op);
+        let row = isa.definition(op);
         let Some(mut arguments) = self.arguments(row, operands, at) else {
             self.emit(row.pattern.value, cursor.line);
             return;
@@ -160,7 +160,7 @@ impl Assembler<'_> {
     }
 
     /// Holds written operands against the row; `None` when what is wrong was reported.
-    fn arguments(&mut self, row: &Row, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
+    fn arguments(&mut self, row: &InstructionDef, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
         let mut found = Vec::with_capacity(row.operands.len());
         let mut rest = operands.iter();
         let mut place = 0;
@@ -208,7 +208,7 @@ impl Assembler<'_> {
         is_right.then_some(found)
     }
 
-    fn wrong_kind(&self, row: &Row, place: usize, operand: &Operand) -> Box<Problem> {
+    fn wrong_kind(&self, row: &InstructionDef, place: usize, operand: &Operand) -> Box<Problem> {
         let wanted = row.operands[place];
         let message = format!(
             "operand `{}` of `{}` is {}, not {}",
@@ -240,7 +240,7 @@ impl Assembler<'_> {
     /// Encodes an instruction as far as its names are known.
     pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<Failure>> {
         let isa = self.isa;
-        let row = isa.row(op);
+        let row = isa.definition(op);
         let mut numbers = Vec::with_capacity(arguments.len());
         let mut failures = Vec::new();
         for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
@@ -286,7 +286,7 @@ impl Assembler<'_> {
     }
 }
 
-fn wrong_count(row: &Row, operands: &[Operand], at: At) -> Box<Problem> {
+fn wrong_count(row: &InstructionDef, operands: &[Operand], at: At) -> Box<Problem> {
     let place = operands.last().map_or(at, |last| at.to(last.at));
     let count = |number: usize| match number {
         0 => "no operands".to_string(),
@@ -304,8 +304,8 @@ fn wrong_count(row: &Row, operands: &[Operand], at: At) -> Box<Problem> {
 }
 
 pub(crate) fn out_of_range(
-    row: &Row,
-    operand: isa::row::Operand,
+    row: &InstructionDef,
+    operand: isa::definition::Operand,
     at: At,
     number: i64,
     (least, most): (i64, i64),

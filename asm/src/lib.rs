@@ -118,7 +118,7 @@ pub fn check_outside_name(text: &str, isa: &Isa) -> Result<(), String> {
         "a register"
     } else if function::is_function(text) {
         "a function of expressions"
-    } else if isa.ops().any(|op| *isa.row(op).name == *text) || pseudo::find(text).is_some() {
+    } else if isa.ops().any(|op| *isa.definition(op).name == *text) || pseudo::find(text).is_some() {
         "an instruction"
     } else {
         return Ok(());

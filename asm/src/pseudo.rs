@@ -9,7 +9,7 @@ use crate::function::Function;
 use crate::instruction::describe;
 use crate::message::{At, Problem};
 use crate::operand::{Operand, Written};
-use isa::row::Kind;
+use isa::definition::Kind;
 
 /// What an operand of a pseudo-instruction is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

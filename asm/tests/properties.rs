@@ -2,7 +2,7 @@
 //! brings the assembler down.
 
 use asm::{Options, assemble, disassemble};
-use isa::row::Kind;
+use isa::definition::Kind;
 use isa::table::Op;
 use isa::{Isa, Program};
 use messages::{Report, Source};
@@ -23,7 +23,7 @@ fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> Resul
 
 /// A row's operands as numbers in range.
 fn operands(isa: &Isa, op: Op) -> BoxedStrategy<Vec<i64>> {
-    let row = isa.row(op);
+    let row = isa.definition(op);
     let parts: Vec<BoxedStrategy<i64>> = row
         .operands
         .iter()
@@ -49,7 +49,7 @@ fn number(value: i64, style: u8) -> String {
 
 /// The instruction as a person may write it.
 fn written(isa: &Isa, op: Op, numbers: &[i64], style: u8) -> String {
-    let row = isa.row(op);
+    let row = isa.definition(op);
     let mut parts: Vec<String> = Vec::new();
     let mut is_pair_open = false;
     for (place, (operand, &value)) in row.operands.iter().zip(numbers).enumerate() {
@@ -93,7 +93,7 @@ fn every_row_assembles_from_any_operands() {
 fn every_operand_out_of_range_is_refused() {
     let isa = Isa::base();
     for op in isa.ops() {
-        let row = isa.row(op);
+        let row = isa.definition(op);
         for (place, operand) in row.operands.iter().enumerate() {
             let width = row.pattern.field(operand.letter).unwrap().width;
             let (least, most) = operand.kind.range(width);
@@ -316,7 +316,7 @@ fn pieces() -> impl Strategy<Value = String> {
         .iter()
         .map(|directive| directive.name.to_string())
         .chain(asm::pseudo::PSEUDOS.iter().map(|pseudo| pseudo.name.to_string()))
-        .chain(Isa::base().ops().map(|op| Isa::base().row(op).name.to_string()))
+        .chain(Isa::base().ops().map(|op| Isa::base().definition(op).name.to_string()))
         .chain(
             [
                 "\n",

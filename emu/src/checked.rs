@@ -223,7 +223,7 @@ pub fn run<T: Watch, O: Observer>(
             };
         }
 
-        let (exit, units): (usize, u32) = isa::rows!(dispatch);
+        let (exit, units): (usize, u32) = isa::instructions!(dispatch);
 
         let number = slot.first_exit as usize + exit;
         let pass = &mut passes[number];

@@ -8,7 +8,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use isa::{Counts, Fields, Isa, Kind, Op, Program, Row};
+use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, Program};
 use messages::{Diagnostic, Place};
 
 use crate::meaning::{self, Meaning};
@@ -138,7 +138,7 @@ impl<'a> Code<'a> {
                 (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
                 let runs_body = isa.runs_body(instruction.op);
                 let is_expanded = runs_body && isa.is_expanded(instruction.op);
-                for exit in 0..isa.row(instruction.op).outcomes.len() as u8 {
+                for exit in 0..isa.definition(instruction.op).outcomes.len() as u8 {
                     let cost = (!is_expanded).then_some((instruction.op, exit));
                     code.add(Pass { word, exit: Some(exit), cost }, is_expanded);
                 }
@@ -158,7 +158,7 @@ impl<'a> Code<'a> {
     }
 
     fn add(&mut self, pass: Pass, is_inner: bool) -> u32 {
-        let cost = pass.cost.map(|(op, exit)| &self.isa.row(op).outcomes[usize::from(exit)]);
+        let cost = pass.cost.map(|(op, exit)| &self.isa.definition(op).outcomes[usize::from(exit)]);
         let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
         self.costs.push(ExitCost {
             clocks: cost.map_or(0, |exit| fit(self.timing.clocks(&exit.cost).0)),
@@ -175,7 +175,7 @@ impl<'a> Code<'a> {
     fn splice(&mut self, outer: Slot, word: u32, behind: &mut Vec<Slot>) -> Slot {
         let isa = self.isa;
         let Some(op) = outer.op else { return outer };
-        let (row, Some(body)) = (isa.row(op), isa.body(op)) else { return outer };
+        let (row, Some(body)) = (isa.definition(op), isa.body(op)) else { return outer };
         let pieces = splice(body, row, isa, &outer.fields);
         if behind.len() + pieces.len() > MOST_BODY_SLOTS {
             return outer;
@@ -185,7 +185,7 @@ impl<'a> Code<'a> {
         let is_expanded = isa.is_expanded(op);
         let costs_body = is_expanded || row.outcomes.iter().any(|exit| exit.is_body);
         // Where steps cost nothing, they share passes.
-        let most = pieces.iter().map(|piece| isa.row(piece.op).outcomes.len()).max().unwrap_or(0);
+        let most = pieces.iter().map(|piece| isa.definition(piece.op).outcomes.len()).max().unwrap_or(0);
         let free = self.passes.len() as u32;
         for _ in 0..most {
             self.add(Pass { word, exit: None, cost: None }, true);
@@ -193,7 +193,7 @@ impl<'a> Code<'a> {
         self.extended.push((word, op));
         let mut first = outer;
         for (at, piece) in pieces.iter().enumerate() {
-            let exits = isa.row(piece.counted).outcomes.len() as u8;
+            let exits = isa.definition(piece.counted).outcomes.len() as u8;
             let first_exit = match piece.passing {
                 Passing::Step if costs_body => {
                     let first = self.passes.len() as u32;
@@ -274,15 +274,15 @@ impl<'a> Code<'a> {
     /// Where the distance of a word's row leads: the word behind it where it has none, the program's end where it leads out.
     pub fn distant(&self, word: u32) -> u32 {
         let slot = &self.slots[word as usize];
-        let operands = slot.op.map_or(&[][..], |op| &self.isa.row(op).operands);
+        let operands = slot.op.map_or(&[][..], |op| &self.isa.definition(op).operands);
         let distance = operands.iter().find(|operand| operand.kind == Kind::Rel);
         let distance = distance.map_or(1, |operand| slot.fields.get(operand.letter) as i32);
         word.wrapping_add_signed(distance).min(self.words())
     }
 
     /// The row of a word; `None` for a word that is no instruction.
-    pub fn row(&self, word: u32) -> Option<&Row> {
-        Some(self.isa.row(self.op(word)?))
+    pub fn row(&self, word: u32) -> Option<&InstructionDef> {
+        Some(self.isa.definition(self.op(word)?))
     }
 
     /// The instruction of a word, as the program has it.
@@ -294,8 +294,8 @@ impl<'a> Code<'a> {
     }
 
     /// The row that a slot executes; `None` for a word that is no instruction.
-    pub fn slot_row(&self, slot: u32) -> Option<&Row> {
-        Some(self.isa.row(self.slots.get(slot as usize)?.op?))
+    pub fn slot_row(&self, slot: u32) -> Option<&InstructionDef> {
+        Some(self.isa.definition(self.slots.get(slot as usize)?.op?))
     }
 
     /// Where the body stands that a slot is a step of.
@@ -327,7 +327,7 @@ impl<'a> Code<'a> {
     pub fn pass_cost(&self, pass: usize) -> (Counts, Counts) {
         match self.passes.get(pass).and_then(|pass| pass.cost) {
             Some((op, exit)) => {
-                let exit = &self.isa.row(op).outcomes[usize::from(exit)];
+                let exit = &self.isa.definition(op).outcomes[usize::from(exit)];
                 (exit.cost, exit.each)
             }
             None => (Counts::ZERO, Counts::ZERO),

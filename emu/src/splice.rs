@@ -5,8 +5,8 @@
 //! else in a hidden register that the last slots copy. The slot before an exit carries the exit's pass, so that most bodies execute
 //! exactly their own instructions.
 
+use isa::definition::{InstructionDef, Kind, Operand};
 use isa::extension::{Act, Body, Immediate, registers};
-use isa::row::{Kind, Operand, Row};
 use isa::{Fields, Isa, Op};
 
 /// Where a slot of a splice leads to.
@@ -73,7 +73,7 @@ impl Place {
 }
 
 /// The slots of a body for an instruction with these fields.
-pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<Piece> {
+pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<Piece> {
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
     let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
@@ -102,7 +102,7 @@ pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<
     }
     for (number, step) in body.steps.iter().enumerate() {
         let (instruction, immediates) = match step.act {
-            Act::Row { instruction, immediates } => (instruction, immediates),
+            Act::Execute { instruction, immediates } => (instruction, immediates),
             Act::End { outcome: exit, jumps } => {
                 let nothing = [copy('s', 0, 0)];
                 let made = if after.is_empty() { &nothing[..] } else { &after[..] };
@@ -116,7 +116,7 @@ pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<
                 continue;
             }
         };
-        let inner = isa.row(instruction.op);
+        let inner = isa.definition(instruction.op);
         let filled = filled(inner, &instruction.fields, immediates, fields, &places);
         let target =
             inner.operands.iter().find(|operand| operand.kind == Kind::Rel).map(|operand| {
@@ -143,7 +143,7 @@ pub(crate) fn splice(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<
 }
 
 /// Where each register operand is while the body runs.
-fn places(body: &Body, row: &Row, isa: &Isa, fields: &Fields) -> Vec<Place> {
+fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<Place> {
     let mut places: Vec<Place> = (row.operands.iter())
         .filter_map(|&operand| {
             let outer = fields.get(operand.letter) as u8;
@@ -204,7 +204,13 @@ fn copy(file: char, from: u8, to: u8) -> (Op, Fields) {
 }
 
 /// The fields of a step with the instance's registers and immediates.
-fn filled(inner: &Row, step: &Fields, immediates: [Immediate; 2], outer: &Fields, places: &[Place]) -> Fields {
+fn filled(
+    inner: &InstructionDef,
+    step: &Fields,
+    immediates: [Immediate; 2],
+    outer: &Fields,
+    places: &[Place],
+) -> Fields {
     let mut filled = *step;
     for operand in inner.operands.iter() {
         if operand.kind.register_file().is_some() {

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::definition::{InstructionDef, Kind};
 use crate::extension::{Body, Extension, Meaning};
-use crate::row::{Kind, Row};
-use crate::table::{Op, ROWS};
+use crate::table::{INSTRUCTIONS, Op};
 
 /// The fields of a decoded word, by operand letter; a letter that the row does not have is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl Isa {
     }
 
     fn enter(&mut self, op: Op) {
-        let pattern = self.row(op).pattern;
+        let pattern = self.definition(op).pattern;
         for major in 0..64u32 {
             if (major << 26 ^ pattern.value) & pattern.mask >> 26 << 26 == 0 {
                 self.by_major[major as usize].push(op);
@@ -123,14 +123,14 @@ impl Isa {
     ///
     /// # Errors
     /// The row whose name or word it would take.
-    pub fn extend(&mut self, row: Row) -> Result<Op, Op> {
-        if let Some(other) =
-            self.ops().find(|&op| self.row(op).name == row.name || self.row(op).pattern.overlaps(&row.pattern))
-        {
+    pub fn extend(&mut self, definition: InstructionDef) -> Result<Op, Op> {
+        if let Some(other) = self.ops().find(|&op| {
+            self.definition(op).name == definition.name || self.definition(op).pattern.overlaps(&definition.pattern)
+        }) {
             return Err(other);
         }
         let op = Op::Ext(self.extensions.len() as u16);
-        self.extensions.push(Extension { row, body: None, meaning: None, is_expanded: false });
+        self.extensions.push(Extension { definition, body: None, meaning: None, is_expanded: false });
         self.enter(op);
         Ok(op)
     }
@@ -200,25 +200,28 @@ impl Isa {
     }
 
     /// The row of an opcode.
-    pub fn row(&self, op: Op) -> &Row {
+    pub fn definition(&self, op: Op) -> &InstructionDef {
         match op {
-            Op::Ext(n) => &self.extensions[n as usize].row,
-            _ => &ROWS[op.index()],
+            Op::Ext(n) => &self.extensions[n as usize].definition,
+            _ => &INSTRUCTIONS[op.index()],
         }
     }
 
     /// The opcode of a mnemonic.
     pub fn find(&self, name: &str) -> Option<Op> {
-        self.ops().find(|&op| self.row(op).name == name)
+        self.ops().find(|&op| self.definition(op).name == name)
     }
 
     /// Decodes a word; `None` when no row matches or a register or component does not exist.
     pub fn decode(&self, word: u32) -> Option<Instruction> {
-        let op = self.by_major[(word >> 26) as usize].iter().copied().find(|&op| self.row(op).pattern.matches(word))?;
-        let row = self.row(op);
+        let op = self.by_major[(word >> 26) as usize]
+            .iter()
+            .copied()
+            .find(|&op| self.definition(op).pattern.matches(word))?;
+        let definition = self.definition(op);
         let mut fields = Fields::default();
-        for operand in row.operands.iter() {
-            let field = row.pattern.field(operand.letter)?;
+        for operand in definition.operands.iter() {
+            let field = definition.pattern.field(operand.letter)?;
             let raw = i64::from(word >> field.shift) & ((1 << field.width) - 1);
             let is_negative = operand.kind.is_signed() && raw >> (field.width - 1) == 1;
             let value = if is_negative { raw - (1 << field.width) } else { raw };
@@ -236,13 +239,14 @@ impl Isa {
     /// # Errors
     /// A wrong number of operands, or a number that its field does not hold; nothing wraps.
     pub fn encode(&self, op: Op, operands: &[i64]) -> Result<u32, EncodeError> {
-        let row = self.row(op);
-        if operands.len() != row.operands.len() {
-            return Err(EncodeError::Operands { expected: row.operands.len() });
+        let definition = self.definition(op);
+        if operands.len() != definition.operands.len() {
+            return Err(EncodeError::Operands { expected: definition.operands.len() });
         }
-        let mut word = row.pattern.value;
-        for (place, (operand, &value)) in row.operands.iter().zip(operands).enumerate() {
-            let field = row.pattern.field(operand.letter).expect("Row::check gave every operand a field");
+        let mut word = definition.pattern.value;
+        for (place, (operand, &value)) in definition.operands.iter().zip(operands).enumerate() {
+            let field =
+                definition.pattern.field(operand.letter).expect("InstructionDef::check gave every operand a field");
             let (least, most) = operand.kind.range(field.width);
             if value < least || value > most {
                 return Err(EncodeError::Range { operand: place, value, least, most });
@@ -275,15 +279,15 @@ impl Instruction {
     /// The instruction as assembly text that assembles to the same word; `target` names the label or number that a
     /// distance in words leads to.
     pub fn text(&self, isa: &Isa, target: impl Fn(i32) -> String) -> String {
-        let row = isa.row(self.op);
+        let definition = isa.definition(self.op);
         let mut parts: Vec<String> = Vec::new();
         let mut at = 0;
-        while at < row.operands.len() {
-            let operand = row.operands[at];
+        while at < definition.operands.len() {
+            let operand = definition.operands[at];
             let value = self.fields.get(operand.letter);
-            let next_is_offset = row.operands.get(at + 1).is_some_and(|next| next.kind == Kind::Off);
+            let next_is_offset = definition.operands.get(at + 1).is_some_and(|next| next.kind == Kind::Off);
             if next_is_offset && operand.kind.register_file() == Some('s') {
-                let offset = self.fields.get(row.operands[at + 1].letter);
+                let offset = self.fields.get(definition.operands[at + 1].letter);
                 parts.push(format!("{offset}({})", register_name(operand.kind, value as u8)));
                 at += 2;
                 continue;
@@ -294,7 +298,7 @@ impl Instruction {
             });
             at += 1;
         }
-        if parts.is_empty() { row.name.to_string() } else { format!("{} {}", row.name, parts.join(", ")) }
+        if parts.is_empty() { definition.name.to_string() } else { format!("{} {}", definition.name, parts.join(", ")) }
     }
 }
 

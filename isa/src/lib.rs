@@ -1,16 +1,16 @@
 //! What an instruction is, and its arithmetic.
 
 pub mod class;
+pub mod definition;
 pub mod extension;
 mod isa;
 pub mod number;
 pub mod pattern;
 pub mod program;
-pub mod row;
 pub mod table;
 
 pub use class::{Class, Counts};
+pub use definition::{InstructionDef, Kind, Operand, OutcomeDef};
 pub use isa::{EncodeError, Fields, Instruction, Isa, parse_register, register_name};
 pub use program::Program;
-pub use row::{Kind, Operand, OutcomeDef, Row};
-pub use table::{Op, ROWS};
+pub use table::{INSTRUCTIONS, Op};

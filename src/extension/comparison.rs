@@ -95,7 +95,7 @@ fn length(word: u32, isa: &Isa) -> u64 {
     let Some(instruction) = isa.decode(word) else { return 1 };
     match isa.body(instruction.op) {
         Some(body) if isa.is_expanded(instruction.op) => {
-            body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Row { .. })).count() as u64
+            body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Execute { .. })).count() as u64
         }
         _ => 1,
     }
@@ -127,7 +127,7 @@ pub fn compare(
     Ok(Comparison {
         schema: SCHEMA,
         file,
-        instructions: ops.iter().map(|&op| extended.isa.row(op).name.to_string()).collect(),
+        instructions: ops.iter().map(|&op| extended.isa.definition(op).name.to_string()).collect(),
         scene: crate::job::result_name(&plain.scene),
         profile: plain.kernels.profile.name(),
         machine: plain.machine_name.clone(),

@@ -9,7 +9,7 @@ use messages::Diagnostic;
 
 /// What is likely a mistake in an instruction that was loaded, or should be known before one is built.
 pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
-    let row = isa.row(loaded.op);
+    let row = isa.definition(loaded.op);
     let warning = |message: String, label: &str| Diagnostic::warning(message).at(loaded.row.clone(), label);
     let mut found = Vec::new();
     if row.doc.trim().is_empty() {
@@ -40,7 +40,7 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
     }
     if let Some(step) = summary.reached.iter().position(|is_reached| !is_reached) {
         // A fused outcome that the assembler added is no line of the user's.
-        if matches!(body.steps[step].act, Act::Row { .. }) {
+        if matches!(body.steps[step].act, Act::Execute { .. }) {
             found.push(at(step, format!("a line of the body of `{}` is never reached", row.name), "not reached"));
         }
     }
@@ -62,7 +62,7 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
 
 /// Exits that declare less than the body spends at least.
 fn cheap(isa: &Isa, loaded: &Loaded, summary: &Summary, body: &Body) -> Vec<Diagnostic> {
-    let row = isa.row(loaded.op);
+    let row = isa.definition(loaded.op);
     if row.outcomes.iter().any(|outcome| outcome.is_body) {
         return Vec::new();
     }
@@ -94,8 +94,8 @@ fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     while let Some(step) = open.pop() {
         let before = spent[step].expect("what is open has been reached");
         let cost = match body.steps[step].act {
-            Act::Row { instruction, .. } => {
-                isa.row(instruction.op).outcomes.iter().map(|outcome| outcome.cost).reduce(lower)
+            Act::Execute { instruction, .. } => {
+                isa.definition(instruction.op).outcomes.iter().map(|outcome| outcome.cost).reduce(lower)
             }
             Act::End { .. } => None,
         };

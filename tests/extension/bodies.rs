@@ -54,7 +54,7 @@ fn replaced(line: &str, names: &BTreeMap<String, (char, u8)>, numbers: &BTreeMap
 
 /// The program that does what the instruction does with these fields: sources are copied first, results last.
 fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
-    let row = isa.row(isa.find(name).unwrap());
+    let row = isa.definition(isa.find(name).unwrap());
     let (mut names, mut numbers) = (BTreeMap::new(), BTreeMap::new());
     let mut free = BTreeMap::from([('s', 8u8), ('v', 8), ('w', 3)]);
     let (mut before, mut after) = (String::new(), String::new());
@@ -105,7 +105,7 @@ fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
 
 /// The program with the instruction itself.
 fn written_as(isa: &Isa, name: &str, fields: &[i64]) -> String {
-    let row = isa.row(isa.find(name).unwrap());
+    let row = isa.definition(isa.find(name).unwrap());
     let mut has_distance = false;
     let operands = row.operands.iter().zip(fields).map(|(operand, value)| match operand.kind.register_file() {
         Some(file) => format!("{file}{value}"),
@@ -121,7 +121,7 @@ fn written_as(isa: &Isa, name: &str, fields: &[i64]) -> String {
 }
 
 fn fields(isa: &Isa, name: &str) -> BoxedStrategy<Vec<i64>> {
-    let row = isa.row(isa.find(name).unwrap()).clone();
+    let row = isa.definition(isa.find(name).unwrap()).clone();
     let fields: Vec<BoxedStrategy<i64>> = (row.operands.iter())
         .map(|operand| match operand.kind.register_file() {
             Some(file) => {
@@ -156,7 +156,7 @@ fn an_instruction_does_and_counts_what_its_body_does() {
     let (isa, loaded) = isa_of(BODIES);
     assert_eq!(loaded.len(), 9);
     for loaded in &loaded {
-        let name = isa.row(loaded.op).name.to_string();
+        let name = isa.definition(loaded.op).name.to_string();
         let config = Config { cases: 150, failure_persistence: None, ..Config::default() };
         let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
         let strategy = (fields(&isa, &name), registers(), 0..20u64);
@@ -217,7 +217,7 @@ fn declared_exits_count_in_the_place_of_the_body() {
 fn every_word_of_an_extension_survives_text() {
     let (isa, loaded) = isa_of(BODIES);
     for loaded in &loaded {
-        let name = isa.row(loaded.op).name.to_string();
+        let name = isa.definition(loaded.op).name.to_string();
         let config = Config { cases: 64, failure_persistence: None, ..Config::default() };
         let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
         let result = runner.run(&fields(&isa, &name), |fields| {

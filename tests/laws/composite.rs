@@ -16,7 +16,7 @@ use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use isa::number::{Modes, Overflow, Quantization};
-use isa::{Class, Counts, Isa, Kind, Operand, Program, Row};
+use isa::{Class, Counts, InstructionDef, Isa, Kind, Operand, Program};
 use messages::Source;
 
 use super::random::Random;
@@ -40,12 +40,12 @@ fn elementary(counts: &Counts) -> Counts {
     part
 }
 
-fn is_composite(row: &Row) -> bool {
+fn is_composite(row: &InstructionDef) -> bool {
     row.outcomes.iter().any(|exit| exit.cost.elementary() > 1)
 }
 
 /// Where an operand lives: by its letter, behind the further vectors of the operands before it.
-fn register(row: &Row, operand: &Operand) -> Option<(char, u8)> {
+fn register(row: &InstructionDef, operand: &Operand) -> Option<(char, u8)> {
     let place = |letter: u8| match letter {
         b'a' => 1,
         b'b' => 2,
@@ -61,7 +61,7 @@ fn register(row: &Row, operand: &Operand) -> Option<(char, u8)> {
 
 /// A row and the body that it is compared with.
 struct Oracle<'a> {
-    row: &'a Row,
+    row: &'a InstructionDef,
     text: String,
 }
 
@@ -182,7 +182,7 @@ fn every_composite_row_has_a_body_and_every_body_a_row() {
     let bodies: BTreeSet<String> =
         std::fs::read_dir(folder()).unwrap().filter_map(|entry| names(entry.unwrap().path())).collect();
     let rows: BTreeSet<String> =
-        isa::ROWS.iter().filter(|row| is_composite(row)).map(|row| row.name.to_string()).collect();
+        isa::INSTRUCTIONS.iter().filter(|row| is_composite(row)).map(|row| row.name.to_string()).collect();
     assert_eq!(bodies, rows);
 }
 
@@ -190,14 +190,14 @@ fn every_composite_row_has_a_body_and_every_body_a_row() {
 fn every_composite_row_costs_and_does_what_its_body_does() {
     let isa = Isa::base();
     let mut random = Random(4);
-    for row in isa::ROWS.iter().filter(|row| is_composite(row)) {
+    for row in isa::INSTRUCTIONS.iter().filter(|row| is_composite(row)) {
         let text = std::fs::read_to_string(folder().join(format!("{}.s", row.name))).unwrap();
         let oracle = Oracle { row, text };
         for shift in oracle.shifts() {
             let body = oracle.program(&isa, &oracle.text, shift);
             let statement = oracle.program(&isa, &oracle.statement(), shift);
             for &word in &body.words {
-                let part = isa.row(isa.decode(word).unwrap().op);
+                let part = isa.definition(isa.decode(word).unwrap().op);
                 assert!(!is_composite(part), "the body of `{}` uses `{}`", row.name, part.name);
             }
             for modes in oracle.arithmetics() {

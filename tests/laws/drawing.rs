@@ -1,11 +1,11 @@
 //! Words read off the drawn bit patterns alone: the model that encoder and decoder are compared with.
 
-use isa::Row;
+use isa::InstructionDef;
 
 /// A row's bit pattern, character by character.
 pub struct Drawing<'a> {
     /// The row.
-    pub row: &'a Row,
+    pub row: &'a InstructionDef,
     /// Its 32 characters, from the lowest bit up.
     pub bits: Vec<char>,
     /// Bits of each operand's field, from the lowest up.
@@ -14,7 +14,7 @@ pub struct Drawing<'a> {
 
 impl<'a> Drawing<'a> {
     /// The drawing of a row.
-    pub fn new(row: &'a Row) -> Drawing<'a> {
+    pub fn new(row: &'a InstructionDef) -> Drawing<'a> {
         let bits: Vec<char> = row.drawn.chars().rev().filter(|&c| c != ' ').collect();
         assert_eq!(bits.len(), 32, "{}", row.name);
         let places = |letter: u8| (0..32).filter(|&place| bits[place] == letter as char).collect();
@@ -61,5 +61,5 @@ impl<'a> Drawing<'a> {
 
 /// The drawings of all built-in rows, in the order of the table.
 pub fn all() -> Vec<Drawing<'static>> {
-    isa::ROWS.iter().map(Drawing::new).collect()
+    isa::INSTRUCTIONS.iter().map(Drawing::new).collect()
 }

@@ -142,7 +142,7 @@ fn any_word_is_no_instruction_or_the_word_of_one() {
         let matching = drawings.iter().find(|drawing| drawing.matches(found));
         match (isa.decode(found), matching) {
             (Some(instruction), Some(drawing)) => {
-                assert_eq!(isa.row(instruction.op).name, drawing.row.name, "{found:#010x}");
+                assert_eq!(isa.definition(instruction.op).name, drawing.row.name, "{found:#010x}");
                 let fields = drawing.row.operands.iter().map(|operand| instruction.fields.get(operand.letter));
                 assert_eq!(isa.encode(instruction.op, &fields.collect::<Vec<_>>()), Ok(found), "{found:#010x}");
             }

@@ -58,8 +58,8 @@ fn the_text_of_every_row_assembles_to_its_word() {
 
 /// A word of any row with any operands; most distances are short, and lead into the program, where they become labels.
 fn instruction() -> impl Strategy<Value = u32> {
-    (0..isa::ROWS.len(), any::<u64>()).prop_map(|(row, seed)| {
-        let (drawing, mut random) = (Drawing::new(&isa::ROWS[row]), Random(seed));
+    (0..isa::INSTRUCTIONS.len(), any::<u64>()).prop_map(|(row, seed)| {
+        let (drawing, mut random) = (Drawing::new(&isa::INSTRUCTIONS[row]), Random(seed));
         let operands = drawing.row.operands.iter().zip(drawing.ranges());
         let values = operands.map(|(operand, (least, most))| match operand.kind {
             isa::Kind::Rel if random.next() % 4 != 0 => random.within(-20, 20),

@@ -4,8 +4,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use isa::Isa;
+use isa::definition::InstructionDef;
 use isa::extension::{Act, Body, Defect, Step, Summary, registers};
-use isa::row::Row;
 use isa::table::Op;
 use messages::{Diagnostic, Place, Report, Source};
 
@@ -29,7 +29,7 @@ pub(super) fn assemble(
     let options = Options { include, ..Options::default() };
     let mut assembler = assembler::new(isa, &options);
     assembler.take_options(source);
-    let row = isa.row(op);
+    let row = isa.definition(op);
     let row_line = source.line_column(row_at.span.start).0 as u32;
     let template = Template { op, row: row.clone(), row_line, steps: Vec::new(), places: Vec::new(), is_shared: true };
     assembler.body = Some(template);
@@ -101,8 +101,8 @@ fn temporaries(body: &Body, isa: &Isa, file: char) -> u8 {
     let hidden = registers::hidden(file);
     let mut used = 0;
     for step in &body.steps {
-        let Act::Row { instruction, .. } = step.act else { continue };
-        for operand in isa.row(instruction.op).operands.iter().filter(|o| o.kind.register_file() == Some(file)) {
+        let Act::Execute { instruction, .. } = step.act else { continue };
+        for operand in isa.definition(instruction.op).operands.iter().filter(|o| o.kind.register_file() == Some(file)) {
             let number = instruction.fields.get(operand.letter) as u8;
             if hidden.contains(&number) {
                 used = used.max(number + operand.kind.registers() - hidden.start);
@@ -112,7 +112,7 @@ fn temporaries(body: &Body, isa: &Isa, file: char) -> u8 {
     used
 }
 
-fn defective(defect: Defect, body: &Body, row: &Row, row_at: &Place) -> Report {
+fn defective(defect: Defect, body: &Body, row: &InstructionDef, row_at: &Place) -> Report {
     let place = |step: usize| body.place(step).unwrap_or_else(|| row_at.clone());
     let message = match defect {
         Defect::Unwritten { step, file, number } => {

@@ -4,8 +4,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use isa::Isa;
+use isa::definition::InstructionDef;
 use isa::extension::Summary;
-use isa::row::Row;
 use isa::table::Op;
 use messages::{Diagnostic, Place, Report, Source};
 
@@ -64,13 +64,13 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
         let found =
             add(isa, source, drawn, block.doc, parts.name.as_deref().unwrap_or_default()).and_then(|mut found| {
                 let is_empty = lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty());
-                check_costs(isa.row(found.op), block.is_rust, is_empty, &found.outcomes, each_at)?;
+                check_costs(isa.definition(found.op), block.is_rust, is_empty, &found.outcomes, each_at)?;
                 found.is_rust = block.is_rust;
                 if is_empty && block.is_rust {
                     return Ok(found);
                 }
                 if is_empty {
-                    let message = format!("the body of `{}` is empty", isa.row(found.op).name);
+                    let message = format!("the body of `{}` is empty", isa.definition(found.op).name);
                     let hint = "write what it does as instructions between the row and `.end`, or `.meaning rust` if a program of yours does it";
                     return Err(Report::from(
                         Diagnostic::error(message)
@@ -214,7 +214,7 @@ fn is_rust(source: &Arc<Source>, place: &Place) -> Result<(), Box<Diagnostic>> {
 
 /// What outcomes may cost depends on who executes the instruction.
 fn check_costs(
-    row: &Row,
+    row: &InstructionDef,
     is_rust: bool,
     is_bodiless: bool,
     outcomes: &[Place],
@@ -291,19 +291,19 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
 /// The message when another instruction has the name or a word of a row.
 fn clash(
     isa: &Isa,
-    row: &Row,
+    row: &InstructionDef,
     other: Op,
     taken: Diagnostic,
     source: &Arc<Source>,
     pattern_at: std::ops::Range<usize>,
 ) -> Diagnostic {
-    let other = isa.row(other);
+    let other = isa.definition(other);
     if other.name == row.name {
         return taken;
     }
     let message = format!("`{}` and `{}` have words in common", row.name, other.name);
     let label = format!("`{}` is \"{}\"", other.name, other.drawn);
-    let is_free = |major: u32| isa.extensions().all(|op| isa.row(op).pattern.value >> 26 != major);
+    let is_free = |major: u32| isa.extensions().all(|op| isa.definition(op).pattern.value >> 26 != major);
     let free = (0x3c..0x40).find(|&major| is_free(major)).map(|major| isa::pattern::CUSTOM[major as usize - 0x3c].0);
     error(explain::TAKEN, message, source, pattern_at, &label).hint(match free {
         Some(name) => format!("`{name}` is free; or tell them apart by bits that are 0 in one and 1 in the other"),

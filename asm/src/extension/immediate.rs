@@ -1,7 +1,7 @@
 //! Immediates of a row inside its body: numbers that grow evenly with them.
 
+use isa::definition::{InstructionDef, Kind};
 use isa::extension::Immediate;
-use isa::row::{Kind, Row};
 
 use crate::assembler::Assembler;
 use crate::evaluation::Failure;
@@ -46,8 +46,8 @@ impl Assembler<'_> {
     pub(crate) fn immediate(
         &self,
         expression: &Expression,
-        row: &Row,
-        operand: isa::row::Operand,
+        row: &InstructionDef,
+        operand: isa::definition::Operand,
         range: (i64, i64),
     ) -> Result<Immediate, Failure> {
         let letters = self.letters(expression);

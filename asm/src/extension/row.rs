@@ -3,8 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use isa::definition::{DefinitionError, InstructionDef, Kind, Operand, OutcomeDef};
 use isa::pattern::{BitPattern, CUSTOM, LETTERS, PatternError};
-use isa::row::{Kind, Operand, OutcomeDef, Row, RowError};
 use isa::{Class, Counts};
 use messages::{Diagnostic, Source, did_you_mean};
 
@@ -14,7 +14,7 @@ use crate::token::{continues_name, starts_name};
 
 /// A row with the places of its parts.
 pub(super) struct Drawn {
-    pub row: Row,
+    pub row: InstructionDef,
     pub name_at: Range<usize>,
     pub pattern_at: Range<usize>,
     pub outcomes_at: Vec<Range<usize>>,
@@ -117,10 +117,10 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
     let mut each_at = None;
     let (outcomes, outcomes_at) = outcomes(&mut scanner, &mut each_at)?;
     let only: Vec<Operand> = operands.iter().map(|(operand, _)| *operand).collect();
-    if let Err(wrong) = Row::check(&only, &pattern, outcomes.len()) {
+    if let Err(wrong) = InstructionDef::check(&only, &pattern, outcomes.len()) {
         return Err(misfit(&scanner, wrong, &operands, &pattern, pattern_at));
     }
-    let row = Row {
+    let row = InstructionDef {
         name: name.to_owned().into(),
         doc: "".into(),
         room: "".into(),
@@ -234,14 +234,14 @@ fn pattern<'a>(
 
 fn misfit(
     scanner: &Scanner,
-    wrong: RowError,
+    wrong: DefinitionError,
     operands: &[(Operand, Range<usize>)],
     pattern: &BitPattern,
     pattern_at: Range<usize>,
 ) -> Box<Diagnostic> {
     let of = |letter: u8| operands.iter().find(|(operand, _)| operand.letter == letter);
     match wrong {
-        RowError::Field(letter) => {
+        DefinitionError::Field(letter) => {
             let Some((operand, at)) = of(letter) else {
                 return Box::new(scanner.wrong("a field without an operand", pattern_at, "here"));
             };
@@ -259,7 +259,7 @@ fn misfit(
             let message = scanner.wrong(message, at.clone(), "this operand");
             Box::new(message.also(messages::Place::new(scanner.source, pattern_at), "the pattern").hint(hint))
         }
-        RowError::Spare => {
+        DefinitionError::Spare => {
             let spare = pattern.fields().iter().find(|field| of(field.letter).is_none());
             let letter = spare.map_or('?', |field| field.letter as char);
             let message = format!("the pattern has a field `{letter}`, but the row no such operand");
@@ -269,7 +269,7 @@ fn misfit(
             );
             Box::new(scanner.wrong(message, pattern_at, "in this pattern").hint(hint))
         }
-        RowError::Twice(_) | RowError::Letter(_) | RowError::NoOutcome => {
+        DefinitionError::Twice(_) | DefinitionError::Letter(_) | DefinitionError::NoOutcome => {
             Box::new(scanner.wrong("the row cannot be read", pattern_at, "here"))
         }
     }

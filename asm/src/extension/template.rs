@@ -1,7 +1,7 @@
 //! How the assembler works inside a body: operands and temporaries are registers, instructions become steps.
 
+use isa::definition::{InstructionDef, Kind};
 use isa::extension::{Act, Immediate, Step, registers};
-use isa::row::{Kind, Row};
 use isa::table::Op;
 use isa::{Fields, Instruction};
 
@@ -20,7 +20,7 @@ use crate::token::Kind as Token;
 pub(crate) struct Template {
     /// The instruction whose body it is.
     pub op: Op,
-    pub row: Row,
+    pub row: InstructionDef,
     /// Line of the row, for steps that come from other files.
     pub row_line: u32,
     pub steps: Vec<Step>,
@@ -47,7 +47,7 @@ pub(super) fn register_name(file: char, number: u8) -> String {
 }
 
 impl Template {
-    pub fn operand(&self, letter: u8) -> Option<&isa::row::Operand> {
+    pub fn operand(&self, letter: u8) -> Option<&isa::definition::Operand> {
         self.row.operand(letter)
     }
 
@@ -239,7 +239,7 @@ impl Assembler<'_> {
     /// A step from its operands, as far as its names are known.
     pub(crate) fn encode_step(&self, op: Op, arguments: &[Argument], step: usize) -> Result<Act, Vec<Failure>> {
         let (isa, Some(template)) = (self.isa, &self.body) else { return Err(Vec::new()) };
-        let row = isa.row(op);
+        let row = isa.definition(op);
         let mut fields = Fields::default();
         let mut immediates = [Immediate::Number(0); 2];
         let mut failures = Vec::new();
@@ -291,7 +291,7 @@ impl Assembler<'_> {
         if !failures.is_empty() {
             return Err(failures);
         }
-        Ok(Act::Row { instruction: Instruction { op, fields }, immediates })
+        Ok(Act::Execute { instruction: Instruction { op, fields }, immediates })
     }
 
     /// The largest step that a branch may lead to: the end of the body, once that is known.
@@ -302,7 +302,13 @@ impl Assembler<'_> {
 
 impl Template {
     /// Whether a step may have a register where it has it.
-    fn check_register(&self, row: &Row, operand: isa::row::Operand, number: u8, at: At) -> Parsed<()> {
+    fn check_register(
+        &self,
+        row: &InstructionDef,
+        operand: isa::definition::Operand,
+        number: u8,
+        at: At,
+    ) -> Parsed<()> {
         let Some(file) = operand.kind.register_file() else { return Ok(()) };
         let count = operand.kind.registers();
         let name = register_name(file, number);

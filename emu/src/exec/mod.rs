@@ -102,4 +102,4 @@ macro_rules! rooms {
     };
 }
 
-isa::rows!(rooms);
+isa::instructions!(rooms);

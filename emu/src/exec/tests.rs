@@ -101,5 +101,5 @@ fn every_pure_row_does_the_same_whether_the_modes_are_known_at_compile_time_or_c
             $($(compare_row! { $style runner $trait $name $operands })*)*
         };
     }
-    isa::rows!(compare_all);
+    isa::instructions!(compare_all);
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use isa::{Fields, Kind, Op, Row};
+use isa::{Fields, InstructionDef, Kind, Op};
 
 use super::toll::{FLAG, Toll};
 use crate::code::{Code, ExitCost, Slot};
@@ -344,7 +344,7 @@ impl<'a> Plan<'a> {
 }
 
 /// Whether a row says how far away control may go.
-fn branches(row: &Row) -> bool {
+fn branches(row: &InstructionDef) -> bool {
     row.operands.iter().any(|operand| operand.kind == Kind::Rel)
 }
 

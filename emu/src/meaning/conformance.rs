@@ -4,7 +4,7 @@ use std::fmt;
 
 use isa::number::Vector;
 use isa::table::Op;
-use isa::{Isa, Kind, Program, Row, register_name};
+use isa::{InstructionDef, Isa, Kind, Program, register_name};
 use messages::Diagnostic;
 
 use crate::code::Code;
@@ -159,7 +159,7 @@ struct Case {
 impl Case {
     fn new(isa: &Isa, op: Op, trial: &Trial, random: &mut Random) -> Case {
         let word = trial.config.arithmetic.word;
-        let row = isa.row(op);
+        let row = isa.definition(op);
         let fields: Vec<i64> = (row.operands.iter())
             .map(|operand| {
                 let (least, most) =
@@ -208,7 +208,7 @@ impl Case {
     }
 
     fn operands(&self, isa: &Isa, op: Op) -> Vec<(String, String)> {
-        let read = isa.row(op).operands.iter().filter(|operand| operand.is_read());
+        let read = isa.definition(op).operands.iter().filter(|operand| operand.is_read());
         let places = read.flat_map(|operand| self.places(isa, operand.letter, operand.kind));
         places.map(|place| (place.name(), place.show(&self.registers))).collect()
     }
@@ -228,7 +228,7 @@ impl Case {
         largest: &mut u64,
     ) -> Vec<(String, String, String)> {
         let mut found = Vec::new();
-        let row = isa.row(op);
+        let row = isa.definition(op);
         let written = row.operands.iter().filter(|operand| operand.is_written());
         for place in written.flat_map(|operand| self.places(isa, operand.letter, operand.kind)) {
             let (a, b) = (&body.state.registers, &meaning.state.registers);
@@ -258,7 +258,7 @@ impl Case {
 }
 
 /// The exit by which the first word ended.
-fn exit(isa: &Isa, row: &Row, program: &Program, run: &SingleRun) -> String {
+fn exit(isa: &Isa, row: &InstructionDef, program: &Program, run: &SingleRun) -> String {
     let code = Code::new(program, isa, Default::default());
     let taken = (0..row.outcomes.len()).find(|&exit| run.tally.passes(&code, 0, exit).count != 0);
     taken.map_or_else(|| "none".to_owned(), |exit| row.outcomes[exit].name.to_string())

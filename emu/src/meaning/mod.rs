@@ -135,17 +135,17 @@ pub fn attach(isa: &mut Isa, name: &str, meaning: impl Meaning + Clone) -> Resul
         }
         None => {
             let message = Diagnostic::error(format!("there is no instruction `{name}`"));
-            let names: Vec<&str> = isa.extensions().map(|op| &*isa.row(op).name).collect();
+            let names: Vec<&str> = isa.extensions().map(|op| &*isa.definition(op).name).collect();
             return Err(Box::new(message.hint(
                 did_you_mean(name, names).unwrap_or_else(|| "load the file that declares it first".to_owned()),
             )));
         }
     };
-    if isa.row(op).outcomes.iter().any(|exit| exit.is_body) {
+    if isa.definition(op).outcomes.iter().any(|exit| exit.is_body) {
         let message = format!("`{name}` costs what its body does, but its meaning in Rust would be executed instead");
         return Err(Box::new(Diagnostic::error(message).hint("declare what its exits cost, such as `[Done(add 3)]`")));
     }
-    let unit = Runner::new(isa.row(op), meaning);
+    let unit = Runner::new(isa.definition(op), meaning);
     isa.set_meaning(op, Some(Arc::new(Attached(Box::new(unit)))));
     Ok(())
 }

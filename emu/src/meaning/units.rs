@@ -4,7 +4,7 @@ use std::fmt;
 
 use dyn_clone::DynClone;
 use isa::number::Vector;
-use isa::{Fields, Isa, Kind, Row};
+use isa::{Fields, InstructionDef, Isa, Kind};
 
 use super::call::{Call, Operands, WRITTEN, place};
 use super::{Ending, MOST_OCTETS, Meaning, Numbers, attached};
@@ -72,7 +72,7 @@ pub(super) struct Runner<M> {
 
 impl<M> Runner<M> {
     /// The unit for an instruction of a row.
-    pub fn new(row: &Row, meaning: M) -> Runner<M> {
+    pub fn new(row: &InstructionDef, meaning: M) -> Runner<M> {
         let mut kinds = [None; 9];
         for operand in row.operands.iter() {
             kinds[place(operand.letter as char)] = Some(operand.kind);

@@ -8,7 +8,7 @@ use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
 use emu::tally::Losses;
 use emu::trap::Fault;
-use isa::{Class, Isa, Op, Program, Row};
+use isa::{Class, InstructionDef, Isa, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -177,7 +177,7 @@ fn groups_of_registers_are_consecutive() {
 /// Random words, most of them instructions with random operands.
 fn words() -> impl Strategy<Value = Vec<u32>> {
     let isa = Isa::base();
-    let rows: Vec<&'static Row> = isa::ROWS.iter().collect();
+    let rows: Vec<&'static InstructionDef> = isa::INSTRUCTIONS.iter().collect();
     let instruction = (prop::sample::select((0..rows.len()).collect::<Vec<_>>()), any::<[i64; 6]>());
     let instruction = instruction.prop_map(move |(number, numbers)| {
         let row = rows[number];

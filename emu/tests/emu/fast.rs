@@ -4,7 +4,7 @@
 use emu::fast::Features;
 use emu::machine::{self, Config, Engine, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
-use isa::{Isa, Kind, Op, Program, Row};
+use isa::{InstructionDef, Isa, Kind, Op, Program};
 
 use super::builder::{Builder, program};
 use super::machine::dispatch;
@@ -108,7 +108,7 @@ fn gather(p: &mut Builder) {
 }
 
 /// An instruction of a row with operands at random; addresses stay in reach.
-fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &Row) {
+fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &InstructionDef) {
     if op == Op::load {
         p.emit(Op::movi, &[1, random.below(200)]).emit(Op::andi, &[2, 2, 0xff]).emit(Op::iaddi, &[2, 2, DATA]);
         p.emit(Op::andi, &[3, 3, 0x7f]).emit(Op::load, &[1, 2, 3]);
@@ -135,7 +135,7 @@ fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &Row) {
 
 /// Rows that a work item may execute anywhere.
 fn anywhere(op: &Op, isa: &Isa) -> bool {
-    let row = isa.row(*op);
+    let row = isa.definition(*op);
     let is_write = matches!(op, Op::store | Op::stw | Op::stv | Op::fetchadd);
     let is_meeting = matches!(op, Op::send2 | Op::send5 | Op::recv2 | Op::recv5 | Op::barrier);
     row.room != "control" && !is_write && !is_meeting
@@ -146,7 +146,7 @@ fn straight(p: &mut Builder, random: &mut Random, isa: &Isa, count: i64) {
     let ops: Vec<Op> = Op::BUILT_IN.iter().copied().filter(|op| anywhere(op, isa)).collect();
     for _ in 0..count {
         let op = ops[random.below(ops.len() as i64) as usize];
-        instruction(p, random, op, isa.row(op));
+        instruction(p, random, op, isa.definition(op));
     }
 }
 
@@ -207,11 +207,11 @@ fn any_row_on_any_operands() {
         let core = program(|p| {
             scatter(p, &mut random);
             for _ in 0..12 {
-                instruction(p, &mut random, op, isa.row(op));
+                instruction(p, &mut random, op, isa.definition(op));
             }
             gather(p);
         });
-        same(&isa.row(op).name, &core, 1 << 20).unwrap_or_else(|error| panic!("{op:?}: {error}"));
+        same(&isa.definition(op).name, &core, 1 << 20).unwrap_or_else(|error| panic!("{op:?}: {error}"));
     }
 }
 
@@ -225,7 +225,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
         p.constant(27, 20_000);
         let again = p.here();
         for &op in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)) {
-            instruction(p, &mut random, op, isa.row(op));
+            instruction(p, &mut random, op, isa.definition(op));
         }
         let (function, over) = (p.label(), p.label());
         p.branch(Op::call, &[28], function).branch(Op::jump, &[], over);

@@ -23,7 +23,7 @@ const RUN: usize = 500;
 fn no_row_takes_more_stack_than_there_is() {
     let isa = Isa::base();
     for op in Op::BUILT_IN.iter().copied() {
-        let row = isa.row(op);
+        let row = isa.definition(op);
         if row.room == "control" || matches!(op, Op::send2 | Op::send5 | Op::recv2 | Op::recv5 | Op::barrier) {
             continue;
         }

@@ -25,7 +25,7 @@ pub enum Immediate {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
     /// An instruction on template registers; a branch distance counts steps.
-    Row {
+    Execute {
         /// The instruction. Its registers are numbered as [`super::registers`] says.
         instruction: Instruction,
         /// Its immediates `i` and `j`.

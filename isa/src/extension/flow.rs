@@ -3,8 +3,8 @@
 
 use super::body::{Act, Body};
 use super::registers;
+use crate::definition::{InstructionDef, Kind, Operand};
 use crate::isa::Isa;
-use crate::row::{Kind, Operand, Row};
 use crate::table::Op;
 
 /// What makes a body unusable.
@@ -70,11 +70,11 @@ impl Body {
     pub fn successors(&self, step: usize, isa: &Isa) -> impl Iterator<Item = usize> + use<> {
         let (next, target) = match self.steps[step].act {
             Act::End { .. } => (None, None),
-            Act::Row { instruction, .. } => {
-                let row = isa.row(instruction.op);
-                let distance = row.operands.iter().find(|operand| operand.kind == Kind::Rel);
+            Act::Execute { instruction, .. } => {
+                let definition = isa.definition(instruction.op);
+                let distance = definition.operands.iter().find(|operand| operand.kind == Kind::Rel);
                 let target = distance.map(|operand| (step as i64 + instruction.fields.get(operand.letter)) as usize);
-                let falls = instruction.op != Op::trap && (target.is_none() || row.outcomes.len() > 1);
+                let falls = instruction.op != Op::trap && (target.is_none() || definition.outcomes.len() > 1);
                 (falls.then_some(step + 1), target)
             }
         };
@@ -83,8 +83,8 @@ impl Body {
 
     /// Registers (file, number in the body, how many) that a step reads or writes.
     fn operands(&self, step: usize, isa: &Isa, is_written: bool) -> Vec<(char, u8, Kind)> {
-        let Act::Row { instruction, .. } = self.steps[step].act else { return Vec::new() };
-        let operands = isa.row(instruction.op).operands.iter();
+        let Act::Execute { instruction, .. } = self.steps[step].act else { return Vec::new() };
+        let operands = isa.definition(instruction.op).operands.iter();
         let wanted = operands.filter(|operand| if is_written { operand.is_written() } else { operand.is_read() });
         let found = wanted.filter_map(|operand| {
             let number = instruction.fields.get(operand.letter) as u8;
@@ -97,10 +97,10 @@ impl Body {
     ///
     /// # Errors
     /// Why it cannot be executed, by the lowest step.
-    pub fn summary(&self, row: &Row, isa: &Isa) -> Result<Summary, Defect> {
+    pub fn summary(&self, definition: &InstructionDef, isa: &Isa) -> Result<Summary, Defect> {
         let mut known: Vec<Option<Known>> = vec![None; self.steps.len()];
         let mut first: Known = [1, 0, 0];
-        for operand in row.operands.iter().filter(|operand| operand.is_read()) {
+        for operand in definition.operands.iter().filter(|operand| operand.is_read()) {
             if let Some(file) = operand.kind.register_file() {
                 first[place(file)] |= bits(operand.kind, registers::operand(operand.letter, 0));
             }
@@ -123,11 +123,11 @@ impl Body {
                 }
             }
         }
-        self.check(row, isa, &known)?;
-        Ok(self.summarize(row, isa, &known))
+        self.check(definition, isa, &known)?;
+        Ok(self.summarize(definition, isa, &known))
     }
 
-    fn check(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
+    fn check(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
         let mut has_outcome = false;
         for (step, known) in known.iter().enumerate() {
             let Some(known) = known else { continue };
@@ -141,7 +141,7 @@ impl Body {
                 continue;
             }
             has_outcome = true;
-            for operand in row.operands.iter().filter(|operand| operand.is_written()) {
+            for operand in definition.operands.iter().filter(|operand| operand.is_written()) {
                 let Some(file) = operand.kind.register_file() else { continue };
                 let number = registers::operand(operand.letter, 0);
                 let missing = (0..operand.kind.registers()).find(|at| known[place(file)] >> (number + at) & 1 == 0);
@@ -153,10 +153,10 @@ impl Body {
         if has_outcome { Ok(()) } else { Err(Defect::Endless) }
     }
 
-    fn summarize(&self, row: &Row, isa: &Isa, known: &[Option<Known>]) -> Summary {
+    fn summarize(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<Known>]) -> Summary {
         let mut summary = Summary {
             reached: known.iter().map(Option::is_some).collect(),
-            outcomes: vec![false; row.outcomes.len()],
+            outcomes: vec![false; definition.outcomes.len()],
             ..Summary::default()
         };
         let mut used = Vec::new();
@@ -166,14 +166,14 @@ impl Body {
                     summary.outcomes[usize::from(outcome)] = true;
                     used.extend(
                         jumps
-                            .then_some(row.operands.iter().filter(|o| o.kind == Kind::Rel))
+                            .then_some(definition.operands.iter().filter(|o| o.kind == Kind::Rel))
                             .into_iter()
                             .flatten()
                             .map(|o| o.letter),
                     );
                 }
-                Act::Row { instruction, immediates } => {
-                    let inner = isa.row(instruction.op);
+                Act::Execute { instruction, immediates } => {
+                    let inner = isa.definition(instruction.op);
                     if instruction.op == Op::trap || matches!(&*inner.room, "local" | "bus") {
                         summary.faults.push(step);
                     }
@@ -195,7 +195,7 @@ impl Body {
                 }
             }
         }
-        summary.unused = row.operands.iter().map(|o| o.letter).filter(|letter| !used.contains(letter)).collect();
+        summary.unused = definition.operands.iter().map(|o| o.letter).filter(|letter| !used.contains(letter)).collect();
         summary
     }
 
@@ -213,10 +213,10 @@ impl Body {
 
     /// Letters of a destination and a source of a row that may be one register, where the body reads the source after writing the
     /// destination.
-    pub fn overwritten(&self, row: &Row, isa: &Isa) -> Vec<(u8, u8)> {
+    pub fn overwritten(&self, definition: &InstructionDef, isa: &Isa) -> Vec<(u8, u8)> {
         let of_operand = |operand: &Operand| bits(operand.kind, registers::operand(operand.letter, 0));
-        let written = row.operands.iter().filter(|operand| operand.is_written());
-        let pairs = written.flat_map(|written| row.operands.iter().map(move |read| (written, read)));
+        let written = definition.operands.iter().filter(|operand| operand.is_written());
+        let pairs = written.flat_map(|written| definition.operands.iter().map(move |read| (written, read)));
         let alike = pairs.filter(|(written, read)| {
             let file = written.kind.register_file();
             written.letter != read.letter && read.is_read() && file.is_some() && file == read.kind.register_file()

@@ -10,7 +10,7 @@ use std::sync::Arc;
 pub use body::{Act, Body, Immediate, Step};
 pub use flow::{Defect, Summary};
 
-use crate::row::Row;
+use crate::definition::InstructionDef;
 
 /// What an engine keeps with an instruction: a meaning in its own terms, of which nothing is known here.
 pub type Meaning = Arc<dyn Any + Send + Sync>;
@@ -19,7 +19,7 @@ pub type Meaning = Arc<dyn Any + Send + Sync>;
 #[derive(Clone, Debug)]
 pub struct Extension {
     /// Its row.
-    pub row: Row,
+    pub definition: InstructionDef,
     /// What it does, in assembly. Without that and without a meaning, a word of it can be written and shown but not executed.
     pub body: Option<Arc<Body>>,
     /// What it does, as an engine has it: executed in the place of the body.

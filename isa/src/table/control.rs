@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! control_rows {
+macro_rules! control_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         control control ControlRoom "Branches, calls, the core's number, the end. A branch distance counts words from the branch itself." {
             /// Branches by `i` words when `a = b`.

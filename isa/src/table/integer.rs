@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! integer_rows {
+macro_rules! integer_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         pure integer IntegerRoom "Integers of 32 bits in scalar registers, modulo 2^32 whatever the word: counters, addresses, logic, constants." {
             /// Sum `d = a + b` modulo 2^32.

@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! memory_rows {
+macro_rules! memory_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         local local LocalRoom "The local buffer of a core: octet addresses from 0, little-endian, any alignment. An access beyond its end is a trap." {
             /// Loads an octet, unsigned, from the buffer at `a + i`.

@@ -12,24 +12,24 @@ mod wide;
 use std::borrow::Cow;
 
 use crate::class::Counts;
+use crate::definition::{InstructionDef, Kind, Operand, OutcomeDef, Room};
 use crate::pattern::BitPattern;
-use crate::row::{Kind, Operand, OutcomeDef, Room, Row};
 
 /// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
 ///
 /// The style says who may give the meaning: `pure` needs only values, `local` the core's buffer, `bus` the machine,
 /// `control` the next instruction.
 #[macro_export]
-macro_rules! rows {
+macro_rules! instructions {
     ($callback:ident) => {
-        $crate::scalar_rows! { [] integer_rows vector_rows wide_rows ray_rows memory_rows control_rows rows_end $callback }
+        $crate::scalar_instructions! { [] integer_instructions vector_instructions wide_instructions ray_instructions memory_instructions control_instructions instructions_end $callback }
     };
 }
 
 /// Closes the chain of rooms.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! rows_end {
+macro_rules! instructions_end {
     ([$($rooms:tt)*] $callback:ident) => { $callback! { $($rooms)* } };
 }
 
@@ -165,7 +165,7 @@ macro_rules! stamp {
         /// The rooms in the order of the table.
         pub const ROOMS: &[Room] = &[$(Room { name: stringify!($room), doc: $room_doc },)*];
 
-        const TABLE: &[Row] = &[$($(Row {
+        const TABLE: &[InstructionDef] = &[$($(InstructionDef {
             name: Cow::Borrowed(stringify!($name)),
             doc: Cow::Borrowed(concat!($($doc, "\n"),*)),
             room: Cow::Borrowed(stringify!($room)),
@@ -187,7 +187,7 @@ macro_rules! stamp {
             const OPERANDS: &[Operand] = &[$(Operand { letter: stringify!($letter).as_bytes()[0], kind: Kind::$kind }),*];
             let Ok(pattern) = BitPattern::parse($drawn) else { panic!() };
             assert!(!pattern.is_custom(), concat!("`", stringify!($name), "` stands in an opcode kept for extensions"));
-            assert!(Row::check(OPERANDS, &pattern, 1).is_ok(), concat!("operands and pattern of `", stringify!($name), "` do not fit"));
+            assert!(InstructionDef::check(OPERANDS, &pattern, 1).is_ok(), concat!("operands and pattern of `", stringify!($name), "` do not fit"));
         };)*)*
 
         /// An outcome type a row, in a module of the row's name.
@@ -197,10 +197,10 @@ macro_rules! stamp {
     };
 }
 
-crate::rows!(stamp);
+crate::instructions!(stamp);
 
 /// The built-in rows, in the order of [`Op::BUILT_IN`].
-pub static ROWS: &[Row] = TABLE;
+pub static INSTRUCTIONS: &[InstructionDef] = TABLE;
 
 const _: () = {
     let mut at = 0;

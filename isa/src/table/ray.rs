@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! ray_rows {
+macro_rules! ray_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         pure ray RayRoom "A ray (two vectors: its origin, its direction) against triangles, boxes and planes, on exact integers with one rounding at the end. What is met exactly is decided as if the direction were moved by (e, e^2, e^3), e > 0 infinitely small. A plane is a pattern of 64 bits: its coordinate in the low half, its axis in the two lowest bits of the high half; axis 3 stands for the moment t = coordinate, so 3 in the high half and 0 in the low one for the start of the ray." {
             /// Ray `a` against the triangle of vertices `b`: `d` = t of the hit, the largest word for a miss; `e` = (u, v, 0), the weights

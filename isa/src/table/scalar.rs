@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! scalar_rows {
+macro_rules! scalar_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         pure scalar ScalarRoom "Fixed-point numbers in scalar registers. A result is quantized to the word under the machine's modes." {
             /// Sum `d = a + b`.

@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! vector_rows {
+macro_rules! vector_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         pure vector VectorRoom "Three fixed-point components at once: positions, directions, colours. Each component is quantized once; copies, single components and selections move raw bits." {
             /// Sum of two vectors, component by component.

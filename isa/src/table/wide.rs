@@ -3,7 +3,7 @@
 /// Hands the rows of the room on.
 #[doc(hidden)]
 #[macro_export]
-macro_rules! wide_rows {
+macro_rules! wide_instructions {
     ([$($before:tt)*] $next:ident $($rest:ident)*) => { $crate::$next! { [$($before)*
         pure wide WideRoom "Accumulators of twice the word: full products kept unrounded, one rounded quotient or root at the end. A result that does not fit 2 x word bits overflows under the machine's mode." {
             /// Exact product of two scalars.

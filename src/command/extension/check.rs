@@ -48,7 +48,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
             count(number, "warning", "warnings")
         );
         for loaded in &loaded {
-            text += &format!("  {}\n", isa.row(loaded.op).line());
+            text += &format!("  {}\n", isa.definition(loaded.op).line());
             if loaded.is_rust {
                 text += "    meaning in Rust: a program of yours attaches and runs it\n";
             }
@@ -56,7 +56,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
                 continue;
             }
             let steps = isa.body(loaded.op).map_or(0, |body| {
-                body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Row { .. })).count() as u64
+                body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Execute { .. })).count() as u64
             });
             let beside = if loaded.is_rust { "beside it a body: " } else { "" };
             text += &format!(
@@ -74,8 +74,8 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
 fn spent(isa: &Isa, op: isa::Op) -> String {
     let mut sum = Counts::ZERO;
     for step in isa.body(op).iter().flat_map(|body| &body.steps) {
-        if let isa::extension::Act::Row { instruction, .. } = step.act {
-            sum += isa.row(instruction.op).outcomes[0].cost;
+        if let isa::extension::Act::Execute { instruction, .. } = step.act {
+            sum += isa.definition(instruction.op).outcomes[0].cost;
         }
     }
     let parts = Class::ALL.iter().filter(|class| sum[**class] != 0);

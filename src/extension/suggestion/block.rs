@@ -54,7 +54,7 @@ impl Item {
                 is_plain: false,
             };
         };
-        let (row, is_plain) = (isa.row(instruction.op), is_plain(instruction, isa));
+        let (row, is_plain) = (isa.definition(instruction.op), is_plain(instruction, isa));
         // Loads have a result, stores have none but the address.
         let buffer = match (&*row.room, row.operand(b'd')) {
             ("local", Some(_)) => Access::Reads,

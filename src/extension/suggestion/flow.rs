@@ -8,7 +8,7 @@ pub type Registers = u128;
 /// The registers that an instruction reads, or writes; `s0` is none.
 pub fn registers(instruction: &Instruction, isa: &Isa, is_written: bool) -> Registers {
     let mut found = 0;
-    for operand in isa.row(instruction.op).operands.iter() {
+    for operand in isa.definition(instruction.op).operands.iter() {
         if (is_written && operand.is_written()) || (!is_written && operand.is_read()) {
             found |= bits(operand.kind, instruction.fields.get(operand.letter) as u8);
         }
@@ -45,7 +45,7 @@ impl Flow {
         let instructions: Vec<Option<Instruction>> = program.words.iter().map(|&word| isa.decode(word)).collect();
         let target = |(pc, instruction): (usize, &Option<Instruction>)| {
             let instruction = instruction.as_ref()?;
-            let operand = isa.row(instruction.op).operands.iter().find(|operand| operand.kind == Kind::Rel)?;
+            let operand = isa.definition(instruction.op).operands.iter().find(|operand| operand.kind == Kind::Rel)?;
             usize::try_from(pc as i64 + instruction.fields.get(operand.letter)).ok()
         };
         let targets: Vec<Option<usize>> = instructions.iter().enumerate().map(target).collect();
@@ -55,7 +55,7 @@ impl Flow {
             if let Some(target) = targets[pc].filter(|&target| target < is_leader.len()) {
                 is_leader[target] = true;
             }
-            if instruction.is_none_or(|instruction| *isa.row(instruction.op).room == *"control") {
+            if instruction.is_none_or(|instruction| *isa.definition(instruction.op).room == *"control") {
                 is_leader[pc + 1] = true;
             }
         }

@@ -1,7 +1,7 @@
 //! Some instructions of a basic block as one instruction: its operands, its body, and how long it takes at least.
 
 use emu::timing::Timing;
-use isa::row::Operand;
+use isa::definition::Operand;
 use isa::{Instruction, Isa, Kind};
 
 use super::flow::{Registers, bits, registers};
@@ -37,7 +37,7 @@ const ROOMS: [&str; 6] = ["scalar", "integer", "vector", "wide", "ray", "local"]
 
 /// Whether an instruction may be part of another.
 pub fn is_plain(instruction: &Instruction, isa: &Isa) -> bool {
-    let row = isa.row(instruction.op);
+    let row = isa.definition(instruction.op);
     ROOMS.contains(&&*row.room)
 }
 
@@ -125,7 +125,7 @@ fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<Unit>> {
     let mut units: Vec<Unit> = Vec::new();
     for instruction in instructions {
         for is_written in [false, true] {
-            for operand in isa.row(instruction.op).operands.iter() {
+            for operand in isa.definition(instruction.op).operands.iter() {
                 let wanted = if is_written { operand.is_written() } else { operand.is_read() };
                 let (Some(file), true) = (operand.kind.register_file(), wanted) else { continue };
                 let (first, count) = (instruction.fields.get(operand.letter) as u8, operand.kind.registers());
@@ -153,7 +153,7 @@ fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<Unit>> {
 
 /// An instruction with other names for its registers.
 pub fn line(instruction: &Instruction, isa: &Isa, name: &dyn Fn(char, u8) -> String) -> String {
-    let row = isa.row(instruction.op);
+    let row = isa.definition(instruction.op);
     let mut parts: Vec<String> = Vec::new();
     for (at, operand) in row.operands.iter().enumerate() {
         let value = instruction.fields.get(operand.letter);
@@ -174,7 +174,7 @@ fn latency(instructions: &[Instruction], isa: &Isa, timing: &Timing) -> (u64, u6
     let mut ready: Vec<(Registers, u64)> = Vec::new();
     let (mut serial, mut critical) = (0, 0);
     for instruction in instructions {
-        let clocks = timing.clocks(&isa.row(instruction.op).outcomes[0].cost).0;
+        let clocks = timing.clocks(&isa.definition(instruction.op).outcomes[0].cost).0;
         let reads = registers(instruction, isa, false);
         let start = ready.iter().filter(|(written, _)| written & reads != 0).map(|&(_, end)| end).max().unwrap_or(0);
         let writes = registers(instruction, isa, true);

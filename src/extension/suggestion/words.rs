@@ -23,7 +23,7 @@ impl Majors {
     pub fn new(isa: &Isa) -> Majors {
         let is_free = |bits: &str| {
             let major = u32::from_str_radix(bits, 2).unwrap_or(0);
-            isa.extensions().all(|op| isa.row(op).pattern.value >> 26 != major)
+            isa.extensions().all(|op| isa.definition(op).pattern.value >> 26 != major)
         };
         Majors {
             free: CUSTOM.iter().rev().filter(|(_, bits)| is_free(bits)).map(|(name, _)| *name).collect(),

@@ -305,7 +305,7 @@ macro_rules! stamp_baseline {
     ($($rows:tt)*) => { stamp! { [cfg(all())] baseline false exact_ray $($rows)* } };
 }
 
-isa::rows!(stamp_baseline);
+isa::instructions!(stamp_baseline);
 
 #[cfg(target_arch = "x86_64")]
 macro_rules! stamp_avx2 {
@@ -313,4 +313,4 @@ macro_rules! stamp_avx2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-isa::rows!(stamp_avx2);
+isa::instructions!(stamp_avx2);

@@ -179,7 +179,7 @@ pub struct Room {
 
 /// One instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct InstructionDef {
     /// Mnemonic.
     pub name: Cow<'static, str>,
     /// What is true of it; the first sentence is the one that manuals quote.
@@ -198,7 +198,7 @@ pub struct Row {
 
 /// Why a row is not well formed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowError {
+pub enum DefinitionError {
     /// The operand of this letter has no field, or not as wide as its kind needs.
     Field(u8),
     /// The pattern has a field without an operand.
@@ -211,39 +211,39 @@ pub enum RowError {
     NoOutcome,
 }
 
-impl Row {
+impl InstructionDef {
     /// Whether operands, pattern and outcomes fit together.
-    pub const fn check(operands: &[Operand], pattern: &BitPattern, outcomes: usize) -> Result<(), RowError> {
+    pub const fn check(operands: &[Operand], pattern: &BitPattern, outcomes: usize) -> Result<(), DefinitionError> {
         let mut at = 0;
         while at < operands.len() {
             let Operand { letter, kind } = operands[at];
             let mut before = 0;
             while before < at {
                 if operands[before].letter == letter {
-                    return Err(RowError::Twice(letter));
+                    return Err(DefinitionError::Twice(letter));
                 }
                 before += 1;
             }
             if (letter == b'i' || letter == b'j') != kind.register_file().is_none() {
-                return Err(RowError::Letter(letter));
+                return Err(DefinitionError::Letter(letter));
             }
             match pattern.field(letter) {
-                None => return Err(RowError::Field(letter)),
+                None => return Err(DefinitionError::Field(letter)),
                 Some(field) => {
                     if let Some(width) = kind.width()
                         && field.width != width
                     {
-                        return Err(RowError::Field(letter));
+                        return Err(DefinitionError::Field(letter));
                     }
                 }
             }
             at += 1;
         }
         if pattern.field_count() != operands.len() {
-            return Err(RowError::Spare);
+            return Err(DefinitionError::Spare);
         }
         if outcomes == 0 {
-            return Err(RowError::NoOutcome);
+            return Err(DefinitionError::NoOutcome);
         }
         Ok(())
     }

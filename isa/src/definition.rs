@@ -162,7 +162,7 @@ pub struct OutcomeDef {
     pub name: Cow<'static, str>,
     /// Cost of the outcome.
     pub cost: Counts,
-    /// Cost of each unit that the meaning reports (an octet of a block transfer).
+    /// Cost of each unit that the semantics report (an octet of a block transfer).
     pub each: Counts,
     /// Whether it costs what the steps of the body cost on the way to it, and nothing else: extensions only.
     pub is_body: bool,

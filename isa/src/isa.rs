@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::definition::{InstructionDef, Kind};
-use crate::extension::{Body, Extension, Meaning};
+use crate::extension::{Body, Extension, Semantics};
 use crate::table::{INSTRUCTIONS, Op};
 
 /// The fields of a decoded word, by operand letter; a letter that the row does not have is 0.
@@ -130,7 +130,7 @@ impl Isa {
             return Err(other);
         }
         let op = Op::Ext(self.extensions.len() as u16);
-        self.extensions.push(Extension { definition, body: None, meaning: None, is_expanded: false });
+        self.extensions.push(Extension { definition, body: None, semantics: None, is_expanded: false });
         self.enter(op);
         Ok(op)
     }
@@ -142,24 +142,24 @@ impl Isa {
         }
     }
 
-    /// Gives an extension row a meaning that an engine knows how to execute, or takes it away.
-    pub fn set_meaning(&mut self, op: Op, meaning: Option<Meaning>) {
+    /// Gives an extension row semantics that an engine knows how to execute, or takes it away.
+    pub fn set_semantics(&mut self, op: Op, semantics: Option<Semantics>) {
         if let Op::Ext(n) = op {
-            self.extensions[n as usize].meaning = meaning;
+            self.extensions[n as usize].semantics = semantics;
         }
     }
 
-    /// The meaning that an engine has for an extension row.
-    pub fn meaning(&self, op: Op) -> Option<&Meaning> {
+    /// The semantics that an engine has for an extension row.
+    pub fn semantics(&self, op: Op) -> Option<&Semantics> {
         match op {
-            Op::Ext(n) => self.extensions[n as usize].meaning.as_ref(),
+            Op::Ext(n) => self.extensions[n as usize].semantics.as_ref(),
             _ => None,
         }
     }
 
-    /// Whether an instruction is executed by the steps of its body: where it has no other meaning, or where its steps are counted.
+    /// Whether an instruction is executed by the steps of its body: where it has no other semantics, or where its steps are counted.
     pub fn runs_body(&self, op: Op) -> bool {
-        self.body(op).is_some() && (self.meaning(op).is_none() || self.is_expanded(op))
+        self.body(op).is_some() && (self.semantics(op).is_none() || self.is_expanded(op))
     }
 
     /// The body of an extension row; `None` for the rows of the table.

@@ -90,10 +90,10 @@ impl Mismatch {
 /// # Panics
 /// The instruction has no body or no meaning.
 pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mismatch>> {
-    let op = isa.find(name).filter(|&op| isa.body(op).is_some() && isa.meaning(op).is_some());
+    let op = isa.find(name).filter(|&op| isa.body(op).is_some() && isa.semantics(op).is_some());
     let op = op.expect("the instruction has a meaning in Rust and a body beside it");
     let mut by_body = isa.clone();
-    by_body.set_meaning(op, None);
+    by_body.set_semantics(op, None);
     let mut random = Random(trial.seed);
     let mut agreement = Agreement::default();
     for _ in 0..trial.cases {
@@ -244,7 +244,7 @@ impl Case {
         }
         let exit = |isa: &Isa, run: &SingleRun| exit(isa, row, &self.program, run);
         let mut by_body = isa.clone();
-        by_body.set_meaning(op, None);
+        by_body.set_semantics(op, None);
         let exits = (exit(&by_body, body), exit(isa, meaning));
         if exits.0 != exits.1 {
             found.push(("exit".to_owned(), exits.0, exits.1));

@@ -146,7 +146,7 @@ pub fn attach(isa: &mut Isa, name: &str, meaning: impl Meaning + Clone) -> Resul
         return Err(Box::new(Diagnostic::error(message).hint("declare what its exits cost, such as `[Done(add 3)]`")));
     }
     let unit = Runner::new(isa.definition(op), meaning);
-    isa.set_meaning(op, Some(Arc::new(Attached(Box::new(unit)))));
+    isa.set_semantics(op, Some(Arc::new(Attached(Box::new(unit)))));
     Ok(())
 }
 
@@ -157,5 +157,5 @@ pub fn of(isa: &Isa, op: Op) -> Option<&dyn Meaning> {
 
 /// What executes an instruction, as it is after reset.
 fn attached(isa: &Isa, op: Op) -> Option<&Attached> {
-    isa.meaning(op)?.downcast_ref()
+    isa.semantics(op)?.downcast_ref()
 }

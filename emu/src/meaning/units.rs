@@ -182,7 +182,7 @@ impl Eq for Units {}
 impl Units {
     /// The units of a core after reset.
     pub fn new(isa: &Isa) -> Units {
-        if isa.extensions().all(|op| isa.meaning(op).is_none()) {
+        if isa.extensions().all(|op| isa.semantics(op).is_none()) {
             return Units::default();
         }
         Units(isa.extensions().map(|op| attached(isa, op).map(|attached| attached.0.clone())).collect())

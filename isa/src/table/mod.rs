@@ -17,7 +17,7 @@ use crate::pattern::BitPattern;
 
 /// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
 ///
-/// The style says who may give the meaning: `pure` needs only values, `local` the core's buffer, `bus` the machine,
+/// The style says who may give the semantics: `pure` needs only values, `local` the core's buffer, `bus` the machine,
 /// `control` the next instruction.
 #[macro_export]
 macro_rules! instructions {
@@ -41,7 +41,7 @@ pub struct Done;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Each(pub u32);
 
-/// What an engine reads off the outcome that a meaning returns.
+/// What an engine reads off the outcome that the semantics return.
 pub trait AnyOutcome: Copy {
     /// Outcomes of the row.
     const OUTCOMES: usize;

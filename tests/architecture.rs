@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Crates that each crate may build on. The root package may build on all.
-const MAY_USE: [(&str, &[&str]); 6] = [
+const MAY_USE: [(&str, &[&str]); 7] = [
     ("messages", &[]),
     ("isa", &["messages"]),
+    ("conformance", &["messages", "isa"]),
     ("asm", &["messages", "isa"]),
     ("emu", &["messages", "isa"]),
     ("scenes", &["messages"]),

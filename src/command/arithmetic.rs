@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use isa::number::conformance::{self, Outcome, Vector};
+use conformance::{Outcome, Vector};
 use schemars::JsonSchema;
 use serde::Serialize;
 

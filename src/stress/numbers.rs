@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use isa::number::conformance::{Format, Number, Operation, operate};
+use conformance::{Format, Number, Operation, operate};
 use isa::number::{Arithmetic, Modes, Nearest32, Overflow, Quantization};
 
 use super::random::Random;

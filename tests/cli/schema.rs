@@ -46,7 +46,7 @@ fn session() -> Session {
     session.write("sum.s", ".func f\n    imul s1, s2, s3\n.endfunc\n    halt\n");
     session.write("half.isa", ".extension half\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
     session.write("trap.s", "    trap 7\n");
-    session.write("vectors.csv", &format!("{}\n", isa::number::conformance::HEADER));
+    session.write("vectors.csv", &format!("{}\n", conformance::HEADER));
     session
 }
 

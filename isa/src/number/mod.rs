@@ -1,7 +1,6 @@
 //! Fixed-point arithmetic on raw integers: quantization and overflow in the modes of IEEE 1666, exact quotients, and
 //! correctly rounded roots, and the exact tests of rays. Which format a raw integer has is the caller's business; every function says how it rounds.
 
-pub mod conformance;
 mod modes;
 mod nearest;
 pub mod ray;
@@ -69,11 +68,6 @@ pub trait Arithmetic {
     fn root(&self, value: u128) -> i32 {
         self.narrow(square_root(value).into(), 0)
     }
-}
-
-/// Number of bits that the two's complement number needs without its sign: 0 for 0 and -1, 3 for 7 and -8.
-pub const fn magnitude_bits(value: i128) -> u32 {
-    128 - (if value < 0 { !value } else { value }).leading_zeros()
 }
 
 /// The shift right (negative: left) after which the largest component lies in [2^(word-3), 2^(word-2)); 0 for a zero vector.

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::operation::{Format, Number, Operation, Outcome, operate};
-use crate::number::{Overflow, Quantization};
+use isa::number::{Overflow, Quantization};
 use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 
 /// The first line of a file of vectors: the names of its columns.

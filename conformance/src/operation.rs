@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{Signed, ToPrimitive};
 
-use crate::number::{Overflow, Quantization};
+use isa::number::{Overflow, Quantization};
 
 /// A format: value = raw 2^(integer - word).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::number::{Arithmetic, Flags, Modes, Overflow, Quantization};
+use isa::number::{Arithmetic, Flags, Modes, Overflow, Quantization};
 use messages::Source;
 
 fn signed(word: u32, integer: i32) -> Format {
@@ -233,7 +233,7 @@ fn lines_that_are_no_vectors_are_told_with_their_place() {
 
 #[test]
 fn the_document_shows_what_the_modes_do() {
-    let text = include_str!("../../../../docs/arithmetic.md");
+    let text = include_str!("../../docs/arithmetic.md");
     let mut shown = 0;
     for line in text.lines().filter_map(|line| line.strip_prefix("| `")) {
         let (name, rest) = line.split_once('`').expect("a name ends");

@@ -96,7 +96,7 @@ struct RawRow {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawTerm {
-    /// AnnexFile below the kernels' folder.
+    /// File below the kernels' folder.
     at: String,
     /// A piece of the line, found in one line of the file.
     text: String,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use messages::{Diagnostic, Report, nearest, question};
 
-use super::format::SCENES;
+use super::format::scene_extensions;
 
 /// Octets of the largest file that is read.
 const LARGEST: u64 = 256 << 20;
@@ -19,7 +19,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     let metadata = fs::metadata(path).map_err(|error| refusal(path, &error))?;
     if metadata.is_dir() {
         let error = Diagnostic::error(format!("{shown} is a folder, not a scene file"));
-        let names = scene_files(path, &SCENES);
+        let names = scene_files(path, &scene_extensions());
         let hint = match names.is_empty() {
             true => "there is no .dsc in it, and no mesh".to_string(),
             false => format!("scene files in it: {}", listed(&names)),
@@ -42,8 +42,8 @@ fn refusal(path: &Path, error: &std::io::Error) -> Report {
     let message = match error.kind() {
         ErrorKind::NotFound => {
             let missing = Diagnostic::error(format!("there is no file {shown}"));
-            let there = path.parent().map(|folder| scene_files(folder, &SCENES)).unwrap_or_default();
-            match near(path, &SCENES) {
+            let there = path.parent().map(|folder| scene_files(folder, &scene_extensions())).unwrap_or_default();
+            match near(path, &scene_extensions()) {
                 Some(near) => missing.hint(question(&near.display().to_string())),
                 None if there.is_empty() => missing,
                 None => missing.hint(format!("scene files there: {}", listed(&there))),

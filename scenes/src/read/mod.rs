@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use messages::{Diagnostic, Report, question};
 
-use self::format::Format;
+use self::format::{MeshReader, SceneFormat};
 use self::mesh::Mesh;
 use crate::model::Scene;
 
@@ -45,12 +45,11 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
     Ok(Loaded { files, ..loaded })
 }
 
-/// The same, with all files but the first put on a list.
+/// Reads a scene as [`load`] does, and puts all files but the first on a list.
 fn load_listing(path: &Path, mesh: Option<&Path>, files: &mut Vec<PathBuf>) -> Result<Loaded, Report> {
     let bytes = file::read(path)?;
     let name = path.file_stem().map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
-    let format = Format::of(path, &bytes)?;
-    if format != Format::Dsc {
+    if let SceneFormat::Mesh(format) = SceneFormat::of(path, &bytes)? {
         return match mesh {
             Some(mesh) => {
                 let message = format!("{} and {} are both meshes", path.display(), mesh.display());
@@ -79,25 +78,25 @@ fn load_listing(path: &Path, mesh: Option<&Path>, files: &mut Vec<PathBuf>) -> R
 fn load_mesh(path: &Path, files: &mut Vec<PathBuf>) -> Result<Mesh, Report> {
     files.push(path.to_owned());
     let bytes = file::read(path)?;
-    let format = Format::of(path, &bytes)?;
-    if format == Format::Dsc {
+    let SceneFormat::Mesh(format) = SceneFormat::of(path, &bytes)? else {
         let error = Diagnostic::error(format!("{} is a scene description, not a mesh", path.display()));
         return Err(error.hint("the mesh of a .dsc is a file such as an .off").into());
-    }
+    };
     parse_mesh(format, bytes, path, None)
 }
 
 /// Reads a mesh. Its material libraries are opened, and put on the list, where there is one: a `.dsc` has materials of
 /// its own.
-fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Vec<PathBuf>>) -> Result<Mesh, Report> {
+fn parse_mesh(
+    format: &MeshReader,
+    bytes: Vec<u8>,
+    path: &Path,
+    files: Option<&mut Vec<PathBuf>>,
+) -> Result<Mesh, Report> {
     let name = path.display().to_string();
-    let mesh = match format {
-        Format::Dsc => Err(Diagnostic::error(format!("{name} is not a mesh")).into()),
-        Format::Off => off::parse(bytes, &name),
-        Format::Stl => stl::parse(bytes, &name),
-        Format::Ply => ply::parse(bytes, &name),
-        Format::Obj => {
-            let Some(files) = files else { return obj::parse(bytes, &name, None) };
+    let mesh = match files {
+        None => (format.parse)(bytes, &name, None),
+        Some(files) => {
             let mut open = |library: &str| {
                 // Some programs write the names as they are on their own system.
                 let library = library.replace('\\', "/");
@@ -112,7 +111,7 @@ fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Ve
                 files.push(path.clone());
                 Ok((path.display().to_string(), file::read(&path)?))
             };
-            obj::parse(bytes, &name, Some(&mut open))
+            (format.parse)(bytes, &name, Some(&mut open))
         }
     }?;
     if mesh.warnings.has_errors() { Err(mesh.warnings) } else { Ok(mesh) }
@@ -120,7 +119,7 @@ fn parse_mesh(format: Format, bytes: Vec<u8>, path: &Path, files: Option<&mut Ve
 
 /// The mesh beside a `.dsc`: the same name with a mesh's extension.
 fn beside(path: &Path) -> Result<PathBuf, Report> {
-    let meshes = format::MESHES;
+    let meshes = format::mesh_extensions();
     let candidates: Vec<PathBuf> = meshes
         .iter()
         .flat_map(|extension| [extension.to_string(), extension.to_ascii_uppercase()])
@@ -133,7 +132,7 @@ fn beside(path: &Path) -> Result<PathBuf, Report> {
     let error = Diagnostic::error(format!("{} has no mesh: {} is not there", path.display(), wanted.display()));
     let hint = match file::near(wanted, &meshes) {
         Some(near) => question(&format!("--mesh {}", near.display())),
-        None => "put it beside the .dsc, as .off, .obj, .ply or .stl, or name another by `--mesh`".to_string(),
+        None => format!("put it beside the .dsc, as {}, or name another by `--mesh`", format::listed_extensions()),
     };
     Err(error.hint(hint).into())
 }

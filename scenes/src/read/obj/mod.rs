@@ -14,12 +14,23 @@ use messages::{Diagnostic, Report};
 use self::lost::LostStatements;
 use super::colour::Spec;
 use super::faces::Faces;
+use super::format::{Likelihood, MeshReader};
 use super::mesh::{GREY, Mesh};
 use super::words::{self, Word, Words, counted, shortened};
 use crate::model::{Material, Vec3};
 
 /// Opens a material library by the name that a `.obj` gives it: the path to show in messages, and its octets.
 pub type Libraries<'l> = dyn FnMut(&str) -> Result<(String, Vec<u8>), Report> + 'l;
+
+/// First words of OBJ files.
+const STATEMENTS: [&str; 9] = ["v", "vn", "vt", "f", "o", "g", "s", "usemtl", "mtllib"];
+
+/// The reader's row.
+pub(super) static READER: MeshReader = MeshReader {
+    extensions: &["obj"],
+    sniff: |_, word| Likelihood::likely_if(STATEMENTS.contains(&word)),
+    parse: |bytes, name, libraries| parse(bytes, name, libraries),
+};
 
 /// Reads an OBJ file; `name` is shown in messages, `libraries` opens material libraries. Without it materials are not
 /// wanted: a `.dsc` has its own.

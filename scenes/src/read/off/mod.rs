@@ -10,9 +10,17 @@ use std::borrow::Cow;
 use messages::Report;
 
 use self::header::Header;
+use super::format::{Likelihood, MeshReader};
 use super::mesh::Mesh;
 use super::words::{self, Words};
 use crate::model::Vec3;
+
+/// The reader's row. Headers are many (OFF, COFF, 4OFF, STCNOFF, ...); all contain OFF.
+pub(super) static READER: MeshReader = MeshReader {
+    extensions: &["off"],
+    sniff: |_, word| Likelihood::likely_if(word.contains("OFF")),
+    parse: |bytes, name, _| parse(bytes, name),
+};
 
 /// Reads an OFF file (octets that are handed over are not copied); `name` is shown in messages.
 ///

@@ -74,7 +74,7 @@ fn edges(words: &mut Words<'_>, word: Word<'_>) {
     }
 }
 
-/// Numbers that each vertex has in this file. FaceColours of vertices have four, but three are about as well: the line of
+/// Numbers that each vertex has in this file. Colours of vertices have four, but three are about as well: the line of
 /// the first vertex tells.
 fn numbers_of_vertex(words: &mut Words<'_>, header: &Header) -> usize {
     let others = header.components + 3 * usize::from(header.has_normals) + 2 * usize::from(header.has_texture);

@@ -15,9 +15,17 @@ use self::header::{Element, Role};
 use self::row::Row;
 use super::colour::{Spec, Writing};
 use super::faces::Faces;
+use super::format::{Likelihood, MeshReader};
 use super::mesh::Mesh;
 use super::words::{self, Words, counted};
 use crate::model::Vec3;
+
+/// The reader's row.
+pub(super) static READER: MeshReader = MeshReader {
+    extensions: &["ply"],
+    sniff: |_, word| Likelihood::likely_if(word == "ply"),
+    parse: |bytes, name, _| parse(bytes, name),
+};
 
 /// Reads a PLY file; `name` is shown in messages.
 ///

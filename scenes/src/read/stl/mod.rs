@@ -12,13 +12,14 @@ use stl_io::Triangle;
 
 use super::colour::Spec;
 use super::faces::Faces;
+use super::format::{Likelihood, MeshReader};
 use super::mesh::Mesh;
 use super::words;
 use crate::model::Vec3;
 
 /// Reads an STL file; `name` is shown in messages. Numbers are of single precision, in text too.
 ///
-/// - SharedCorners with the same coordinates become one vertex; normals are not used.
+/// - Corners with the same coordinates become one vertex; normals are not used.
 /// - A file is binary when its length is that of the triangles it announces, whatever its first word is.
 /// - Colours, which some programs hide in binary files, are read over with a warning.
 ///
@@ -39,10 +40,15 @@ fn is_text(bytes: &[u8]) -> bool {
     !bytes[..bytes.len().min(512)].iter().any(is_control)
 }
 
-/// Whether a file is a binary STL for certain.
-pub(super) fn is_binary(bytes: &[u8]) -> bool {
-    binary::is_exact(bytes)
-}
+/// The reader's row. A file as long as the triangles that it announces is binary STL, whatever its first word is.
+pub(super) static READER: MeshReader = MeshReader {
+    extensions: &["stl"],
+    sniff: |bytes, word| match binary::is_exact(bytes) {
+        true => Likelihood::Certain,
+        false => Likelihood::likely_if(word.eq_ignore_ascii_case("solid")),
+    },
+    parse: |bytes, name, _| parse(bytes, name),
+};
 
 /// Triangles on their way to a mesh.
 #[derive(Default)]

@@ -1,13 +1,11 @@
 //! Small files of every kind, each read or refused: `files/` holds them, the snapshots say what comes of them.
 
-mod shown;
-
 use std::fmt::Write;
 
 use messages::{Report, Source};
 use scenes::read::{self, dsc, off};
 
-use self::shown::{all_read, all_refused, files, folder};
+use super::shown::{all_read, all_refused, files, folder};
 
 #[test]
 fn every_variant_of_off_is_read() {

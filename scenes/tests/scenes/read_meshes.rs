@@ -1,14 +1,12 @@
 //! Small OBJ, STL and PLY files of every kind, each read or refused: `files/` holds them, the snapshots say what comes
 //! of them.
 
-mod shown;
-
 use std::fs;
 
 use messages::{Diagnostic, Report};
 use scenes::read::{mesh::Mesh, obj, ply, stl};
 
-use self::shown::{all_read, all_refused, folder};
+use super::shown::{all_read, all_refused, folder};
 
 /// Reads an OBJ file with the libraries beside it.
 fn parse_obj(from: &str, name: &str, bytes: &[u8]) -> Result<Mesh, Report> {

@@ -1,0 +1,3 @@
+//! The kernels as they count: the rows of the annexes.
+
+mod annex;

@@ -20,7 +20,7 @@ fn engines(criterion: &mut Criterion) {
             &generate::GenerateOptions { size: SIZE, ..generate::GenerateOptions::default() },
         );
         let scene = scene.expect("it is generated");
-        for profile in KernelSet::ALL {
+        for &profile in KernelSet::ALL {
             let mut job = Job::new(scene.clone());
             job.view.shift = [0.137, 0.071];
             job.kernels.profile = profile;

@@ -109,7 +109,7 @@ pub fn measure(
     };
     for scene in scenes {
         let first = result.pictures.len();
-        for profile in KernelSet::ALL {
+        for &profile in KernelSet::ALL {
             let mut job = job(scene, size, profile);
             (job.machine_name, job.machine) = machine.clone();
             job.memory.word = job.machine.arithmetic.word;

@@ -8,8 +8,9 @@ use scenes::cadrage::Formats;
 use scenes::image::MemoryImage;
 use scenes::model::{Scene, View};
 
-use crate::function::{Function, KernelSet};
+use crate::function::Function;
 use crate::prelude;
+use crate::set::KernelSet;
 use crate::skip::{Skip, Skips};
 
 /// What of a scene decides which code its programs contain.
@@ -163,7 +164,7 @@ fn assemble(
     for function in Function::of_program(is_main, features) {
         let own = options.replaced.iter().rev().find(|(other, _)| *other == function).map(|(_, source)| source.clone());
         let ours = || {
-            let (path, text) = function.file(options.profile, &replaced)?;
+            let (path, text) = options.profile.file(function, &replaced)?;
             Some(Source::new(format!("kernels/asm/{path}"), text))
         };
         files.extend(own.or_else(ours));

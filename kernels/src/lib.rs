@@ -7,9 +7,11 @@ pub mod build;
 pub mod constants;
 pub mod function;
 pub mod prelude;
+pub mod set;
 pub mod skip;
 pub mod twin;
 
 pub use build::{Build, KernelOptions, build};
-pub use function::{Function, KernelSet};
+pub use function::Function;
+pub use set::KernelSet;
 pub use skip::{Skip, Skips};

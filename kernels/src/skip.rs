@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use messages::Diagnostic;
 
-use crate::function::{KernelSet, unknown};
+use crate::function::unknown;
+use crate::set::KernelSet;
 
 macro_rules! skips {
     ($($(#[doc = $doc:literal])* $variant:ident $name:literal $constant:literal;)*) => {

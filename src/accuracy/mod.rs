@@ -48,7 +48,10 @@ pub struct Variant {
 impl Variant {
     /// The same with other kernels, those of the report in its layout.
     fn with(self, profile: KernelSet) -> Variant {
-        let layout = if profile == KernelSet::Report { profile.layout() } else { self.layout };
+        let layout = match profile.layout() {
+            Layout::Report => Layout::Report,
+            Layout::Wide => self.layout,
+        };
         Variant { profile, layout, ..self }
     }
 }

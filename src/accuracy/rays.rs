@@ -3,8 +3,8 @@
 
 use isa::number::ray::{self as exact, TriangleEnd};
 use isa::number::{Modes, Vector};
-use kernels::KernelSet;
 use kernels::build::SceneFeatures;
+use kernels::set::{Decisions, Formulas};
 use kernels::twin::planes::Packets;
 use kernels::twin::ray::{Ray, Search};
 use kernels::twin::surface::normal;
@@ -113,10 +113,10 @@ fn barycentric_errors(twin: &Twin<Modes>, ray: &Ray, index: u32) -> [f64; 2] {
     let vertices = &twin.stage.triangles[index as usize].vertices;
     let met = exact::triangle(&exact::Ray { origin: ray.origin, direction: ray.direction }, vertices);
     let bits = twin.constants.formats.barycentric;
-    let computed = match twin.profile {
-        KernelSet::Report => report::barycentric(&twin.arithmetic, &twin.constants, ray, vertices).map(f64::from),
-        KernelSet::Vector => [f64::NAN; 2],
-        KernelSet::Ray => [met.u, met.v].map(|x| f64::from(exact::ratio(&twin.arithmetic, x, met.determinant, bits))),
+    let computed = match twin.profile.decisions() {
+        Decisions::Rounded => report::barycentric(&twin.arithmetic, &twin.constants, ray, vertices).map(f64::from),
+        Decisions::Wide => [f64::NAN; 2],
+        Decisions::Exact => [met.u, met.v].map(|x| f64::from(exact::ratio(&twin.arithmetic, x, met.determinant, bits))),
     };
     let expected = [met.u, met.v].map(|x| x as f64 / met.determinant as f64 * f64::from(bits).exp2());
     [0, 1].map(|k| (computed[k] - expected[k]).abs())
@@ -126,9 +126,9 @@ fn barycentric_errors(twin: &Twin<Modes>, ray: &Ray, index: u32) -> [f64; 2] {
 fn normal_error(twin: &Twin<Modes>, direction: Vector, index: u32) -> f64 {
     let bits = twin.constants.formats.direction;
     let vertices = &twin.stage.triangles[index as usize].vertices;
-    let facing = match twin.profile {
-        KernelSet::Report => report::normal(&twin.arithmetic, bits, vertices),
-        KernelSet::Vector | KernelSet::Ray => normal(&twin.arithmetic, bits, direction, vertices).0,
+    let facing = match twin.profile.formulas() {
+        Formulas::Printed => report::normal(&twin.arithmetic, bits, vertices),
+        Formulas::Vector => normal(&twin.arithmetic, bits, direction, vertices).0,
     };
     let [a, b, c] = vertices.map(|vertex| vertex.map(i128::from));
     let (e, f): ([i128; 3], [i128; 3]) = (std::array::from_fn(|k| b[k] - a[k]), std::array::from_fn(|k| c[k] - a[k]));

@@ -49,7 +49,7 @@ fn before(text: &str) -> String {
 /// The profile whose kernels an example is made from.
 fn profile(kernels: &[Kernel]) -> Option<KernelSet> {
     let is_own = |kernel: &Kernel, profile: KernelSet| {
-        kernel.function.file(profile, &[]).is_some_and(|(_, text)| text == before(&kernel.text))
+        profile.file(kernel.function, &[]).is_some_and(|(_, text)| text == before(&kernel.text))
     };
     // The profile `ray` has files of `vector` for what is not about rays.
     let mut profiles = [KernelSet::Vector, KernelSet::Ray, KernelSet::Report].into_iter();

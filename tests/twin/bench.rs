@@ -88,7 +88,7 @@ impl<'a> Bench<'a> {
         let scene = prelude::text(&subject.image, &subject.features, &crop, walk, false);
         let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", scene)];
         files.extend(prelude::included(subject.image.layout));
-        let own = experiment.functions.iter().filter_map(|function| function.file(subject.profile, &[]));
+        let own = experiment.functions.iter().filter_map(|function| subject.profile.file(*function, &[]));
         files.extend(own.map(|(name, text)| Source::new(name, text)));
         files.push(Source::new("<driver>", driver(experiment, cases_at)));
         let assembled = prelude::assemble("<bench>", &files, &Isa::base())

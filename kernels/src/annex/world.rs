@@ -12,8 +12,9 @@ use scenes::model::{Light, Material, Scene, Triangle, View};
 
 use super::Row;
 use crate::build::{Crop, KernelOptions, SceneFeatures};
-use crate::function::{Function, KernelSet};
+use crate::function::Function;
 use crate::prelude;
+use crate::set::KernelSet;
 use crate::skip::Skips;
 
 /// Octets of global memory that every driver is content with.
@@ -39,7 +40,7 @@ const EVERYTHING: SceneFeatures =
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
     let core = Function::of_program(false, &EVERYTHING).filter(|&function| function != Function::Pixel);
-    core.chain([Function::FirstPacket]).filter_map(|function| function.file(KernelSet::Report, &[]))
+    core.chain([Function::FirstPacket]).filter_map(|function| KernelSet::Report.file(function, &[]))
 }
 
 /// A file of the kernels, path and text, by its path below their folder.

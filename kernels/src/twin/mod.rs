@@ -31,7 +31,7 @@ use scenes::image::MemoryImage;
 
 use crate::build::{Crop, SceneFeatures};
 use crate::constants::Constants;
-use crate::function::KernelSet;
+use crate::set::{Decisions, Formulas, KernelSet};
 use ray::{Packet, Ray, Stuck};
 use ray_tree::Branch;
 use stage::Stage;
@@ -149,18 +149,18 @@ impl<A: Arithmetic> Twin<A> {
     /// The ray of a pixel, row 0 on top.
     pub fn camera_ray(&self, column: u32, row: u32) -> Ray {
         let (arithmetic, bits) = (&self.arithmetic, self.constants.formats.direction);
-        let unit = |vector| match self.profile {
-            KernelSet::Report => report::unit(arithmetic, bits, vector),
-            KernelSet::Vector | KernelSet::Ray => unit::unit(arithmetic, bits, vector),
+        let unit = |vector| match self.profile.formulas() {
+            Formulas::Printed => report::unit(arithmetic, bits, vector),
+            Formulas::Vector => unit::unit(arithmetic, bits, vector),
         };
         camera::camera(arithmetic, unit, &self.camera, column, row)
     }
 
     /// The first packet of a camera ray; `None` when it misses the scene's box.
     pub fn camera_packet(&self, ray: &Ray) -> Option<Packet> {
-        match self.profile {
-            KernelSet::Report => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
-            KernelSet::Vector | KernelSet::Ray => first_packet::first_packet(&self.arithmetic, &self.stage, ray),
+        match self.profile.decisions() {
+            Decisions::Rounded => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
+            Decisions::Wide | Decisions::Exact => first_packet::first_packet(&self.arithmetic, &self.stage, ray),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::reflect::{reflect, reflects};
 use super::refract::{Refraction, refract, refracts};
 use super::report;
 use super::surface::Surface;
-use crate::function::KernelSet;
+use crate::set::Formulas;
 
 /// A node of the ray tree that is still to be visited.
 #[derive(Clone, Debug)]
@@ -80,21 +80,24 @@ impl<A: Arithmetic> Twin<A> {
     /// direction of the refracted one.
     fn transmitted(&self, surface: &Surface, weight: i32, inside: bool) -> (i32, Option<(i32, Vector)>) {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
-        if self.profile == KernelSet::Report {
-            return report::transmitted(arithmetic, constants, surface, weight, inside);
-        }
-        match refracts(arithmetic, constants, surface, weight, inside) {
-            Refraction::Opaque => (0, None),
-            Refraction::Total(weight) => (weight, None),
-            Refraction::Through { weight, k, eta } => {
-                (0, Some((weight, refract(arithmetic, constants, surface, k, eta))))
-            }
+        match self.profile.formulas() {
+            Formulas::Printed => report::transmitted(arithmetic, constants, surface, weight, inside),
+            Formulas::Vector => match refracts(arithmetic, constants, surface, weight, inside) {
+                Refraction::Opaque => (0, None),
+                Refraction::Total(weight) => (weight, None),
+                Refraction::Through { weight, k, eta } => {
+                    (0, Some((weight, refract(arithmetic, constants, surface, k, eta))))
+                }
+            },
         }
     }
 
     /// The direction of the reflected ray.
     fn reflected(&self, surface: &Surface) -> Vector {
-        let reflect = if self.profile == KernelSet::Report { report::reflect } else { reflect };
+        let reflect = match self.profile.formulas() {
+            Formulas::Printed => report::reflect,
+            Formulas::Vector => reflect,
+        };
         reflect(&self.arithmetic, &self.constants, surface)
     }
 }

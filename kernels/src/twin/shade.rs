@@ -10,7 +10,7 @@ use super::stage::Light;
 use super::surface::Surface;
 use super::unit::unit;
 use crate::constants::Constants;
-use crate::function::KernelSet;
+use crate::set::Formulas;
 
 impl<A: Arithmetic> Twin<A> {
     /// colour (ambient + kd sum over visible lights of (N . L) light colour), in the colour format.
@@ -34,10 +34,16 @@ impl<A: Arithmetic> Twin<A> {
     fn visible(&self, surface: &Surface, light: &Light) -> Result<Option<i32>, Stuck> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let way = arithmetic.difference(light.position, surface.point);
-        let is_literal = self.profile == KernelSet::Report;
-        let lit = if is_literal { report::lit } else { lit };
+        let formulas = self.profile.formulas();
+        let lit = match formulas {
+            Formulas::Printed => report::lit,
+            Formulas::Vector => lit,
+        };
         let Some((direction, cosine)) = lit(arithmetic, constants, surface.facing, way) else { return Ok(None) };
-        let dot = if is_literal { report::dot } else { A::dot };
+        let dot = match formulas {
+            Formulas::Printed => report::dot,
+            Formulas::Vector => A::dot,
+        };
         let ray = Ray::new(arithmetic, surface.point, direction);
         let distance = dot(arithmetic, direction, way, constants.across());
         let mut search = Search { t: distance, triangle: None, takes_any: true };

@@ -9,7 +9,7 @@ use super::report;
 use super::stage::Material;
 use super::unit::unit;
 use crate::constants::Constants;
-use crate::function::KernelSet;
+use crate::set::Formulas;
 
 /// The place where a ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,12 +65,12 @@ impl<A: Arithmetic> Twin<A> {
         let triangle = &self.stage.triangles[index as usize];
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let bits = constants.formats.direction;
-        let (facing, cosine, point, behind) = match self.profile {
-            KernelSet::Report => {
+        let (facing, cosine, point, behind) = match self.profile.formulas() {
+            Formulas::Printed => {
                 let normal = report::normal(arithmetic, bits, &triangle.vertices);
                 report::sides(arithmetic, constants, ray, t, normal)
             }
-            KernelSet::Vector | KernelSet::Ray => {
+            Formulas::Vector => {
                 let (facing, cosine) = normal(arithmetic, bits, ray.direction, &triangle.vertices);
                 let (point, behind) = sides(arithmetic, constants, ray, t, facing);
                 (facing, cosine, point, behind)

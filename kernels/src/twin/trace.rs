@@ -10,7 +10,7 @@ use super::first_packet::first_packet;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::report;
 use super::triangle::triangle;
-use crate::function::KernelSet;
+use crate::set::Decisions;
 
 impl<A: Arithmetic> Twin<A> {
     /// Follows a ray from its first packet until the search is over.
@@ -32,26 +32,26 @@ impl<A: Arithmetic> Twin<A> {
     /// The packet in which a secondary ray starts. Its origin is moved off a surface, so it may lie outside the scene's box: only the
     /// profile `ray` looks.
     pub fn own_packet(&self, ray: &Ray) -> Option<Packet> {
-        match self.profile {
-            KernelSet::Report => Some(report::own_packet(&self.stage, ray)),
-            KernelSet::Vector => Some(own_packet(&self.arithmetic, &self.stage, ray)),
-            KernelSet::Ray => first_packet(&self.arithmetic, &self.stage, ray),
+        match self.profile.decisions() {
+            Decisions::Rounded => Some(report::own_packet(&self.stage, ray)),
+            Decisions::Wide => Some(own_packet(&self.arithmetic, &self.stage, ray)),
+            Decisions::Exact => first_packet(&self.arithmetic, &self.stage, ray),
         }
     }
 
     /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
     pub fn triangle(&self, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
-        match self.profile {
-            KernelSet::Report => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
-            KernelSet::Vector => triangle(&self.arithmetic, &self.constants, ray, vertices),
-            KernelSet::Ray => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
+        match self.profile.decisions() {
+            Decisions::Rounded => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
+            Decisions::Wide => triangle(&self.arithmetic, &self.constants, ray, vertices),
+            Decisions::Exact => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
         }
     }
 
     /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index; the profile `report` tests all and
     /// keeps the first of equal hits.
     pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
-        let is_literal = self.profile == KernelSet::Report;
+        let is_literal = self.profile.decisions() == Decisions::Rounded;
         for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
             let vertices = &self.stage.triangles[index as usize].vertices;
             let t = self.triangle(ray, vertices);
@@ -71,7 +71,7 @@ impl<A: Arithmetic> Twin<A> {
         if search.takes_any && search.triangle.is_some() {
             return None;
         }
-        if self.profile == KernelSet::Report {
+        if self.profile.decisions() == Decisions::Rounded {
             return report::next_packet(&self.arithmetic, &self.constants, &self.stage, ray, packet, search);
         }
         let exit = exit_face(&self.arithmetic, ray, &packet.bounds);

@@ -1,0 +1,209 @@
+//! The sets of kernels: one file a set, with an answer to each question that a set has to answer, and one line here. The functions that a
+//! picture is made of are listed in [`crate::function`].
+
+mod ray;
+mod report;
+mod vector;
+
+use std::fmt;
+use std::str::FromStr;
+
+use messages::Diagnostic;
+use scenes::layout::Layout;
+
+use crate::function::{Function, KernelFile, unknown};
+use crate::prelude::Walk;
+use crate::skip::Skip;
+
+macro_rules! file {
+    ($file:literal) => {
+        ($file, include_str!(concat!("../../asm/", $file)))
+    };
+}
+use file;
+
+/// Answers of a set of kernels to all that programs, twins and commands ask of it. There are no defaults: a new set answers each question.
+pub(crate) struct Answers {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Layout of memory that goes with it unless the user chooses another.
+    pub layout: Layout,
+    /// Set that serves the functions for which this one has no file; `None` when it has all of them.
+    pub base: Option<KernelSet>,
+    /// Files of the functions that it serves by themselves, with the registers that `registers.inc` gives them.
+    pub files: &'static [(Function, KernelFile)],
+    /// Functions that it serves by files made for each other.
+    pub teams: &'static [Team],
+    /// Way in which its walk remembers far sides, when the user has replaced none of the functions that walk.
+    pub walk: Walk,
+    /// The same when the user has replaced one of them.
+    pub walk_alone: Walk,
+    /// Exactness of its decisions.
+    pub decisions: Decisions,
+    /// Formulas for what follows a hit.
+    pub formulas: Formulas,
+    /// Skips that its kernels know.
+    pub skips: &'static [Skip],
+}
+
+/// Exactness with which a set decides between hit and miss.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decisions {
+    /// Each operation is rounded to a word, and all triangles of a packet are tested; the first of equal hits stays.
+    Rounded,
+    /// Products have twice the bits of a word; exact as long as these hold them.
+    Wide,
+    /// Exact at any length of a word.
+    Exact,
+}
+
+/// Formulas for points, normals and secondary rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Formulas {
+    /// As the report prints them, in scalar operations.
+    Printed,
+    /// In vector operations, each rounded once.
+    Vector,
+}
+
+/// Functions that a set serves by files made for each other: between them they agree on more registers than `registers.inc` says.
+///
+/// A file of the user's own knows nothing of that, so when it replaces one function the others are served each by itself.
+pub(crate) struct Team {
+    /// The functions that it serves, with their files; `None` where another one's file does their work.
+    pub members: &'static [(Function, Option<KernelFile>)],
+}
+
+impl Team {
+    fn has(&self, function: Function) -> bool {
+        self.members.iter().any(|&(member, _)| member == function)
+    }
+}
+
+macro_rules! kernel_sets {
+    ($($(#[$attribute:meta])* $variant:ident $file:ident;)*) => {
+        /// A set of kernels, by which each function has a file.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        pub enum KernelSet { $($(#[$attribute])* $variant,)* }
+
+        impl KernelSet {
+            /// All sets of kernels.
+            pub const ALL: &[KernelSet] = &[$(KernelSet::$variant),*];
+
+            pub(crate) const fn answers(self) -> &'static Answers {
+                match self { $(KernelSet::$variant => &$file::SET,)* }
+            }
+        }
+    };
+}
+
+kernel_sets! {
+    /// Scalar operations laid out as the formulas and pseudo codes of the report, each rounded to a word: what its annexes count. Its
+    /// decisions are not exact.
+    Report report;
+    /// Vector and wide rows: decisions on exact products, one rounding at the end.
+    #[default]
+    Vector vector;
+    /// The rows of the ray unit where they serve, else as `Vector`: exact at any word length, and few instructions.
+    Ray ray;
+}
+
+impl KernelSet {
+    /// Name on the command line.
+    pub const fn name(self) -> &'static str {
+        self.answers().name
+    }
+
+    /// Layout of memory that goes with the set unless the user chooses another.
+    pub const fn layout(self) -> Layout {
+        self.answers().layout
+    }
+
+    /// Exactness of the set's decisions.
+    pub const fn decisions(self) -> Decisions {
+        self.answers().decisions
+    }
+
+    /// Formulas for what follows a hit.
+    pub const fn formulas(self) -> Formulas {
+        self.answers().formulas
+    }
+
+    /// Way in which the set's walk through the tree remembers far sides, when the user has replaced some functions.
+    pub fn walk(self, replaced: &[Function]) -> Walk {
+        let Answers { walk, walk_alone, .. } = *self.answers();
+        if replaced.is_empty() || self.team(Function::Descend, replaced).is_some() { walk } else { walk_alone }
+    }
+
+    /// Whether the set's kernels know how to leave something out.
+    pub fn knows(self, skip: Skip) -> bool {
+        self.answers().skips.contains(&skip)
+    }
+
+    /// The team that serves a function, when it is complete.
+    fn team(self, function: Function, replaced: &[Function]) -> Option<&'static Team> {
+        let is_complete = |team: &Team| !replaced.iter().any(|&other| team.has(other));
+        self.answers().teams.iter().find(|team| team.has(function) && is_complete(team))
+    }
+
+    /// The file that serves a function, given which functions the user has replaced; `None` when another function's file does its work.
+    pub fn file(self, function: Function, replaced: &[Function]) -> Option<KernelFile> {
+        match self.team(function, replaced) {
+            Some(team) => team.members.iter().find(|&&(member, _)| member == function).and_then(|&(_, file)| file),
+            None => self.own_file(function),
+        }
+    }
+
+    /// The file that serves a function by itself: the set's own, else that of the set that it is based on.
+    const fn own_file(self, function: Function) -> Option<KernelFile> {
+        let mut set = self.answers();
+        loop {
+            let mut at = 0;
+            while at < set.files.len() {
+                if set.files[at].0 as usize == function as usize {
+                    return Some(set.files[at].1);
+                }
+                at += 1;
+            }
+            set = match set.base {
+                Some(base) => base.answers(),
+                None => return None,
+            };
+        }
+    }
+}
+
+/// A set of kernels that serves every function.
+const fn is_whole(set: KernelSet) -> bool {
+    let mut at = 0;
+    while at < Function::ALL.len() {
+        if set.own_file(Function::ALL[at]).is_none() {
+            return false;
+        }
+        at += 1;
+    }
+    true
+}
+
+const _: () = {
+    let mut at = 0;
+    while at < KernelSet::ALL.len() {
+        assert!(is_whole(KernelSet::ALL[at]), "a set of kernels lacks a file for some function, and its base too");
+        at += 1;
+    }
+};
+
+impl fmt::Display for KernelSet {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for KernelSet {
+    type Err = Box<Diagnostic>;
+
+    fn from_str(name: &str) -> Result<KernelSet, Box<Diagnostic>> {
+        let found = KernelSet::ALL.iter().find(|set| set.name() == name);
+        found.copied().ok_or_else(|| unknown("profile", name, KernelSet::ALL.iter().map(|set| set.name())))
+    }
+}

@@ -1,0 +1,34 @@
+//! The kernels in the rows of the ray unit, with the files of `vector` for what is not about rays.
+
+use scenes::layout::Layout;
+
+use super::{Answers, Decisions, Formulas, Team, file};
+use crate::function::Function;
+use crate::prelude::Walk;
+use crate::skip::Skip;
+
+/// The set's answers.
+pub(super) static SET: Answers = Answers {
+    name: "ray",
+    layout: Layout::Wide,
+    base: Some(super::KernelSet::Vector),
+    files: &[(Function::Triangle, file!("ray/triangle.s")), (Function::ExitFace, file!("ray/exit_face.s"))],
+    teams: &[
+        Team { members: &[(Function::Packet, Some(file!("ray/packet.s"))), (Function::Triangle, None)] },
+        Team {
+            members: &[
+                (Function::Trace, Some(file!("ray/trace.s"))),
+                (Function::NextPacket, Some(file!("ray/next_packet.s"))),
+                (Function::ExitFace, None),
+                (Function::Descend, Some(file!("ray/descend.s"))),
+                (Function::OwnPacket, Some(file!("ray/own_packet.s"))),
+                (Function::FirstPacket, Some(file!("ray/first_packet.s"))),
+            ],
+        },
+    ],
+    walk: Walk::Planes,
+    walk_alone: Walk::Boxes,
+    decisions: Decisions::Exact,
+    formulas: Formulas::Vector,
+    skips: Skip::ALL,
+};

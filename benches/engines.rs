@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use emu::machine::{self, Engine, Options};
+use emu::engine::EngineKind;
+use emu::machine::{self, Options};
 use kernels::KernelSet;
 use lancer::job::Job;
 use lancer::load::Load;
@@ -29,7 +30,7 @@ fn engines(criterion: &mut Criterion) {
             let mut group = criterion.benchmark_group(format!("{}/{}", generator.name, profile.name()));
             group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
             group.throughput(Throughput::Elements(u64::from(SIZE.0 * SIZE.1)));
-            for engine in Engine::ALL {
+            for engine in EngineKind::ALL {
                 let setup = load.setup(&job.machine, Options { engine, ..Options::default() });
                 group.bench_function(BenchmarkId::from_parameter(engine.name()), |bencher| {
                     bencher.iter(|| machine::count(&setup, &load.memory).expect("it runs").expect("it is counted"));

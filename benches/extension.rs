@@ -5,10 +5,10 @@ use std::hint::black_box;
 
 use asm::extension;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use emu::engine::Wish;
 use emu::exec::{ScalarRoom, VectorRoom, WideRoom};
-use emu::fast::Features;
+use emu::machine::Config;
 use emu::machine::single::{Single, run_with};
-use emu::machine::{Config, Engine};
 use emu::meaning::{Call, Ending, Meaning, Numbers, Operands, attach};
 use emu::octets::Memory;
 use emu::registers::Registers;
@@ -111,11 +111,9 @@ fn measure(criterion: &mut Criterion) {
     registers.set_vector(1, [300_000_000, -200_000_000, 100_000_000]);
     registers.set_vector(3, [5, 6, 7]);
     let config = Config::default();
-    let engines = [(Engine::Fast, Some(Features::best())), (Engine::Checked, None)];
-    for ((name, instruction, written_out), (engine, features)) in
-        MEASURED.iter().flat_map(|each| engines.map(|e| (each, e)))
-    {
-        let name = format!("{name} {}", engine.name());
+    let engines = [Wish::default(), Wish::CHECKED];
+    for ((name, instruction, written_out), wish) in MEASURED.iter().flat_map(|each| engines.map(|e| (each, e))) {
+        let name = format!("{name} {}", wish.kind.name());
         let mut group = criterion.benchmark_group(&name);
         group.throughput(Throughput::Elements(u64::from(PASSES) * 8));
         let ways = [
@@ -132,7 +130,7 @@ fn measure(criterion: &mut Criterion) {
             let once = || {
                 let registers = registers.clone();
                 let single = Single { registers, step_limit: u64::MAX, ..Single::new(&config, isa, &program) };
-                let run = run_with(&single, Memory::new(Vec::new()), features);
+                let run = run_with(&single, Memory::new(Vec::new()), wish);
                 run.expect("the machine is the default one").state.registers
             };
             let after = once();

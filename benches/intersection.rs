@@ -5,7 +5,8 @@
 
 use std::time::Instant;
 
-use emu::machine::{self, Config, Engine, Options, Setup};
+use emu::engine::EngineKind;
+use emu::machine::{self, Config, Options, Setup};
 use emu::octets::Memory;
 use isa::number::ray::{Ray, TriangleEnd, ratio, triangle};
 use isa::number::{Arithmetic, Nearest32, Vector};
@@ -239,7 +240,7 @@ fn main() {
     let (isa, config, main) = (Isa::base(), Config::default(), program(DISPATCH));
     println!(
         "{RAYS} rays x {TRIANGLES} triangles, medians of {RUNS} runs on one thread, {}",
-        emu::fast::Features::best().name()
+        emu::engine::HostSimd::best().name()
     );
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("it is the first pool");
     let forms = [
@@ -259,7 +260,7 @@ fn main() {
         let mut image = vec![0; ANSWERS];
         image.extend(words.flat_map(|word: &i32| word.to_le_bytes()));
         let memory = Memory::new(image);
-        let engine = |engine: Engine| {
+        let engine = |engine: EngineKind| {
             let (config, isa, core, main, memory) = (&config, &isa, &core, &main, &memory);
             move || {
                 let options = Options { engine, ..Options::default() };
@@ -275,8 +276,8 @@ fn main() {
         };
         let mut contenders: Vec<Contender> = vec![
             Contender { name: "native".into(), run: Box::new(natively), times: Vec::new() },
-            Contender { name: "fast".into(), run: Box::new(engine(Engine::Fast)), times: Vec::new() },
-            Contender { name: "checked".into(), run: Box::new(engine(Engine::Checked)), times: Vec::new() },
+            Contender { name: "fast".into(), run: Box::new(engine(EngineKind::Fast)), times: Vec::new() },
+            Contender { name: "checked".into(), run: Box::new(engine(EngineKind::Checked)), times: Vec::new() },
         ];
         let names: Vec<String> = contenders.iter().map(|contender| contender.name.clone()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();

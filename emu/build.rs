@@ -1,4 +1,4 @@
-//! Says whether the code is optimised enough that a call in the last place of a function becomes a jump: see `src/fast/single/rows.rs`.
+//! Says whether the code is optimised enough that a call in the last place of a function becomes a jump: see `src/engine/fast/rows.rs`.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -4,7 +4,8 @@
 use std::time::{Duration, Instant};
 
 use emu::code::Code;
-use emu::machine::{self, Engine, Frame};
+use emu::engine::Choice;
+use emu::machine::{self, Frame};
 use emu::profile::Profile;
 use kernels::build::{Build, Crop};
 use messages::Report;
@@ -57,8 +58,8 @@ pub struct Drawing {
     pub picture: Picture,
     /// The same part in double precision.
     pub reference: Option<Picture>,
-    /// What executed the cores' program.
-    pub engine: Engine,
+    /// What executed the cores' program, and why nothing faster did.
+    pub engine: Choice,
     /// How far they are apart.
     pub error: Option<PictureError>,
     /// What results lost, where that was counted.

@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use emu::machine::{Config, Engine};
+use emu::engine::EngineKind;
+use emu::machine::Config;
 use isa::Isa;
 use kernels::build::{Crop, KernelOptions};
 use messages::{Diagnostic, Report};
@@ -51,7 +52,7 @@ pub struct Job {
     /// The machine.
     pub machine: Config,
     /// What executes its programs.
-    pub engine: Engine,
+    pub engine: EngineKind,
     /// What is recorded.
     pub detail: Detail,
     /// Whether it is counted what results lose.
@@ -99,7 +100,7 @@ impl Job {
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
-            engine: Engine::default(),
+            engine: EngineKind::default(),
             detail: Detail::Functions,
             flags: false,
             warnings: Report::default(),

@@ -1,7 +1,8 @@
 //! What a machine is given to do, apart from the machine: programs, global memory and its kinds of data. A picture is
 //! one such load, the report's estimate of a picture another.
 
-use emu::machine::{Config, Engine, Options, Setup};
+use emu::engine::EngineKind;
+use emu::machine::{Config, Options, Setup};
 use emu::octets::Memory;
 use isa::Isa;
 use kernels::annex::load;
@@ -33,7 +34,7 @@ pub struct Load {
     /// Formats of the picture; none of the report's estimate.
     pub formats: Option<Formats>,
     /// What executes the programs.
-    pub engine: Engine,
+    pub engine: EngineKind,
 }
 
 /// What a kind of data is called where its octets are counted.
@@ -68,7 +69,7 @@ impl Load {
         let crop = kernels::build::Crop { column: 0, row: 0, width: ANNEX_PIXELS, height: 1 };
         let build = Build { cores, main, crop, warnings: Report::default() };
         let memory = Memory::new(vec![0; load::MEMORY]);
-        Ok(Load { isa, build, memory, kinds: Vec::new(), formats: None, engine: Engine::default() })
+        Ok(Load { isa, build, memory, kinds: Vec::new(), formats: None, engine: EngineKind::default() })
     }
 
     /// The load on a machine.

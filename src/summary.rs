@@ -110,13 +110,14 @@ pub fn processors(result: &Render) -> String {
     rows.push(main);
     let bus = &result.bus;
     let mut text = format!(
-        "Machine: {} clocks, {} at {} MHz, {} a pixel; {} by the engine `{}`\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
+        "Machine: {} clocks, {} at {} MHz, {} a pixel; {} by the engine `{}`{}\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
         grouped(result.clocks),
         seconds(result.seconds),
         result.clock_hz as f64 / 1e6,
         seconds(result.pixel_seconds),
         result.stepped_because.map_or(result.method.to_owned(), |why| format!("{} ({why})", result.method)),
         result.engine,
+        result.engine_because.map_or(String::new(), |why| format!(" ({why})")),
         table(rows),
         percent(bus.busy, result.clocks),
         grouped(bus.moved),

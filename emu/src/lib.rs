@@ -1,10 +1,8 @@
 //! Machine of lancer: words to effects, time and counts. It knows no assembly text, no scene and no picture.
 
-pub mod checked;
 pub mod code;
+pub mod engine;
 pub mod exec;
-pub mod fast;
-mod independence;
 pub mod machine;
 pub mod meaning;
 pub mod octets;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use emu::machine::Engine;
+use emu::engine::EngineKind;
 use scenes::layout::Layout;
 
 /// Options of the machine.
@@ -20,22 +20,22 @@ pub struct MachineArguments {
     pub layout: Option<Layout>,
     /// What executes the programs; only the host's time depends on it. auto: the fastest that suits.
     #[arg(long, value_name = "NAME", value_parser = engine(), default_value = AUTO)]
-    pub engine: Engine,
+    pub engine: EngineKind,
 }
 
 /// The engine is chosen.
 const AUTO: &str = "auto";
 
-/// Engine that is no more; whoever asks for it is told which one to take.
+/// EngineKind that is no more; whoever asks for it is told which one to take.
 const LOCKSTEP: &str = "lockstep";
 
 /// Names of the engines.
-pub fn engine() -> impl TypedValueParser<Value = Engine> {
-    let names = [AUTO].into_iter().chain(Engine::ALL.map(Engine::name)).map(PossibleValue::new);
+pub fn engine() -> impl TypedValueParser<Value = EngineKind> {
+    let names = [AUTO].into_iter().chain(EngineKind::ALL.map(EngineKind::name)).map(PossibleValue::new);
     let names = PossibleValuesParser::new(names.chain([PossibleValue::new(LOCKSTEP).hide(true)]));
     names.try_map(|name| match name == LOCKSTEP {
         true => Err("lock-step was removed, because it was slower than `fast`; use `--engine fast`"),
-        false => Ok(Engine::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default()),
+        false => Ok(EngineKind::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default()),
     })
 }
 

@@ -5,7 +5,8 @@ mod chart;
 use std::time::{Duration, Instant};
 
 use emu::code::Code;
-use emu::machine::{self, Engine, Options, Setup};
+use emu::engine::EngineKind;
+use emu::machine::{self, Options, Setup};
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::SceneFeatures;
@@ -95,7 +96,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
         let count = machine::count(setup, &load.memory)?;
         count.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };
-    let counted = count(&setup(Engine::Fast))?;
+    let counted = count(&setup(EngineKind::Fast))?;
     let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
     let instructions = counted.tally.instructions();
     let pixels = u64::from(crop.width) * u64::from(crop.height);
@@ -106,10 +107,10 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     for _ in 0..runs {
         for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
             let time = match runner {
-                Runner::Fast => timed(|| count(&setup(Engine::Fast)).map(drop))?,
-                Runner::Checked => timed(|| count(&setup(Engine::Checked)).map(drop))?,
+                Runner::Fast => timed(|| count(&setup(EngineKind::Fast)).map(drop))?,
+                Runner::Checked => timed(|| count(&setup(EngineKind::Checked)).map(drop))?,
                 Runner::FastClocks => {
-                    let run = || machine::run(&setup(Engine::Fast), load.memory.clone(), &mut |_| {});
+                    let run = || machine::run(&setup(EngineKind::Fast), load.memory.clone(), &mut |_| {});
                     timed(|| run().map(drop).map_err(Failure::from))?
                 }
                 Runner::Twin => timed(|| twin(&image, &features, &crop, job, modes))?,

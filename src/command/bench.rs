@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
-use emu::fast::Features;
+use emu::engine::HostSimd;
 use kernels::KernelSet;
 use messages::Diagnostic;
 use schemars::JsonSchema;
@@ -110,7 +110,7 @@ pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Re
     }
     let (width, height) = arguments.size;
     let BenchArguments { runs, threads, .. } = *arguments;
-    let features = Features::best().name();
+    let features = HostSimd::best().name();
     let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured };
     terminal.print(&if arguments.json { result::json(&benches) } else { text(&benches) })?;
     Ok(Exit::Done)

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use emu::engine::EngineKind;
+use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
-use emu::machine::{Config, Engine};
 use scenes::layout::Layout;
 
 use crate::arguments::{self, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments};
@@ -177,7 +178,7 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, F
 
 fn job(arguments: &CoresArguments, machine: &str) -> JobArguments {
     let CoresArguments { scene, mesh, layout, view, kernels, numbers, effort, .. } = arguments.clone();
-    let machine = MachineArguments { machine: machine.to_owned(), cores: None, layout, engine: Engine::default() };
+    let machine = MachineArguments { machine: machine.to_owned(), cores: None, layout, engine: EngineKind::default() };
     JobArguments { scene, mesh, view, kernels, machine, numbers, effort }
 }
 

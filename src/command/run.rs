@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use emu::code::Code;
-use emu::fast::Features;
+use emu::engine::{EngineKind, Wish};
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
 use isa::{Isa, Program};
@@ -13,7 +13,7 @@ use messages::{Diagnostic, Report};
 use super::assemble::{self, SourceArguments};
 use super::run_arguments::{Dump, RegisterValue, memory_file};
 use super::run_result::RunResult;
-use crate::arguments::ExtensionArguments;
+use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
@@ -67,8 +67,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
     machine: String,
     /// What executes the program; only the host's time depends on it. auto: the fastest that suits.
-    #[arg(long, value_name = "NAME", value_parser = ["auto", "fast", "checked"], default_value = "auto")]
-    engine: String,
+    #[arg(long, value_name = "NAME", value_parser = arguments::engine(), default_value = "auto")]
+    engine: EngineKind,
     /// Prints the results as JSON instead of tables.
     #[arg(long)]
     json: bool,
@@ -91,8 +91,8 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         has_losses: arguments.flags,
         ..Single::new(&config, &isa, &program)
     };
-    let features = (arguments.engine != "checked").then(Features::best);
-    let run = single::run_with(&single, Memory::new(memory), features)?;
+    let wish = Wish { kind: arguments.engine, ..Wish::default() };
+    let run = single::run_with(&single, Memory::new(memory), wish)?;
     let file = arguments.file.display().to_string();
     let code = Code::new(&program, &isa, config.timing());
     let flags = arguments.flags.then(|| result::losses(&code, &run.tally));

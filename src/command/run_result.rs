@@ -33,6 +33,8 @@ pub struct RunResult {
     pub machine: String,
     /// What executed it: fast, or checked where fast does not suit or was not to be used.
     pub engine: &'static str,
+    /// Why a faster engine that was wanted did not execute it; `None` where it did.
+    pub engine_because: Option<&'static str>,
     /// Instructions executed.
     pub instructions: u64,
     /// Operations by class.
@@ -127,7 +129,8 @@ impl RunResult {
             schema: SCHEMA,
             program,
             machine,
-            engine: run.engine.name(),
+            engine: run.engine.kind.name(),
+            engine_because: run.engine.refusal,
             instructions: run.state.steps,
             counts: ByClass(run.profile.as_ref().map(Profile::total).unwrap_or_default()),
             clocks: run.clocks.0,

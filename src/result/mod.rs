@@ -109,6 +109,8 @@ pub struct Render {
     pub stepped_because: Option<&'static str>,
     /// What executed the cores' program: fast or checked. Nothing else depends on it.
     pub engine: &'static str,
+    /// Why a faster engine that was wanted did not execute it; `None` where it did.
+    pub engine_because: Option<&'static str>,
     /// Where the clocks of each core went.
     pub cores: Vec<Processor>,
     /// Functions of the cores' program.
@@ -317,7 +319,8 @@ impl Render {
             pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
             method: frame.method.name(),
             stepped_because: frame.method.reason(),
-            engine: drawing.engine.name(),
+            engine: drawing.engine.kind.name(),
+            engine_because: drawing.engine.refusal,
             cores: (0..).zip(cores).map(|(number, core)| Processor::new(core, frame.waits.get(number))).collect(),
             functions: regions(frame.profile.as_ref(), true),
             regions: regions(frame.profile.as_ref(), false),

@@ -1,7 +1,7 @@
 //! What a case really does: messages of the assembler, or a run on an engine that can be looked at after each line.
 
 use emu::code::Code;
-use emu::fast::Features;
+use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
@@ -21,9 +21,12 @@ pub struct Engine {
 
 /// All engines; the first one is the specification.
 pub const ENGINES: &[Engine] = &[
-    Engine { name: "checked", run: |single, memory| single::run_with(single, memory, None) },
+    Engine { name: "checked", run: |single, memory| single::run_with(single, memory, Wish::CHECKED) },
     Engine { name: "fast", run: single::run },
-    Engine { name: "fast, baseline", run: |single, memory| single::run_with(single, memory, Some(Features::Baseline)) },
+    Engine {
+        name: "fast, baseline",
+        run: |single, memory| single::run_with(single, memory, Wish::fast(HostSimd::Baseline)),
+    },
 ];
 
 /// One thing that was said, with its line; 0 where it has none.

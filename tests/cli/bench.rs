@@ -17,6 +17,16 @@ fn every_runner_is_measured_on_every_scene_and_profile() {
 }
 
 #[test]
+fn who_asks_for_lock_step_is_told_what_to_take() {
+    let session = Session::new();
+    session.fail(
+        "render triangle --engine lockstep",
+        2,
+        "lock-step was removed, because it was slower than `fast`; use `--engine fast`",
+    );
+}
+
+#[test]
 fn the_table_and_the_chart_name_all_runners() {
     let session = Session::new();
     let text = session.succeed("bench triangle --size 4x3 --runs 1 --svg bench.svg");

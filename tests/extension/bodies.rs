@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use emu::code::Code;
-use emu::machine::{Engine, Options, Setup};
+use emu::engine::EngineKind;
+use emu::machine::{Options, Setup};
 use emu::registers::Registers;
 use isa::{Class, Isa, Kind};
 use proptest::prelude::*;
@@ -241,7 +242,7 @@ fn instructions_of_extensions_run_quickly() {
     let config = emu::machine::Config::default();
     let setup =
         Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options: Options::default() };
-    assert_eq!(setup.engine(), Engine::Fast, "one step stands for each word");
+    assert_eq!(setup.engine().kind, EngineKind::Fast, "one step stands for each word");
 }
 
 #[test]

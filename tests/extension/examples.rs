@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use asm::extension::load;
-use emu::machine::{self, Engine, Frame, Options};
+use emu::engine::EngineKind;
+use emu::machine::{self, Frame, Options};
 use kernels::{Function, KernelSet};
 use lancer::job::Job;
 use lancer::load::Load;
@@ -87,11 +88,16 @@ fn all_ways_to_run_an_example_agree() {
             let run = if steps { machine::step } else { machine::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
-        assert_eq!(load.setup(&job.machine, Options::default()).engine(), Engine::Fast, "{}", folder.display());
-        let frame = run(Engine::Fast, false);
+        assert_eq!(
+            load.setup(&job.machine, Options::default()).engine().kind,
+            EngineKind::Fast,
+            "{}",
+            folder.display()
+        );
+        let frame = run(EngineKind::Fast, false);
         assert_eq!(frame.method.name(), "replayed");
-        let stepped = run(Engine::Checked, true);
-        for engine in Engine::ALL {
+        let stepped = run(EngineKind::Checked, true);
+        for engine in EngineKind::ALL {
             assert!(run(engine, false) == frame, "{}: {}", folder.display(), engine.name());
         }
         assert!(Frame { method: frame.method, ..stepped } == frame, "{}: stepped", folder.display());

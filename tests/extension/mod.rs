@@ -10,7 +10,7 @@ mod refusals;
 mod study;
 
 use asm::extension::{Loaded, load};
-use emu::fast::Features;
+use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::Memory;
@@ -35,15 +35,15 @@ pub fn program(text: &str, isa: &Isa) -> Program {
 /// A run on one core of the default machine, the same on the fast engine and on the interpreter.
 pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> SingleRun {
     let config = Config::default();
-    let run = |has_profile, features| {
+    let run = |has_profile, wish| {
         let single =
             Single { registers: registers.clone(), step_limit, has_profile, ..Single::new(&config, isa, program) };
-        single::run_with(&single, Memory::new((0..=255).collect()), features).expect("the machine is the default one")
+        single::run_with(&single, Memory::new((0..=255).collect()), wish).expect("the machine is the default one")
     };
-    let checked = run(true, None);
-    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
+    let checked = run(true, Wish::CHECKED);
+    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
         for has_profile in [true, false] {
-            let fast = run(has_profile, Some(features));
+            let fast = run(has_profile, Wish::fast(features));
             let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone());
             assert!(parts(&fast) == parts(&checked), "{}\n{fast:#?}\n{checked:#?}", features.name());
             assert_eq!(fast.trap, checked.trap, "{}", features.name());

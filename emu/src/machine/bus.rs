@@ -308,7 +308,7 @@ mod tests {
     use super::super::recording::{Recording, Segment};
     use super::super::station::{Access, Request};
     use super::*;
-    use crate::checked::Pause;
+    use crate::engine::Pause;
     use crate::exec::Message;
 
     #[test]

@@ -9,6 +9,7 @@ use isa::{Class, Counts};
 use serde::{Deserialize, Serialize};
 
 use super::arbiter::ArbiterKind;
+use crate::exec::Watching;
 use crate::quantity::{Clocks, Octets};
 use crate::timing::Timing;
 
@@ -91,6 +92,16 @@ impl ArithmeticConfig {
     /// The modes that `isa` computes with.
     pub fn modes(&self) -> Modes {
         Modes { word: self.word, quantization: self.quantization, overflow: self.overflow }
+    }
+
+    /// Arithmetic that watches what happens, for a machine that does not compute with [`isa::number::Nearest32`]; `None` for one that does.
+    pub(crate) fn watching(&self, has_losses: bool) -> Option<Watching> {
+        let (modes, traps) = (self.modes(), self.trap_division_by_zero);
+        let watching = Watching::new(modes, traps);
+        match has_losses {
+            true => Some(watching.with_losses()),
+            false => (modes != Modes::default() || traps).then_some(watching),
+        }
     }
 }
 

@@ -3,8 +3,8 @@
 use super::kinds::Kinds;
 use super::recording::Reason;
 use super::strands::Keeping;
-use super::{Failure, Setup, Work, check, choose, replay, scout};
-use crate::checked::Pause;
+use super::{Failure, Setup, check, on_arithmetic, replay, scout};
+use crate::engine::{Pause, Task};
 use crate::exec::Watch;
 use crate::octets::Memory;
 use crate::profile::{Profile, RunObserver};
@@ -32,7 +32,7 @@ pub struct Count {
 /// result: the frame traps, or what its work items do depends on time, which [`super::run`] finds out about.
 pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
     check(setup)?;
-    Ok(choose(setup, Counting { setup, memory }))
+    Ok(on_arithmetic(setup, Counting { setup, memory }))
 }
 
 struct Counting<'a> {
@@ -40,7 +40,7 @@ struct Counting<'a> {
     memory: &'a Memory,
 }
 
-impl Work for Counting<'_> {
+impl Task for Counting<'_> {
     type Result = Result<Count, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {

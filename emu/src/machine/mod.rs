@@ -32,8 +32,6 @@ pub mod waits;
 use std::fmt;
 use std::ops::Range;
 
-use isa::number::Modes;
-use isa::number::Nearest32;
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
@@ -45,10 +43,10 @@ pub use recorded::Recorded;
 use trace::Window;
 
 use crate::code::{Code, check_bodies};
-use crate::exec::{Watch, Watching};
-use crate::fast::{Features, Plan};
+use crate::engine::{Choice, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
+use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::{Profiler, RunObserver, Unobserved};
+use crate::profile::RunObserver;
 use crate::trap::Trap;
 use ending::Ending;
 
@@ -69,40 +67,13 @@ pub struct Setup<'a> {
     pub options: Options,
 }
 
-/// Which engine runs what can run on several. The results are the same.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Engine {
-    /// One work item after the other, a run of instructions at a time: [`crate::fast::single`].
-    #[default]
-    Fast,
-    /// The interpreter, one instruction after the other: [`crate::checked`].
-    Checked,
-}
-
-impl Engine {
-    /// All.
-    pub const ALL: [Engine; 2] = [Engine::Fast, Engine::Checked];
-
-    /// Name in options and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Engine::Fast => "fast",
-            Engine::Checked => "checked",
-        }
-    }
-}
-
 impl Setup<'_> {
-    /// The engine that runs the cores' program: the one that is asked for, or the interpreter where that one does not suit the arithmetic, the
-    /// program or what is recorded.
-    pub fn engine(&self) -> Engine {
-        let Options { engine, has_losses, .. } = self.options;
+    /// The engine that runs the cores' program, and why not a faster one that was wanted.
+    pub fn engine(&self) -> Choice {
         let code = Code::new(self.core, self.isa, self.config.timing());
-        match Plan::new(&code) {
-            None => Engine::Checked,
-            Some(_) if watching(self.config, has_losses).is_some() => Engine::Checked,
-            Some(_) => engine,
-        }
+        let is_default_arithmetic = self.config.arithmetic.watching(self.options.has_losses).is_none();
+        let Wish { kind, simd } = self.options.wish();
+        choose(kind, &Demand { code: &code, simd, is_default_arithmetic, follows_cores: true }).choice()
     }
 }
 
@@ -118,15 +89,15 @@ pub struct Options {
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,
     /// What runs the work items; see [`Setup::engine`].
-    pub engine: Engine,
-    /// What the fast engine may use of the host at most; `None` for all that there is.
-    pub features: Option<Features>,
+    pub engine: EngineKind,
+    /// Vector instructions of the host that an engine may use at most; `None` for all that there are.
+    pub simd: Option<HostSimd>,
 }
 
 impl Options {
-    /// What programs may use of the host that are not for the interpreter alone.
-    pub(crate) fn features(&self) -> Option<Features> {
-        (self.engine != Engine::Checked).then(|| self.features.unwrap_or_else(Features::best))
+    /// The engine that is wanted.
+    pub(crate) fn wish(&self) -> Wish {
+        Wish { kind: self.engine, simd: self.simd.unwrap_or_else(HostSimd::best) }
     }
 }
 
@@ -201,7 +172,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
 /// As [`run`].
 pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
     check(setup)?;
-    let frame = choose(setup, Stepping { setup, memory, progress });
+    let frame = on_arithmetic(setup, Stepping { setup, memory, progress });
     frame.map_err(Ending::into_failure)
 }
 
@@ -260,39 +231,15 @@ fn check(setup: &Setup) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The arithmetic of a machine that does not compute with [`Nearest32`].
-fn watching(config: &Config, has_losses: bool) -> Option<Watching> {
-    let (modes, traps) = (config.arithmetic.modes(), config.arithmetic.trap_division_by_zero);
-    let watching = Watching::new(modes, traps);
-    match has_losses {
-        true => Some(watching.with_losses()),
-        false => (modes != Modes::default() || traps).then_some(watching),
-    }
+/// Does work on the arithmetic and for the observer that a machine needs.
+fn on_arithmetic<W: Task>(setup: &Setup, task: W) -> W::Result {
+    dispatch(setup.config.arithmetic.watching(setup.options.has_losses), setup.options.has_profile, task)
 }
 
 /// Runs machines that compute alike.
 fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<Frame, Failure>> {
     let Some(first) = setups.first() else { return Vec::new() };
-    choose(first, Replaying { setups, memory, progress })
-}
-
-/// Work that is the same on every arithmetic and for every observer, but compiled for each of them.
-trait Work {
-    /// What comes of it.
-    type Result;
-
-    /// Does it.
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result;
-}
-
-/// Does work on the arithmetic and for the observer that a machine needs.
-fn choose<W: Work>(setup: &Setup, work: W) -> W::Result {
-    match (watching(setup.config, setup.options.has_losses), setup.options.has_profile) {
-        (None, true) => work.run::<_, Profiler>(&Nearest32),
-        (None, false) => work.run::<_, Unobserved>(&Nearest32),
-        (Some(modes), true) => work.run::<_, Profiler>(&modes),
-        (Some(modes), false) => work.run::<_, Unobserved>(&modes),
-    }
+    on_arithmetic(first, Replaying { setups, memory, progress })
 }
 
 struct Stepping<'a> {
@@ -301,7 +248,7 @@ struct Stepping<'a> {
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl Work for Stepping<'_> {
+impl Task for Stepping<'_> {
     type Result = Result<Frame, Ending>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
@@ -315,7 +262,7 @@ struct Replaying<'a> {
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl Work for Replaying<'_> {
+impl Task for Replaying<'_> {
     type Result = Vec<Result<Frame, Failure>>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {

@@ -7,11 +7,9 @@ use super::frame::ProcessorUse;
 use super::station::{Request, Shared, Station};
 use super::tape::Tape;
 use super::trace::{Doing, Spans};
-use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
+use crate::engine::{Choice, Pause, Runner, Seat, State, interpreter};
 use crate::exec::{Message, Watch};
-use crate::fast::Features;
-use crate::fast::single::Driver;
 use crate::octets::Buffer;
 use crate::profile::{RunObserver, Unobserved};
 use crate::quantity::{Clocks, Octets};
@@ -96,7 +94,7 @@ pub struct Processor<'a, O> {
     /// Its program.
     pub code: &'a Code<'a>,
     /// What executes it.
-    driver: Driver<'a>,
+    runner: Runner<'a>,
     /// Who it is.
     pub seat: Seat,
     /// What its program sees.
@@ -132,12 +130,12 @@ pub struct Processor<'a, O> {
 }
 
 impl<'a, O: RunObserver> Processor<'a, O> {
-    /// A processor after reset, on the interpreter alone where no features are given.
-    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32, features: Option<Features>) -> Processor<'a, O> {
+    /// A processor after reset, with what executes its program.
+    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32, runner: Runner<'a>) -> Processor<'a, O> {
         let initial = Buffer::new(&code.program.buffer, buffer_octets);
         Processor {
             code,
-            driver: Driver::new(code, features),
+            runner,
             seat,
             state: State::new(code, initial.clone()),
             initial,
@@ -157,9 +155,9 @@ impl<'a, O: RunObserver> Processor<'a, O> {
         }
     }
 
-    /// Whether the fast engine executes its program, on arithmetic that nobody watches.
-    pub fn is_quick(&self) -> bool {
-        self.driver.is_quick()
+    /// The engine that executes its program.
+    pub fn engine(&self) -> Choice {
+        self.runner.choice()
     }
 
     /// Whether the program, from reset, comes to a receive before it does anything else outside itself. What runs for
@@ -169,7 +167,8 @@ impl<'a, O: RunObserver> Processor<'a, O> {
         let mut station = Station::new(shared, self.seat.core, None);
         let mut tally = Tally::new(self.code);
         let mut nobody = Unobserved;
-        let pause = checked::run(self.code, self.seat, &mut state, arithmetic, &mut station, &mut tally, &mut nobody);
+        let pause =
+            interpreter::run(self.code, self.seat, &mut state, arithmetic, &mut station, &mut tally, &mut nobody);
         pause == Pause::Wait && station.request == Some(Request::Receive)
     }
 
@@ -182,7 +181,7 @@ impl<'a, O: RunObserver> Processor<'a, O> {
         let (clocks, steps) = (self.state.clocks, self.state.steps);
         let mut station = Station::new(shared, self.seat.core, has_leave.then_some(self.clock));
         let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
-        let pause = self.driver.run(self.seat, state, arithmetic, &mut station, tally, observer);
+        let pause = self.runner.run(self.seat, state, arithmetic, &mut station, tally, observer);
         self.request = station.request;
         let taken = station.taken;
         let steps = self.state.steps - steps;
@@ -192,7 +191,7 @@ impl<'a, O: RunObserver> Processor<'a, O> {
 
     /// The passes of its program so far.
     pub fn take_tally(&mut self) -> Tally {
-        self.driver.fold(&mut self.tally);
+        self.runner.fold(&mut self.tally);
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 

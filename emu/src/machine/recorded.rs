@@ -10,7 +10,8 @@ use super::recorder::Prefix;
 use super::recording::Reason;
 use super::scout::{self, Survey};
 use super::strands::Keeping;
-use super::{Failure, Frame, Setup, Work, check, choose, replay, schedule};
+use super::{Failure, Frame, Setup, check, on_arithmetic, replay, schedule};
+use crate::engine::Task;
 use crate::exec::Watch;
 use crate::octets::Memory;
 use crate::profile::RunObserver;
@@ -30,7 +31,7 @@ impl Recorded {
     /// Why they cannot be replayed; a machine that cannot be used is one of the reasons.
     pub fn new(setup: &Setup, memory: &Memory) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
-        choose(setup, Recording { setup, memory })
+        on_arithmetic(setup, Recording { setup, memory })
     }
 
     /// Segments of all work items: computing, then a transfer or a message.
@@ -45,7 +46,7 @@ impl Recorded {
     /// As [`super::run`]; the inner error says why this machine would not do what was recorded.
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<Frame, Reason>, Failure> {
         check(setup)?;
-        match choose(setup, Replaying { recorded: self, setup, memory }) {
+        match on_arithmetic(setup, Replaying { recorded: self, setup, memory }) {
             Ok(frame) => Ok(Ok(replay::with_counts(frame, setup, &self.survey))),
             Err(Ending::Lost(reason)) => Ok(Err(reason)),
             Err(Ending::Failure(failure)) => Err(failure),
@@ -58,7 +59,7 @@ struct Recording<'a> {
     memory: &'a Memory,
 }
 
-impl Work for Recording<'_> {
+impl Task for Recording<'_> {
     type Result = Result<Recorded, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
@@ -82,7 +83,7 @@ struct Replaying<'a> {
     memory: Memory,
 }
 
-impl Work for Replaying<'_> {
+impl Task for Replaying<'_> {
     type Result = Result<Frame, Ending>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {

@@ -1,17 +1,16 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
+use super::Setup;
 use super::kinds::Kinds;
 use super::recording::{Reason, Recording, Segment, reads};
 use super::room::Room;
 use super::station::{Access, Request};
 use super::strands::{Keeping, Strand, StrandLink};
-use super::{Engine, Setup};
-use crate::checked::{self, Pause, Seat, State};
 use crate::code::Code;
+use crate::engine::{
+    self, Demand, Independence, Moment, Pause, Runner, Seat, State, Stopped, Wish, choose, interpreter,
+};
 use crate::exec::{Link, Message, Watch};
-use crate::fast::single::{self, Count, Stopped};
-use crate::fast::{Features, Moment, Plan, Present};
-use crate::independence::Independence;
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, RunObserver, Unobserved};
 use crate::quantity::Octets;
@@ -124,16 +123,9 @@ pub struct Recorder<'a, T, O> {
     pub kinds: Kinds,
     /// Who watches them.
     pub observer: Independence<O>,
-    single: Option<One<'a>>,
+    runner: Runner<'a>,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
-}
-
-/// What a core needs to record one item after the other, quickly.
-struct One<'a> {
-    plan: Plan<'a>,
-    count: Count,
-    features: Present,
 }
 
 impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
@@ -142,12 +134,11 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let config = setup.config;
         let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
-        let (engine, features) =
-            (setup.options.engine, setup.options.features.unwrap_or_else(Features::best).present());
-        let plan = (engine != Engine::Checked && !T::IS_WATCHING).then(|| Plan::new(code)).flatten();
+        let Wish { kind, simd } = setup.options.wish();
+        let demand = Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: true };
         Recorder {
             usual: 0,
-            single: plan.map(|plan| One { count: Count::new(&plan, true), plan, features }),
+            runner: choose(kind, &demand),
             keeping,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
@@ -162,7 +153,15 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     }
 
     fn run(&mut self, wire: &mut Wire) -> Pause {
-        checked::run(self.code, self.seat, &mut self.state, &self.arithmetic, wire, &mut self.tally, &mut self.observer)
+        interpreter::run(
+            self.code,
+            self.seat,
+            &mut self.state,
+            &self.arithmetic,
+            wire,
+            &mut self.tally,
+            &mut self.observer,
+        )
     }
 
     fn wire(&self, message: Option<Message>) -> Wire<'a> {
@@ -196,29 +195,24 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
 
     /// The passes of all items.
     pub fn take_tally(&mut self) -> Tally {
-        if let Some(One { plan, count, .. }) = &mut self.single {
-            count.fold(plan, &mut self.tally);
-        }
+        self.runner.fold(&mut self.tally);
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
     fn run_quickly(&mut self, strand: &mut Strand, room: &Room) -> Option<Stopped> {
-        let One { plan, count, features } = self.single.as_mut()?;
         let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
         let moment = Moment { pc: 0, clocks: 0 };
         let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, keeping, moment };
-        count.origin = self.observer.origin;
-        let (seat, state, observer) = (self.seat, &mut self.state, &mut self.observer.inner);
-        let stopped = match O::IS_ACTIVE {
-            false => single::run(*features, plan, seat, state, &mut link, count, &mut Unobserved),
+        let (seat, state) = (self.seat, &mut self.state);
+        let Independence { inner: observer, origin, .. } = &mut self.observer;
+        match O::IS_ACTIVE {
+            false => self.runner.run_ahead(seat, state, &mut link, origin, &mut Unobserved),
             true => {
-                let link: &mut &mut dyn single::Wire = &mut (&mut link as _);
-                single::run(*features, plan, seat, state, link, count, observer)
+                let link: &mut &mut dyn engine::Wire = &mut (&mut link as _);
+                self.runner.run_ahead(seat, state, link, origin, observer)
             }
-        };
-        self.observer.origin = count.origin;
-        Some(stopped)
+        }
     }
 
     /// Runs a work item from reset to its end.

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::station::{Access, Request};
-use crate::checked::Pause;
+use crate::engine::Pause;
 use crate::exec::Message;
 use crate::quantity::Octets;
 

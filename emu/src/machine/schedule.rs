@@ -16,8 +16,8 @@ use super::station::{Access, Request, Shared};
 use super::tape::Tape;
 use super::trace::{BusWatch, Spans};
 use super::{Failure, Setup};
-use crate::checked::{Pause, Seat};
 use crate::code::Code;
+use crate::engine::{Demand, EngineKind, Pause, Seat, Wish, choose};
 use crate::exec::Watch;
 use crate::octets::Memory;
 use crate::profile::RunObserver;
@@ -93,17 +93,22 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         let cores = config.cores;
         let mut processors = Vec::with_capacity(cores as usize + 1);
         // Who replays executes nothing.
-        let features = setup.options.features().filter(|_| shared.library.is_none());
+        let Wish { kind, simd } = setup.options.wish();
+        let core_kind = if shared.library.is_none() { kind } else { EngineKind::Checked };
+        let runner = |kind, code| {
+            choose(kind, &Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false })
+        };
+        let core_runner = runner(core_kind, core_code);
         for core in 0..cores {
             let seat = Seat { core, cores, step_limit: config.step_limit };
-            let mut processor = Processor::new(core_code, seat, config.buffer_octets, features);
+            let mut processor = Processor::new(core_code, seat, config.buffer_octets, core_runner.clone());
             processor.tape = shared.library.is_some().then(Tape::default);
             processor.cache = Cache::new(&config.cache, &setup.kinds);
             processors.push(processor);
         }
         let window = setup.options.window;
         let seat = Seat { core: cores, cores, step_limit: config.main.step_limit };
-        processors.push(Processor::new(main_code, seat, config.main.buffer_octets, setup.options.features()));
+        processors.push(Processor::new(main_code, seat, config.main.buffer_octets, runner(kind, main_code)));
         for processor in &mut processors {
             processor.spans = window.map(Spans::new);
         }

@@ -12,10 +12,9 @@ use super::recorder::Recorder;
 use super::recording::{Reason, Recording};
 use super::room::Room;
 use super::strands::Keeping;
-use crate::checked::{Pause, Seat, State};
 use crate::code::Code;
+use crate::engine::{Demand, Pause, Seat, State, Wish, choose};
 use crate::exec::{Link, Message, Watch};
-use crate::fast::single::Driver;
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, Profile, RunObserver, Unobserved};
 use crate::tally::Tally;
@@ -153,12 +152,14 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
     let mut tally = Tally::new(&main_code);
-    let mut driver = Driver::new(&main_code, setup.options.features());
+    let Wish { kind, simd } = setup.options.wish();
+    let demand = Demand { code: &main_code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false };
+    let mut runner = choose(kind, &demand);
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
         let seat = Seat { core: LANES, cores: LANES, step_limit };
         let nobody = &mut Unobserved;
-        let pause = driver.run(seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
+        let pause = runner.run(seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
         if desk.work.is_empty() {
             break pause;
         }

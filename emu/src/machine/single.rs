@@ -1,19 +1,17 @@
 //! One program on one core with a memory of its own: no main processor, no other cores, a bus without rivals.
 
-use isa::number::{Modes, Nearest32};
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
 
+use super::check_buffer;
 use super::config::Config;
 use super::processor::Processor;
 use super::station::{Request, Shared};
-use super::{Engine, check_buffer};
-use crate::checked::{Pause, Seat, State};
 use crate::code::{Code, check_bodies};
-use crate::exec::{Watch, Watching};
-use crate::fast::Features;
+use crate::engine::{Choice, Demand, Pause, Seat, State, Task, Wish, choose, dispatch};
+use crate::exec::Watch;
 use crate::octets::Memory;
-use crate::profile::{Profile, Profiler, RunObserver, Unobserved};
+use crate::profile::{Profile, RunObserver};
 use crate::quantity::Clocks;
 use crate::registers::Registers;
 use crate::tally::Tally;
@@ -56,7 +54,7 @@ impl<'a> Single<'a> {
 #[derive(Clone, Debug)]
 pub struct SingleRun {
     /// What executed it.
-    pub engine: Engine,
+    pub engine: Choice,
     /// Registers, buffer, program counter, instructions.
     pub state: State,
     /// Global memory.
@@ -79,46 +77,41 @@ pub struct SingleRun {
 /// # Errors
 /// A machine out of its ranges, or initial data that do not fit the buffer.
 pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
-    run_with(single, memory, Some(Features::best()))
+    run_with(single, memory, Wish::default())
 }
 
-/// The same with what the fast engine may use of the host at most, or on the interpreter alone. The results are the same.
+/// The same with an engine that is wanted. The results are the same.
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_with(single: &Single, memory: Memory, features: Option<Features>) -> Result<SingleRun, Report> {
+pub fn run_with(single: &Single, memory: Memory, wish: Wish) -> Result<SingleRun, Report> {
     single.config.check()?;
     check_buffer("a core", single.program, single.config.buffer_octets)?;
     check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
-    let arithmetic = &single.config.arithmetic;
-    let traps = arithmetic.trap_division_by_zero;
-    let watching = Watching::new(arithmetic.modes(), traps);
-    Ok(if single.has_losses {
-        run_on(single, memory, &watching.with_losses(), features)
-    } else if arithmetic.modes() == Modes::default() && !traps {
-        run_on(single, memory, &Nearest32, features)
-    } else {
-        run_on(single, memory, &watching, features)
-    })
+    let watching = single.config.arithmetic.watching(single.has_losses);
+    Ok(dispatch(watching, single.has_profile, Run { single, memory, wish }))
 }
 
-fn run_on<T: Watch>(single: &Single, memory: Memory, arithmetic: &T, features: Option<Features>) -> SingleRun {
-    if single.has_profile {
-        run_observed::<T, Profiler>(single, memory, arithmetic, features)
-    } else {
-        run_observed::<T, Unobserved>(single, memory, arithmetic, features)
+struct Run<'a> {
+    single: &'a Single<'a>,
+    memory: Memory,
+    wish: Wish,
+}
+
+impl Task for Run<'_> {
+    type Result = SingleRun;
+
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> SingleRun {
+        run_on::<T, O>(self.single, self.memory, arithmetic, self.wish)
     }
 }
 
-fn run_observed<T: Watch, O: RunObserver>(
-    single: &Single,
-    memory: Memory,
-    arithmetic: &T,
-    features: Option<Features>,
-) -> SingleRun {
+fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic: &T, wish: Wish) -> SingleRun {
     let code = Code::new(single.program, single.isa, single.config.timing());
     let seat = Seat { core: 0, cores: 1, step_limit: single.step_limit };
-    let mut processor: Processor<O> = Processor::new(&code, seat, single.config.buffer_octets, features);
+    let demand = Demand { code: &code, simd: wish.simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false };
+    let mut processor: Processor<O> =
+        Processor::new(&code, seat, single.config.buffer_octets, choose(wish.kind, &demand));
     let mut shared = Shared::new(memory, 1, None);
     processor.state.registers = single.registers.clone();
     processor.observer.begin(processor.state.pc);
@@ -147,9 +140,8 @@ fn run_observed<T: Watch, O: RunObserver>(
     processor.observer.end();
     let tally = processor.take_tally();
     let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, &code));
-    let is_quick = processor.is_quick() && !T::IS_WATCHING;
     SingleRun {
-        engine: if is_quick { Engine::Fast } else { Engine::Checked },
+        engine: processor.engine(),
         profile: processor.observer.into_profile(&code, &tally),
         state: processor.state,
         memory: shared.memory,

@@ -7,7 +7,7 @@ use super::processor::{Advance, Processor};
 use super::recording::{Recording, Segment};
 use super::reel::{Reel, overlap};
 use super::station::{Access, Request, Shared};
-use crate::checked::Pause;
+use crate::engine::Pause;
 use crate::quantity::{Clocks, Octets};
 use crate::trap::Fault;
 

@@ -1,7 +1,8 @@
 //! Work items that read the same places of global memory.
 
-use emu::fast::Features;
-use emu::machine::{self, Config, Engine, Options, Setup};
+use emu::engine::EngineKind;
+use emu::engine::HostSimd;
+use emu::machine::{self, Config, Options, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 
@@ -41,16 +42,16 @@ fn both_engines_count_what_they_read() {
     let (core, main) = (readers(150), dispatch(45));
     let count = |engine, features| {
         let kinds = vec![(500..508, "first".to_owned()), (512..600, "second".to_owned())];
-        let options = Options { engine, features, ..Options::default() };
+        let options = Options { engine, simd: features, ..Options::default() };
         let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds, options };
         let count = machine::count(&setup, &memory()).expect("it runs").expect("it is counted");
         let octets = count.kinds.totals().iter().map(|kind| (kind.kind.clone(), kind.octets)).collect::<Vec<_>>();
         (count.memory, count.tally, octets)
     };
-    let checked = count(Engine::Checked, None);
+    let checked = count(EngineKind::Checked, None);
     assert!(checked.2.iter().all(|(kind, octets)| kind == "messages" || octets.0 > 100_000), "{:?}", checked.2);
-    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
-        let found = count(Engine::Fast, Some(features));
+    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
+        let found = count(EngineKind::Fast, Some(features));
         assert!(found == checked, "{features:?} {:?} {:?}", found.2, checked.2);
     }
 }
@@ -72,10 +73,10 @@ fn what_they_may_not_read_is_the_interpreters() {
         p.emit(Op::halt, &[]);
     });
     for core in [&beyond, &early] {
-        assert_eq!(end(core, Engine::Fast), end(core, Engine::Checked));
+        assert_eq!(end(core, EngineKind::Fast), end(core, EngineKind::Checked));
     }
-    let outside = end(&beyond, Engine::Fast).expect_err("it ends behind the memory");
+    let outside = end(&beyond, EngineKind::Fast).expect_err("it ends behind the memory");
     assert!(outside.contains("2968"), "{outside}");
-    let (method, _) = end(&early, Engine::Fast).expect("it runs");
+    let (method, _) = end(&early, EngineKind::Fast).expect("it runs");
     assert_eq!(method.reason(), Some("a work item does not begin with a message"));
 }

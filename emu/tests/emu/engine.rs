@@ -1,7 +1,7 @@
 //! Programs by themselves, on every engine: registers, the local buffer, times, and any words at all.
 
 use emu::code::Code;
-use emu::fast::Features;
+use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::single::{self, Single, SingleRun};
 use emu::octets::{Memory, POISON};
@@ -17,11 +17,10 @@ use super::builder::{Builder, program};
 fn run_with(config: &Config, program: &Program, registers: Registers) -> SingleRun {
     let isa = Isa::base();
     let single = Single { registers, step_limit: 500, has_profile: true, ..Single::new(config, &isa, program) };
-    let run =
-        |features| single::run_with(&single, Memory::new((0..=255).collect()), features).expect("the setup is right");
-    let checked = run(None);
-    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
-        let fast = run(Some(features));
+    let run = |wish| single::run_with(&single, Memory::new((0..=255).collect()), wish).expect("the setup is right");
+    let checked = run(Wish::CHECKED);
+    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
+        let fast = run(Wish::fast(features));
         let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
         assert_eq!(parts(&fast), parts(&checked), "{}", features.name());
         assert_eq!(fast.profile, checked.profile, "{}", features.name());

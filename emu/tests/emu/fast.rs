@@ -1,8 +1,9 @@
 //! The fast engine against the interpreter: whole frames of generated programs, from words at random to loops, calls and transfers. Frames
 //! hold memory, passes, clocks, octets and each work item; the answers are made of all registers and of the buffer.
 
-use emu::fast::Features;
-use emu::machine::{self, Config, Engine, Failure, Frame, Options, Setup};
+use emu::engine::EngineKind;
+use emu::engine::HostSimd;
+use emu::machine::{self, Config, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
 
@@ -22,9 +23,9 @@ const ITEMS: i32 = 45;
 const FREE: i64 = 19;
 const NUMBER: i64 = 22;
 
-fn frame(engine: Engine, features: Option<Features>, core: &Program, step_limit: u64) -> Result<Frame, Failure> {
+fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_limit: u64) -> Result<Frame, Failure> {
     let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
-    let options = Options { has_items: true, engine, features, ..Options::default() };
+    let options = Options { has_items: true, engine, simd: features, ..Options::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
     let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
@@ -34,9 +35,9 @@ fn frame(engine: Engine, features: Option<Features>, core: &Program, step_limit:
 /// Runs a program on both engines, the fast one with each of the host's features, and yields what all said.
 fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
-    let checked = run(Engine::Checked, None);
-    for features in Features::ALL.into_iter().filter(|features| features.is_present()) {
-        let fast = run(Engine::Fast, Some(features));
+    let checked = run(EngineKind::Checked, None);
+    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
+        let fast = run(EngineKind::Fast, Some(features));
         if fast != checked {
             let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
             panic!("{name}, with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
@@ -372,10 +373,10 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
             Setup { config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
         };
         let stepped = machines.each_ref().map(|config| {
-            machine::step(&setup(config, Engine::Checked), memory.clone(), &mut |_| {}).expect("it runs")
+            machine::step(&setup(config, EngineKind::Checked), memory.clone(), &mut |_| {}).expect("it runs")
         });
         dependent[usize::from(stepped[0].memory != stepped[2].memory)] += 1;
-        for engine in Engine::ALL {
+        for engine in EngineKind::ALL {
             // The three share what was recorded, but for what depends on how many they are.
             let frames = machine::run_all(&setup(&machines[0], engine), &machines, &memory, &mut |_| {});
             for (frame, stepped) in frames.into_iter().zip(&stepped) {

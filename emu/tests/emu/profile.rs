@@ -1,5 +1,6 @@
 //! What functions and regions are said to cost.
 
+use emu::engine::Wish;
 use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
@@ -14,7 +15,7 @@ pub fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
     let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, &isa, program) };
     let run = single::run(&single, Memory::default()).expect("the setup is right");
-    let checked = single::run_with(&single, Memory::default(), None).expect("the setup is right");
+    let checked = single::run_with(&single, Memory::default(), Wish::CHECKED).expect("the setup is right");
     assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());

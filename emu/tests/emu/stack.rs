@@ -2,7 +2,7 @@
 //! these jumps calls; then what they leave is given back when the engine looks at its sums, every 16,384 instructions at the latest. So no program
 //! may come to the end of a thread's usual stack.
 
-use emu::fast::Features;
+use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::Memory;
@@ -49,14 +49,14 @@ fn no_row_takes_more_stack_than_there_is() {
             p.emit(Op::isubi, &[9, 9, 1]).branch(Op::bne, &[9, 0], again);
             p.emit(Op::halt, &[]);
         });
-        // Single items have no rows of their own for longer vectors than these.
-        let features = [Features::Baseline, Features::Avx2].into_iter().filter(|features| features.is_present());
+        let features = HostSimd::ALL.into_iter().filter(|features| features.is_present());
         for (features, has_profile) in features.flat_map(|features| [(features, false), (features, true)]) {
             let steps = std::thread::scope(|scope| {
                 let run = || {
                     let config = Config::default();
                     let single = Single { has_profile, ..Single::new(&config, &isa, &program) };
-                    let run = single::run_with(&single, Memory::new(vec![0; 4096]), Some(features)).expect("it runs");
+                    let run =
+                        single::run_with(&single, Memory::new(vec![0; 4096]), Wish::fast(features)).expect("it runs");
                     (run.state.steps, run.trap.map(|trap| trap.to_string()))
                 };
                 let small = std::thread::Builder::new().name(format!("{op:?} {features:?}")).stack_size(STACK);

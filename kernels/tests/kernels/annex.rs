@@ -1,8 +1,9 @@
 //! The rows of the annexes under their assumptions: the terms of each sum to its difference, and a recount from a trace of the instructions,
 //! by a code of its own, gives the numbers of the profile.
 
-use emu::checked::{Pause, Seat, State, run};
 use emu::code::Code;
+use emu::engine::interpreter::run;
+use emu::engine::{Pause, Seat, State};
 use emu::exec::{Link, Message, Motion};
 use emu::machine::Config;
 use emu::machine::single::{self, Single};

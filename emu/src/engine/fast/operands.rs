@@ -22,7 +22,7 @@ pub(super) fn set_vector(registers: &mut Registers, number: u8, value: Vector) {
 /// Puts a value where a written operand says.
 macro_rules! put {
     ($registers:expr, $fields:expr, $letter:ident V) => {
-        $crate::fast::single::operands::set_vector($registers, $fields.$letter, $letter)
+        $crate::engine::fast::operands::set_vector($registers, $fields.$letter, $letter)
     };
     ($registers:expr, $fields:expr, $letter:ident S) => {
         $registers.set_other_scalar($fields.$letter, $letter)
@@ -38,7 +38,7 @@ macro_rules! put {
     };
     ($registers:expr, $fields:expr, $letter:ident vectors) => {
         for (at, value) in $letter.into_iter().enumerate() {
-            $crate::fast::single::operands::set_vector($registers, $fields.$letter.wrapping_add(at as u8), value);
+            $crate::engine::fast::operands::set_vector($registers, $fields.$letter.wrapping_add(at as u8), value);
         }
     };
     ($registers:expr, $fields:expr, $letter:ident $kind:ident) => {

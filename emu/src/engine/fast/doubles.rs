@@ -281,7 +281,7 @@ mod tests {
 
         #[test]
         fn it_decides_as_integers_do([origin, direction, a, b, c] in close(), shift in 0i32..32) {
-            if !crate::fast::Features::Avx2.is_present() {
+            if !crate::engine::HostSimd::Avx2.is_present() {
                 return Ok(());
             }
             let mut found = Registers::default();

@@ -4,7 +4,7 @@
 use isa::Op;
 
 use super::walk::{Place, Walk};
-use crate::fast::plan::Step;
+use crate::engine::plan::Step;
 use crate::registers::Registers;
 
 /// A row: it does what the step says, goes on with the rows behind it unless it [goes back](goes_back), and yields where that led to.
@@ -169,7 +169,7 @@ macro_rules! row {
                     Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
                 }
             }}
-            // SAFETY: the step and the host are those of this function; the safe twin is `crate::checked::run`.
+            // SAFETY: the step and the host are those of this function; the safe twin is `crate::engine::interpreter::run`.
             unsafe { whole::<L, O>(registers, step, walk, sums) }
         }}
     };
@@ -233,7 +233,7 @@ macro_rules! stamp {
         })*
     ) => {
         pub(super) mod $module {
-            use super::super::Wire;
+            use crate::engine::Wire;
             use super::super::walk::{Place, Walk};
             use crate::profile::RunObserver;
             use crate::registers::Registers;
@@ -247,7 +247,7 @@ macro_rules! stamp {
                 use super::super::super::fuse::LOOK;
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Place, Walk, Way};
-                use super::super::super::{Stopped, Wire};
+                use crate::engine::{Stopped, Wire};
                 use super::super::{RowFunction, goes_back, is_read};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::exec::RayRoom;
@@ -255,7 +255,7 @@ macro_rules! stamp {
                     BusRoom, ControlRoom, End, Flow, Glance, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
                     split_operands,
                 };
-                use crate::fast::plan::{Step, padded};
+                use crate::engine::plan::{Step, padded};
                 use crate::profile::RunObserver;
                 use crate::registers::{Registers, read, write};
                 use crate::trap::Stop;
@@ -290,7 +290,7 @@ macro_rules! stamp {
             pub fn run<L: Wire, O: RunObserver>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
                 while !place.step.is_null() {
                     // SAFETY: rows yield a step of the plan, and the host has the features that this function is compiled for, as the
-                    // rows are. `crate::checked::run` is the safe twin.
+                    // rows are. `crate::engine::interpreter::run` is the safe twin.
                     place = unsafe {
                         let row = usize::from((*place.step).row);
                         (const { &rows::All::<L, O>::FUNCTIONS }[row])(registers, place.step, walk, place.sums)

@@ -1,10 +1,10 @@
 //! What an item took so far, and when it is to be looked at: four sums in one number of 64 bits, which are emptied before one of them is full
 //! or the step limit is reached.
 
-use crate::checked::{Seat, State};
-use crate::fast::plan::Plan;
-use crate::fast::toll::{FLAG, HALVES, Toll};
-use crate::independence::Origin;
+use crate::engine::cost::{FLAG, HALVES, Toll};
+use crate::engine::plan::Plan;
+use crate::engine::taint::Origin;
+use crate::engine::{Seat, State};
 
 /// The bits which say that something is to be looked at before a run begins: a sum has come to half of its room, or the run is flagged.
 pub(super) const LOOK: u64 = HALVES | FLAG;

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use isa::{Fields, InstructionDef, Kind, Op};
 
-use super::toll::{FLAG, Toll};
+use super::cost::{FLAG, Toll};
 use crate::code::{Code, ExitCost, Slot};
-use crate::independence::Mark;
+use crate::engine::taint::Mark;
 use crate::order::{Order, Stage};
 use crate::registers::Registers;
 

@@ -4,12 +4,12 @@ use isa::table::AnyOutcome;
 
 use super::count::Count;
 use super::fuse::Fuse;
-use super::{Stopped, Wire};
-use crate::checked::Seat;
+use crate::engine::Moment;
+use crate::engine::Seat;
+use crate::engine::cost::FLAG;
+use crate::engine::plan::{Plan, Step};
+use crate::engine::{Stopped, Wire};
 use crate::exec::{Flow, Motion};
-use crate::fast::Moment;
-use crate::fast::plan::{Plan, Step};
-use crate::fast::toll::FLAG;
 use crate::meaning::{Numbers, Units};
 use crate::octets::Buffer;
 use crate::profile::RunObserver;

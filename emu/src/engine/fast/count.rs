@@ -1,7 +1,7 @@
 //! How often exits were taken and runs begun where nothing else says so: what is counted while a program runs, and how it folds into passes.
 
-use crate::fast::plan::{Plan, Step};
-use crate::independence::Origin;
+use crate::engine::plan::{Plan, Step};
+use crate::engine::taint::Origin;
 use crate::tally::Tally;
 
 /// What is counted of a place beside its exits.

@@ -1,11 +1,10 @@
 //! One work item after the other, without a look at each instruction's count or at the clock: a program is walked in *runs*, from any word to
-//! the next control row, and what a run takes is added once. Whatever is unusual is left to [`crate::checked`], which goes on where this
+//! the next control row, and what a run takes is added once. Whatever is unusual is left to [`super::interpreter`], which goes on where this
 //! stopped, from the same [`State`].
 
 mod count;
 #[cfg(target_arch = "x86_64")]
 mod doubles;
-mod driver;
 mod fuse;
 mod operands;
 #[cfg(target_arch = "x86_64")]
@@ -16,46 +15,56 @@ mod walk;
 use fuse::Fuse;
 use walk::{Ended, Place, Walk};
 
-pub use count::Count;
-pub use driver::Driver;
+use count::Count;
 
+use super::host::{HostSimd, Present};
 use super::plan::Plan;
-use super::{Features, Moment, Present};
-use crate::checked::{Seat, State};
-use crate::exec::{Link, Message, methods};
-use crate::octets::Buffer;
+use super::state::{Seat, State};
+use super::taint::Origin;
+use super::{Demand, Engine, Refusal, Stopped, Wire};
 use crate::profile::RunObserver;
 use crate::registers::Registers;
-use crate::trap::{Fault, Stop};
+use crate::tally::Tally;
 
-/// The machine as a work item sees it.
-pub trait Wire: Link {
-    /// Whether it wants to know when it is asked.
-    fn keeps_time(&self) -> bool;
-
-    /// When and where it is asked next; the time only where it is kept.
-    fn note(&mut self, moment: Moment);
+/// The fast engine of one program.
+#[derive(Clone, Debug)]
+pub struct Fast<'a> {
+    plan: Plan<'a>,
+    count: Count,
+    simd: Present,
 }
 
-/// A link to which the time does not matter.
-pub struct Timeless<'a>(pub &'a mut dyn Link);
+impl<'a> Engine<'a> for Fast<'a> {
+    fn new(demand: &Demand<'a>) -> Result<Fast<'a>, Refusal> {
+        let plan = Plan::new(demand.code).ok_or(TOO_LONG)?;
+        let plan = if demand.follows_cores { plan } else { plan.regardless_of_cores() };
+        Ok(Fast { count: Count::new(&plan, demand.follows_cores), plan, simd: demand.simd.present() })
+    }
 
-/// Why the engine stopped. The state is that before the instruction at the program counter, but for `halt`, which has been executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stopped {
-    /// The program executed `halt`.
-    Halt,
-    /// The instruction at the program counter waits for the machine.
-    Wait,
-    /// The instruction at the program counter asked the machine for something and went wrong.
-    Fault(Fault),
-    /// The instruction at the program counter is for the interpreter.
-    Unusual,
+    fn run<L: Wire, O: RunObserver>(
+        &mut self,
+        seat: Seat,
+        state: &mut State,
+        link: &mut L,
+        origin: &mut Origin,
+        observer: &mut O,
+    ) -> Stopped {
+        self.count.origin = *origin;
+        let stopped = run(self.simd, &self.plan, seat, state, link, &mut self.count, observer);
+        *origin = self.count.origin;
+        stopped
+    }
+
+    fn fold(&mut self, tally: &mut Tally) {
+        self.count.fold(&self.plan, tally);
+    }
 }
+
+const TOO_LONG: Refusal = "an instruction takes more clocks than the sums of the fast engine have room for";
 
 /// Runs until the program halts, waits or comes to something unusual, with the features given. The results are the same with all of them.
-pub fn run<L: Wire, O: RunObserver>(
-    Present(features): Present,
+fn run<L: Wire, O: RunObserver>(
+    Present(simd): Present,
     plan: &Plan,
     seat: Seat,
     state: &mut State,
@@ -64,14 +73,14 @@ pub fn run<L: Wire, O: RunObserver>(
     observer: &mut O,
 ) -> Stopped {
     #[cfg(target_arch = "x86_64")]
-    if features >= Features::Avx2 {
+    if simd >= HostSimd::Avx2 {
         let run = |registers: &mut Registers, first: Place, walk: &mut Walk<L, O>| {
             // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
             unsafe { rows::avx2::run::<L, O>(registers, first, walk) }
         };
         return walk::<L, O>(plan, seat, state, link, count, observer, run);
     }
-    let _ = features;
+    let _ = simd;
     // Hosts without vector instructions are few: one function serves all links there.
     let mut link: &mut dyn Wire = link;
     let run = rows::baseline::run::<&mut dyn Wire, O>;
@@ -112,26 +121,4 @@ fn walk<L: Wire, O: RunObserver>(
     let fuse = walk.fuse;
     count.origin = fuse.settle(plan, state, sums, place, rest);
     stopped
-}
-
-impl Link for Timeless<'_> {
-    methods! { hand_on! self => self.0; }
-}
-
-impl Wire for Timeless<'_> {
-    fn keeps_time(&self) -> bool {
-        false
-    }
-
-    fn note(&mut self, _: Moment) {}
-}
-
-impl Wire for &mut dyn Wire {
-    fn keeps_time(&self) -> bool {
-        (**self).keeps_time()
-    }
-
-    fn note(&mut self, moment: Moment) {
-        (**self).note(moment);
-    }
 }

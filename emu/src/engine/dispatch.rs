@@ -1,0 +1,25 @@
+//! The one place where work is compiled for each arithmetic and for each observer, and the right one is taken.
+
+use isa::number::Nearest32;
+
+use crate::exec::{Watch, Watching};
+use crate::profile::{Profiler, RunObserver, Unobserved};
+
+/// Work that is the same on every arithmetic and for every observer, but compiled for each of them.
+pub trait Task {
+    /// Result of the work.
+    type Result;
+
+    /// Does the work.
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result;
+}
+
+/// Does work on the default arithmetic, or on the one given, with a profile or without.
+pub fn dispatch<W: Task>(watching: Option<Watching>, has_profile: bool, task: W) -> W::Result {
+    match (watching, has_profile) {
+        (None, true) => task.run::<_, Profiler>(&Nearest32),
+        (None, false) => task.run::<_, Unobserved>(&Nearest32),
+        (Some(watching), true) => task.run::<_, Profiler>(&watching),
+        (Some(watching), false) => task.run::<_, Unobserved>(&watching),
+    }
+}

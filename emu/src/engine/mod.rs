@@ -1,0 +1,112 @@
+//! Engines: whatever executes programs. All give the same bits, counts, clocks and traps; [`interpreter`] is what the others are compared
+//! with, and what goes on wherever one of them stops. [`choose`](choose()) alone says which one runs a program.
+
+mod choose;
+mod cost;
+mod dispatch;
+pub mod fast;
+mod host;
+pub mod interpreter;
+mod plan;
+mod state;
+mod taint;
+
+pub use choose::{Choice, Demand, EngineKind, Runner, Wish, choose};
+pub use dispatch::{Task, dispatch};
+pub use host::{HostSimd, Present};
+pub use plan::Plan;
+pub use state::{Pause, Seat, State};
+pub(crate) use taint::{Independence, Origin};
+
+use crate::exec::{Link, Message, methods};
+use crate::octets::Buffer;
+use crate::profile::RunObserver;
+use crate::tally::Tally;
+use crate::trap::{Fault, Stop};
+
+/// Why an engine does not run a program, as the end of a sentence.
+pub type Refusal = &'static str;
+
+/// An engine that is faster than the interpreter, for one program on the default arithmetic.
+pub trait Engine<'a>: Sized {
+    /// Makes ready for a program.
+    ///
+    /// # Errors
+    /// Something about the program that this engine does not do; then the next one of [`EngineKind::ALL`] is asked.
+    fn new(demand: &Demand<'a>) -> Result<Self, Refusal>;
+
+    /// Runs up to the next thing that concerns others: from the state given, until the program halts, waits for the machine or goes wrong, or
+    /// until something is for the interpreter.
+    ///
+    /// Afterwards `state` is that before the instruction at its program counter, with all registers, the buffer, steps, clocks and elementary
+    /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `origin` is what the item knows of the
+    /// cores, brought up to date where the demand says that it is followed. The observer is told as [`RunObserver`] says, the link before each
+    /// request of when that is made.
+    fn run<L: Wire, O: RunObserver>(
+        &mut self,
+        seat: Seat,
+        state: &mut State,
+        link: &mut L,
+        origin: &mut Origin,
+        observer: &mut O,
+    ) -> Stopped;
+
+    /// Adds the passes of all runs since the last call to a tally of the program.
+    fn fold(&mut self, tally: &mut Tally);
+}
+
+/// The machine as a work item sees it.
+pub trait Wire: Link {
+    /// Whether it wants to know when it is asked.
+    fn keeps_time(&self) -> bool;
+
+    /// When and where it is asked next; the time only where it is kept.
+    fn note(&mut self, moment: Moment);
+}
+
+/// A link to which the time does not matter.
+pub struct Timeless<'a>(pub &'a mut dyn Link);
+
+/// Why the engine stopped. The state is that before the instruction at the program counter, but for `halt`, which has been executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stopped {
+    /// The program executed `halt`.
+    Halt,
+    /// The instruction at the program counter waits for the machine.
+    Wait,
+    /// The instruction at the program counter asked the machine for something and went wrong.
+    Fault(Fault),
+    /// The instruction at the program counter is for the interpreter.
+    Unusual,
+}
+
+/// When and where a work item asks the machine for something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    /// Word of the instruction.
+    pub pc: u32,
+    /// Clocks that the item has computed so far.
+    pub clocks: u64,
+}
+
+impl Link for Timeless<'_> {
+    methods! { hand_on! self => self.0; }
+}
+
+impl Wire for Timeless<'_> {
+    fn keeps_time(&self) -> bool {
+        false
+    }
+
+    fn note(&mut self, _: Moment) {}
+}
+
+impl Wire for &mut dyn Wire {
+    fn keeps_time(&self) -> bool {
+        (**self).keeps_time()
+    }
+
+    fn note(&mut self, moment: Moment) {
+        (**self).note(moment);
+    }
+}

@@ -8,7 +8,7 @@ use asm::{Attempt, Options, attempt, listing, symbol_map};
 use isa::{Isa, Program};
 use messages::Source;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRng, TestRunner};
+use testing::check;
 
 const PROGRAM: &str = "; adds up the octets of a table
         .include \"layout.s\"
@@ -99,14 +99,6 @@ fn the_map_shows_names_by_address() {
 #[test]
 fn hex_has_a_word_a_line() {
     insta::assert_snapshot!(asm::hex::words(&tried("li s1, 0x12345678\nhalt").program.words));
-}
-
-fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
-    let config = Config { cases, failure_persistence: None, ..Config::default() };
-    let random = TestRng::deterministic_rng(config.rng_algorithm);
-    if let Err(error) = TestRunner::new_with_rng(config, random).run(strategy, test) {
-        panic!("{error}");
-    }
 }
 
 #[test]

@@ -7,18 +7,10 @@ use isa::table::Op;
 use isa::{Isa, Program};
 use messages::{Report, Source};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, TestRng, TestRunner};
+use testing::check;
 
 fn assembled(text: &str) -> Result<Program, Report> {
     assemble(&Source::new("t.s", text), &Isa::base(), &Options::default()).map(|assembled| assembled.program)
-}
-
-fn check<S: Strategy>(cases: u32, strategy: &S, test: impl Fn(S::Value) -> Result<(), TestCaseError>) {
-    let config = Config { cases, failure_persistence: None, ..Config::default() };
-    let random = TestRng::deterministic_rng(config.rng_algorithm);
-    if let Err(error) = TestRunner::new_with_rng(config, random).run(strategy, test) {
-        panic!("{error}");
-    }
 }
 
 /// A row's operands as numbers in range.

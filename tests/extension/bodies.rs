@@ -9,7 +9,6 @@ use emu::machine::{Options, Setup};
 use emu::registers::Registers;
 use isa::{Class, Isa, Kind};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
 use super::{isa_of, program, run_with};
 
@@ -158,8 +157,7 @@ fn an_instruction_does_and_counts_what_its_body_does() {
     assert_eq!(loaded.len(), 9);
     for loaded in &loaded {
         let name = isa.definition(loaded.op).name.to_string();
-        let config = Config { cases: 150, failure_persistence: None, ..Config::default() };
-        let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+        let mut runner = testing::runner(150);
         let strategy = (fields(&isa, &name), registers(), 0..20u64);
         let result = runner.run(&strategy, |(fields, registers, few)| {
             let (short, long) = (written_as(&isa, &name, &fields), written_out(&isa, &name, &fields));
@@ -219,8 +217,7 @@ fn every_word_of_an_extension_survives_text() {
     let (isa, loaded) = isa_of(BODIES);
     for loaded in &loaded {
         let name = isa.definition(loaded.op).name.to_string();
-        let config = Config { cases: 64, failure_persistence: None, ..Config::default() };
-        let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+        let mut runner = testing::runner(64);
         let result = runner.run(&fields(&isa, &name), |fields| {
             let word = isa.encode(loaded.op, &fields).unwrap();
             let text = asm::disassemble(&[word], &isa);

@@ -189,7 +189,7 @@ fn every_composite_row_has_a_body_and_every_body_a_row() {
 #[test]
 fn every_composite_row_costs_and_does_what_its_body_does() {
     let isa = Isa::base();
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     for row in isa::INSTRUCTIONS.iter().filter(|row| is_composite(row)) {
         let text = std::fs::read_to_string(folder().join(format!("{}.s", row.name))).unwrap();
         let oracle = Oracle { row, text };

@@ -53,7 +53,7 @@ fn every_value_of_every_field_survives() {
 #[test]
 fn all_fields_together_survive() {
     let isa = Isa::base();
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for (op, drawing) in rows() {
         for _ in 0..1000 {
             let operands: Vec<i64> = drawing.ranges().iter().map(|&(least, most)| random.within(least, most)).collect();
@@ -131,7 +131,7 @@ fn no_word_is_two_instructions() {
 #[test]
 fn any_word_is_no_instruction_or_the_word_of_one() {
     let isa = Isa::base();
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let drawings = all();
     for _ in 0..100_000 {
         // A few bits away from a row, since most words are nothing.

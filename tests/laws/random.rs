@@ -1,16 +1,19 @@
 //! Numbers that look random and are the same on every run.
 
-/// The generator of Steele, Lea and Flood (SplitMix64).
-pub struct Random(pub u64);
+use random::SplitMix64;
+
+/// Numbers of operands and words.
+pub struct Random(SplitMix64);
 
 impl Random {
+    /// The series of a seed.
+    pub fn new(seed: u64) -> Random {
+        Random(SplitMix64::new(seed))
+    }
+
     /// The next 64 bits.
     pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// A number from `least` to `most`.

@@ -29,7 +29,7 @@ fn values(least: i64, most: i64, random: &mut Random) -> Vec<i64> {
 #[test]
 fn the_text_of_every_row_assembles_to_its_word() {
     let isa = Isa::base();
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let mut expected = Vec::new();
     for drawing in all() {
         let ranges = drawing.ranges();
@@ -59,7 +59,7 @@ fn the_text_of_every_row_assembles_to_its_word() {
 /// A word of any row with any operands; most distances are short, and lead into the program, where they become labels.
 fn instruction() -> impl Strategy<Value = u32> {
     (0..isa::INSTRUCTIONS.len(), any::<u64>()).prop_map(|(row, seed)| {
-        let (drawing, mut random) = (Drawing::new(&isa::INSTRUCTIONS[row]), Random(seed));
+        let (drawing, mut random) = (Drawing::new(&isa::INSTRUCTIONS[row]), Random::new(seed));
         let operands = drawing.row.operands.iter().zip(drawing.ranges());
         let values = operands.map(|(operand, (least, most))| match operand.kind {
             isa::Kind::Rel if random.next() % 4 != 0 => random.within(-20, 20),

@@ -149,7 +149,7 @@ type Test = fn(&Modes, &Constants, &Ray, &[Vector; 3]) -> i32;
 fn decisions(text: &mut String, name: &str, test: Test, constants: &Constants, bits: u32) {
     let modes = modes(constants.formats.word);
     for is_at_edge in [false, true] {
-        let mut series = Series(20);
+        let mut series = Series::new(20);
         let (mut wrong, mut hits, mut errors) = (0, 0, Errors::default());
         for _ in 0..RAYS {
             let vertices = series.triangle(bits, 7);
@@ -214,7 +214,7 @@ fn closed_surfaces_are_crossed_evenly() {
     let words = [(32, narrow(), 15)].into_iter().chain(WORDS.map(|word| (word, full(word), word - 2)));
     for (word, constants, bits) in words {
         let modes = modes(word);
-        let mut series = Series(21);
+        let mut series = Series::new(21);
         let step = 1 << (bits - 4);
         let mut crossings = [0; 5];
         for bend in [0, step / 3, step] {
@@ -247,7 +247,7 @@ fn closed_surfaces_are_crossed_evenly() {
 /// The nearest hit by the tree, from a camera or from inside, is that of all triangles, in exact ties too.
 #[test]
 fn searches_through_the_tree_miss_nothing() {
-    let mut series = Series(22);
+    let mut series = Series::new(22);
     let mut hits = 0;
     for (name, level, triangles) in [
         ("slivers", Some(8), None),

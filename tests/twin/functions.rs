@@ -8,7 +8,7 @@ use kernels::twin::report;
 use kernels::twin::unit::{sqrt, unit};
 use kernels::{Function, KernelSet};
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use proptest::test_runner::TestRunner;
 use scenes::generate;
 use scenes::image::{self, MemoryKind};
 use scenes::kdtree::Bounds;
@@ -42,8 +42,7 @@ pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
 }
 
 fn runner() -> TestRunner {
-    let config = Config { cases: 12, failure_persistence: None, ..Config::default() };
-    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &SEED))
+    testing::seeded_runner(12, &SEED)
 }
 
 /// Something that holds in all random cases.

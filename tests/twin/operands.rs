@@ -2,6 +2,7 @@
 
 use isa::number::Vector;
 use proptest::prelude::*;
+use random::SplitMix64;
 
 /// A number of at most `bits` bits and a sign; small ones are as likely as large ones, and powers of two are frequent.
 pub fn number(bits: u32) -> impl Strategy<Value = i32> {
@@ -42,21 +43,21 @@ pub fn vector(words: &[i32], at: usize) -> Vector {
     [words[at], words[at + 1], words[at + 2]]
 }
 
-/// A generator of uniform numbers for long series (SplitMix64).
-pub struct Series(pub u64);
+/// Uniform numbers for long series.
+pub struct Series(SplitMix64);
 
 impl Series {
+    pub fn new(seed: u64) -> Series {
+        Series(SplitMix64::new(seed))
+    }
+
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// A number in -1..1.
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        self.0.unit()
     }
 
     /// A number in -end..end.

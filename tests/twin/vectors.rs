@@ -34,7 +34,7 @@ fn unit_vectors_against_double_precision() {
     let mut text = format!("{VECTORS} vectors each, largest error of a lane in ulp\n");
     for word in WORDS {
         let (modes, bits) = (modes(word), word - 2);
-        let mut series = Series(23);
+        let mut series = Series::new(23);
         let (mut normals, mut units) = (Errors::default(), Errors::default());
         for _ in 0..VECTORS {
             let vertices = series.triangle(bits, bits - 2);
@@ -78,7 +78,7 @@ fn secondary_rays_against_double_precision() {
     let mut text = format!("{VECTORS} rays each, largest error of a lane in ulp\n");
     for word in WORDS {
         let (modes, constants, bits) = (modes(word), full(word), word - 2);
-        let mut series = Series(24);
+        let mut series = Series::new(24);
         let (mut reflected, mut refracted) = (Errors::default(), Errors::default());
         let (mut total, mut wrong) = (0, 0);
         for _ in 0..VECTORS {

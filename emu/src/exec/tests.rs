@@ -3,7 +3,7 @@
 use isa::number::{Modes, Nearest32, Vector};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
-use proptest::test_runner::{Config, TestRunner};
+use proptest::test_runner::TestRunner;
 
 use super::{IntegerRoom, RayRoom, ScalarRoom, VectorRoom, Watching, WideRoom, split_operands};
 
@@ -86,14 +86,11 @@ macro_rules! compare_row {
 }
 
 /// Operands that each row is tried with.
-const CASES: usize = 400;
+const CASES: u32 = 400;
 
 #[test]
 fn every_pure_row_does_the_same_whether_the_modes_are_known_at_compile_time_or_chosen() {
-    let runner = &mut TestRunner::new_with_rng(
-        Config::default(),
-        proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
-    );
+    let runner = &mut testing::runner(CASES);
     macro_rules! compare_all {
         ($($style:ident $room:ident $trait:ident $room_doc:literal {
             $($(#[doc = $doc:expr])* $name:ident $operands:tt $drawn:literal [$($exits:tt)*];)*

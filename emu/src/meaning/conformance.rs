@@ -6,6 +6,7 @@ use isa::number::Vector;
 use isa::table::Op;
 use isa::{InstructionDef, Isa, Kind, Program, register_name};
 use messages::Diagnostic;
+use random::SplitMix64;
 
 use crate::code::Code;
 use crate::machine::Config;
@@ -94,7 +95,7 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
     let op = op.expect("the instruction has a meaning in Rust and a body beside it");
     let mut by_body = isa.clone();
     by_body.set_semantics(op, None);
-    let mut random = Random(trial.seed);
+    let mut random = Random(SplitMix64::new(trial.seed));
     let mut agreement = Agreement::default();
     for _ in 0..trial.cases {
         let case = Case::new(isa, op, trial, &mut random);
@@ -122,19 +123,16 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
     Ok(agreement)
 }
 
-/// Numbers that look random: splitmix64.
-struct Random(u64);
+/// Numbers of operands.
+struct Random(SplitMix64);
 
 impl Random {
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
+        self.0.bits()
     }
 
     fn below(&mut self, end: u64) -> u64 {
-        self.next() % end
+        self.0.below(end)
     }
 
     /// A number of `bits` bits: small ones, edges, and any, down to few bits.

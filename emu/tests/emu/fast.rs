@@ -6,6 +6,7 @@ use emu::engine::HostSimd;
 use emu::machine::{self, Config, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
+use random::SplitMix64;
 
 use super::builder::{Builder, program};
 use super::machine::dispatch;
@@ -46,20 +47,20 @@ fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
     checked
 }
 
-/// Numbers that look random and are the same on every run: the generator of Steele, Lea and Flood.
-struct Random(u64);
+/// Numbers of generated programs.
+struct Random(SplitMix64);
 
 impl Random {
+    fn new(seed: u64) -> Random {
+        Random(SplitMix64::new(seed))
+    }
+
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     fn below(&mut self, end: i64) -> i64 {
-        (self.next() % end as u64) as i64
+        self.0.below(end as u64) as i64
     }
 }
 
@@ -204,7 +205,7 @@ fn structured(p: &mut Builder, random: &mut Random, isa: &Isa, depth: i64) {
 fn any_row_on_any_operands() {
     let isa = Isa::base();
     for (seed, &op) in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)).enumerate() {
-        let mut random = Random(seed as u64);
+        let mut random = Random::new(seed as u64);
         let core = program(|p| {
             scatter(p, &mut random);
             for _ in 0..12 {
@@ -220,7 +221,7 @@ fn any_row_on_any_operands() {
 #[test]
 fn a_long_loop_over_all_rows_takes_no_stack() {
     let isa = Isa::base();
-    let mut random = Random(77);
+    let mut random = Random::new(77);
     let core = program(|p| {
         scatter(p, &mut random);
         p.constant(27, 20_000);
@@ -255,7 +256,7 @@ fn loops_calls_and_branches() {
     let isa = Isa::base();
     let mut ends = 0;
     for seed in 0..60 {
-        let mut random = Random(1000 + seed);
+        let mut random = Random::new(1000 + seed);
         let core = program(|p| {
             scatter(p, &mut random);
             structured(p, &mut random, &isa, 2);
@@ -269,7 +270,7 @@ fn loops_calls_and_branches() {
 #[test]
 fn words_at_random() {
     for seed in 0..60 {
-        let mut random = Random(2000 + seed);
+        let mut random = Random::new(2000 + seed);
         let core = program(|p| {
             scatter(p, &mut random);
             for _ in 0..random.below(30) {
@@ -359,7 +360,7 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
     let (main, memory) = (dispatch(ITEMS), Memory::new(vec![0; MEMORY as usize]));
     let mut dependent = [0, 0];
     for seed in 0..150 {
-        let random = &mut Random(seed);
+        let random = &mut Random::new(seed);
         let core = program(|p| {
             p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]);
             for _ in 0..4 {

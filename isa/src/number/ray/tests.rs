@@ -3,6 +3,7 @@
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use random::SplitMix64;
 
 use super::*;
 use crate::number::{Arithmetic, Modes, Nearest32, Overflow, Quantization};
@@ -315,11 +316,8 @@ fn ties_are_counted() {
 /// 5 x 10^5 rays that no more than graze what they are aimed at; the filter decides as the integers do.
 #[test]
 fn the_filter_is_never_wrong() {
-    let mut state = 0x9e37_79b9_7f4a_7c15u64;
-    let mut number = |bits: u32| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state >> 33) as i64 >> (31 - bits)) as i32 - (1 << (bits - 1))
-    };
+    let mut random = SplitMix64::new(1);
+    let mut number = |bits: u32| random.below(1 << bits) as i32 - (1 << (bits - 1));
     let mut undecided = 0;
     for _ in 0..500_000 {
         let corner: Vector = std::array::from_fn(|_| number(30));

@@ -115,7 +115,7 @@ fn every_bad_file_ends_with_1_a_message_and_nothing_written() {
             bad += 1;
         }
     }
-    for path in files("asm/tests/errors") {
+    for path in files("asm/tests/asm/errors") {
         let mut command = session.command("assemble -o out.o --data out.dat --map=out.map");
         let output = command.arg(&path).output().unwrap();
         let said = String::from_utf8(output.stderr).unwrap();

@@ -32,8 +32,8 @@ fn every_wrong_file_says_what_is_wrong() {
 
 #[test]
 fn five_mistakes_show_in_one_run() {
-    let text =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/asm/errors/five_mistakes.s")).unwrap();
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/asm/errors/five_mistakes.s"))
+        .unwrap();
     let codes: Vec<_> = report("five_mistakes.s", &text).0.iter().map(|message| message.code.unwrap()).collect();
     assert_eq!(codes, ["E001", "E008", "E007", "E003", "E002"]);
 }

@@ -25,7 +25,7 @@ use crate::message::{Among, At, Messages, Problem};
 use crate::pseudo::PSEUDOS;
 use crate::region::OpenRegion;
 use crate::structure::Structure;
-use crate::symbol::{Meaning, Name, Names};
+use crate::symbol::{Name, Names, SymbolValue};
 use crate::{Attempt, Options};
 
 /// Where statements go.
@@ -134,7 +134,7 @@ impl Assembler<'_> {
         self.program.sources.push(source.clone());
         for (text, value) in &self.options.defines {
             let name = self.names.intern(text);
-            self.names.set(name, Meaning::Constant(*value), None);
+            self.names.set(name, SymbolValue::Constant(*value), None);
         }
         for (text, bits) in &self.options.formats {
             if (0..=FRACTION_BITS).contains(bits) {
@@ -247,7 +247,7 @@ impl Assembler<'_> {
         let symbols = self.map();
         self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
         for (place, name) in std::mem::take(&mut self.pending_records) {
-            if let Some(Meaning::Constant(value)) = self.names.get(name).map(|symbol| &symbol.meaning) {
+            if let Some(SymbolValue::Constant(value)) = self.names.get(name).map(|symbol| &symbol.value) {
                 self.records[place].value = Some(*value);
             }
         }

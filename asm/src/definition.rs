@@ -11,7 +11,7 @@ use crate::function::is_function;
 use crate::limits::FRACTION_BITS;
 use crate::message::{At, Parsed, Problem};
 use crate::operand::{Register, looks_like_register};
-use crate::symbol::{Meaning, Name};
+use crate::symbol::{Name, SymbolValue};
 
 /// Another name of a register.
 #[derive(Clone, Debug)]
@@ -39,12 +39,12 @@ impl Assembler<'_> {
     }
 
     /// Defines a name that must not have been defined before.
-    pub(crate) fn define(&mut self, text: &str, at: At, meaning: Meaning) -> Parsed<Name> {
+    pub(crate) fn define(&mut self, text: &str, at: At, value: SymbolValue) -> Parsed<Name> {
         self.check_name(text, at)?;
         let name = self.names.intern(text);
         if let Some(symbol) = self.names.get(name) {
-            if matches!(symbol.meaning, Meaning::Broken) {
-                self.names.set(name, meaning, Some(at));
+            if matches!(symbol.value, SymbolValue::Broken) {
+                self.names.set(name, value, Some(at));
                 return Ok(name);
             }
             let text = text.split('$').next().unwrap_or(text);
@@ -55,16 +55,16 @@ impl Assembler<'_> {
                 None => problem.hint("it is given from outside; `.ifndef` keeps a default for when it is not"),
             });
         }
-        self.names.set(name, meaning, Some(at));
+        self.names.set(name, value, Some(at));
         Ok(name)
     }
 
     /// A label here.
     pub(crate) fn define_label(&mut self, text: &str, at: At) {
         let here = self.location();
-        let meaning = match self.section {
-            Section::Code => Meaning::Code(here),
-            Section::Buffer => Meaning::Buffer(here),
+        let value = match self.section {
+            Section::Code => SymbolValue::Code(here),
+            Section::Buffer => SymbolValue::Buffer(here),
         };
         let text: Rc<str> = if text.starts_with(|c: char| c.is_ascii_digit()) {
             let count = self.numeric.entry(text.into()).or_insert(0);
@@ -73,7 +73,7 @@ impl Assembler<'_> {
         } else {
             text.into()
         };
-        if let Err(problem) = self.define(&text, at, meaning) {
+        if let Err(problem) = self.define(&text, at, value) {
             self.messages.add(problem);
         }
     }
@@ -93,26 +93,27 @@ impl Assembler<'_> {
     /// `.equ name, expression`
     pub(crate) fn define_constant(&mut self, cursor: &mut Cursor) -> Parsed<()> {
         let (text, at) = cursor.name("a name")?;
-        let value = cursor.expect(",").and_then(|()| self.expression(cursor)).and_then(|e| cursor.end().map(|_| e));
-        let meaning = match &value {
-            Err(_) => Meaning::Broken,
+        let expression =
+            cursor.expect(",").and_then(|()| self.expression(cursor)).and_then(|e| cursor.end().map(|_| e));
+        let value = match &expression {
+            Err(_) => SymbolValue::Broken,
             Ok(expression) => self.constant(expression),
         };
-        self.named = Some(self.define(text, at, meaning)?);
-        value.map(|_| ())
+        self.named = Some(self.define(text, at, value)?);
+        expression.map(|_| ())
     }
 
-    fn constant(&mut self, expression: &Expression) -> Meaning {
+    fn constant(&mut self, expression: &Expression) -> SymbolValue {
         match self.evaluate(expression) {
-            Ok(value) => Meaning::Constant(value),
+            Ok(value) => SymbolValue::Constant(value),
             Err(Failure::Later(..)) => {
                 let mut expression = expression.clone();
                 self.settle(&mut expression);
-                Meaning::Pending(expression.into())
+                SymbolValue::Pending(expression.into())
             }
             Err(failure) => {
                 self.report_failure(failure);
-                Meaning::Broken
+                SymbolValue::Broken
             }
         }
     }
@@ -128,8 +129,8 @@ impl Assembler<'_> {
             let is_first = self.names.find(text).is_none();
             if is_first && matches!(self.evaluate(&expression), Err(Failure::Later(..))) {
                 // Set from what is defined further on: a constant, and a second `.set` is refused.
-                let meaning = self.constant(&expression);
-                self.named = Some(self.define(text, at, meaning)?);
+                let value = self.constant(&expression);
+                self.named = Some(self.define(text, at, value)?);
                 return Ok(None);
             }
             self.value_now(&expression)
@@ -152,7 +153,7 @@ impl Assembler<'_> {
         self.check_name(text, at)?;
         let name = self.names.intern(text);
         if self.names.get(name).is_none() {
-            self.names.set(name, Meaning::Broken, Some(at));
+            self.names.set(name, SymbolValue::Broken, Some(at));
         }
         Ok(())
     }
@@ -262,15 +263,15 @@ impl Assembler<'_> {
     pub(crate) fn resolve_entry(&mut self) {
         let words = self.program.words.len() as i64;
         let Some(expression) = self.entry.take() else {
-            let start = ["start", "main"].into_iter().find_map(|text| match self.names.find(text)?.meaning {
-                Meaning::Code(address) => Some(address as u32),
+            let start = ["start", "main"].into_iter().find_map(|text| match self.names.find(text)?.value {
+                SymbolValue::Code(address) => Some(address as u32),
                 _ => None,
             });
             self.program.entry = start.filter(|&address| i64::from(address) < words).unwrap_or(0);
             return;
         };
         let is_data = matches!(expression.steps[..], [(Step::Symbol(name), _)]
-            if matches!(self.names.get(name).map(|s| &s.meaning), Some(Meaning::Buffer(_))));
+            if matches!(self.names.get(name).map(|s| &s.value), Some(SymbolValue::Buffer(_))));
         match self.evaluate(&expression) {
             Ok(address) if !is_data && (0..words).contains(&address) => self.program.entry = address as u32,
             Ok(_) => {

@@ -9,7 +9,7 @@ use crate::expression::{Expression, Step, has_fixed};
 use crate::function::Function;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::operator::{Checked, OVERFLOW};
-use crate::symbol::{Meaning, Name};
+use crate::symbol::{Name, SymbolValue};
 
 /// Why an expression has no value.
 #[derive(Debug)]
@@ -103,12 +103,12 @@ impl Assembler<'_> {
 
     fn symbol_value(&self, name: Name, step: &Step, at: At) -> Result<i64, Failure> {
         let later = || Failure::Later(step.clone(), at);
-        match self.names.get(name).map(|symbol| &symbol.meaning) {
+        match self.names.get(name).map(|symbol| &symbol.value) {
             None => self.names.format(name).map(i64::from).ok_or_else(later),
-            Some(Meaning::Code(value) | Meaning::Buffer(value) | Meaning::Constant(value)) => Ok(*value),
-            Some(Meaning::Pending(_)) => Err(later()),
-            Some(Meaning::Broken) => Err(Failure::Reported),
-            Some(Meaning::Variable(value, times)) => {
+            Some(SymbolValue::Code(value) | SymbolValue::Buffer(value) | SymbolValue::Constant(value)) => Ok(*value),
+            Some(SymbolValue::Pending(_)) => Err(later()),
+            Some(SymbolValue::Broken) => Err(Failure::Reported),
+            Some(SymbolValue::Variable(value, times)) => {
                 if self.is_last_pass && *times > 1 {
                     let text = self.names.text(name);
                     return Err(Failure::Wrong(
@@ -125,7 +125,7 @@ impl Assembler<'_> {
     pub(crate) fn settle(&self, expression: &mut Expression) {
         for (step, _) in &mut expression.steps {
             if let Step::Symbol(name) = step
-                && let Some(Meaning::Variable(value, _)) = self.names.get(*name).map(|symbol| &symbol.meaning)
+                && let Some(SymbolValue::Variable(value, _)) = self.names.get(*name).map(|symbol| &symbol.value)
             {
                 *step = Step::Number(*value);
             }
@@ -191,7 +191,7 @@ impl Assembler<'_> {
         let waiting: Vec<Name> = self
             .names
             .symbols()
-            .filter(|(_, _, symbol)| matches!(symbol.meaning, Meaning::Pending(_)))
+            .filter(|(_, _, symbol)| matches!(symbol.value, SymbolValue::Pending(_)))
             .map(|(name, ..)| name)
             .collect();
         let mut visited = HashSet::new();
@@ -204,14 +204,14 @@ impl Assembler<'_> {
                 };
                 if is_visited {
                     open.pop();
-                    let meaning = match self.evaluate(&expression) {
-                        Ok(value) => Meaning::Constant(value),
+                    let value = match self.evaluate(&expression) {
+                        Ok(value) => SymbolValue::Constant(value),
                         Err(failure) => {
                             self.report_failure(failure);
-                            Meaning::Broken
+                            SymbolValue::Broken
                         }
                     };
-                    self.names.set(name, meaning, at);
+                    self.names.set(name, value, at);
                     continue;
                 }
                 open.last_mut().expect("not empty").1 = true;
@@ -229,7 +229,7 @@ impl Assembler<'_> {
                             Problem::new(explain::CYCLE, message, *step_at, "needs its own value")
                                 .also(other, "defined here"),
                         );
-                        self.names.set(*used, Meaning::Broken, other);
+                        self.names.set(*used, SymbolValue::Broken, other);
                     } else {
                         open.push((*used, false));
                     }
@@ -240,8 +240,8 @@ impl Assembler<'_> {
 
     fn pending(&self, name: Name) -> Option<(Rc<Expression>, Option<At>)> {
         match self.names.get(name) {
-            Some(symbol) => match &symbol.meaning {
-                Meaning::Pending(expression) => Some((expression.clone(), symbol.at)),
+            Some(symbol) => match &symbol.value {
+                SymbolValue::Pending(expression) => Some((expression.clone(), symbol.at)),
                 _ => None,
             },
             None => None,

@@ -6,7 +6,7 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::decimal::Decimal;
 use crate::explain;
-use crate::function::{Argument, FUNCTIONS, Function, is_function};
+use crate::function::{FUNCTIONS, Function, Parameters, is_function};
 use crate::limits::PARENTHESES;
 use crate::message::{At, Parsed, Problem};
 use crate::operator::Binary;
@@ -282,7 +282,7 @@ impl Assembler<'_> {
         }
         let described = FUNCTIONS.iter().find(|function| function.name == text).expect("only called for functions");
         let function = match described.argument {
-            Argument::Numbers(function, count) => {
+            Parameters::Numbers(function, count) => {
                 for argument in 0..count {
                     if argument > 0 {
                         cursor.expect(",")?;
@@ -298,7 +298,7 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    fn name_function(&mut self, argument: Argument, cursor: &mut Cursor) -> Parsed<Step> {
+    fn name_function(&mut self, argument: Parameters, cursor: &mut Cursor) -> Parsed<Step> {
         let (name, at) = match cursor.peek() {
             Some(token) if token.kind == Kind::Directive => {
                 cursor.skip();
@@ -307,12 +307,12 @@ impl Assembler<'_> {
             _ => cursor.name("a name")?,
         };
         match argument {
-            Argument::Size => Ok(Step::Size(self.names.intern(name))),
-            Argument::Field if !name.contains('.') => {
+            Parameters::Size => Ok(Step::Size(self.names.intern(name))),
+            Parameters::Field if !name.contains('.') => {
                 let message = "`offsetof` takes a field";
                 Err(Problem::new(explain::SYNTAX, message, at, "expected `structure.field`"))
             }
-            Argument::Field => Ok(Step::Symbol(self.names.intern(name))),
+            Parameters::Field => Ok(Step::Symbol(self.names.intern(name))),
             _ => Ok(Step::Number(self.is_defined(name).into())),
         }
     }

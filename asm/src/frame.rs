@@ -9,7 +9,7 @@ use crate::explain;
 use crate::limits::{EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
 use crate::line::{Line, Substitution};
 use crate::message::{At, Call, Problem, Via};
-use crate::symbol::{Meaning, Name};
+use crate::symbol::{Name, SymbolValue};
 use crate::token::{continues_name, starts_comment, starts_name};
 
 /// What a frame repeats.
@@ -204,7 +204,7 @@ impl Assembler<'_> {
                 *index += 1;
                 if let Some(name) = *counter {
                     let (index, at) = (*index, self.names.get(name).and_then(|symbol| symbol.at));
-                    self.names.set(name, Meaning::Variable(index, 2), at);
+                    self.names.set(name, SymbolValue::Variable(index, 2), at);
                     let via = Via::Pass(self.names.text(name).clone(), index.to_string().into());
                     frame.context = Some(self.messages.enter(Call { at: *header, via }));
                 }

@@ -16,7 +16,7 @@ pub(crate) enum Function {
 
 /// What a function takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Argument {
+pub(crate) enum Parameters {
     /// So many numbers.
     Numbers(Function, usize),
     /// A structure or a field.
@@ -36,7 +36,7 @@ pub struct Described {
     pub usage: &'static str,
     /// Its value, in a sentence.
     pub doc: &'static str,
-    pub(crate) argument: Argument,
+    pub(crate) argument: Parameters,
 }
 
 macro_rules! functions {
@@ -48,15 +48,15 @@ macro_rules! functions {
 }
 
 functions! {
-    "sizeof" "sizeof(structure)" Argument::Size, "Octets of a structure, or of a field and all its elements.";
-    "offsetof" "offsetof(structure.field)" Argument::Field, "Octets before a field: the same as `structure.field`.";
-    "defined" "defined(name)" Argument::Defined, "1 when the name is defined above, else 0.";
-    "min" "min(a, b)" Argument::Numbers(Function::Min, 2), "The smaller number.";
-    "max" "max(a, b)" Argument::Numbers(Function::Max, 2), "The larger number.";
-    "abs" "abs(a)" Argument::Numbers(Function::Abs, 1), "The absolute value.";
-    "bits" "bits(a)" Argument::Numbers(Function::Bits, 1), "The number of bits that `a` needs, which is not negative; 0 for 0.";
-    "low" "low(a)" Argument::Numbers(Function::Low, 1), "The low 16 bits of a number of 32 bits, with their sign: what `movi` takes.";
-    "high" "high(a)" Argument::Numbers(Function::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
+    "sizeof" "sizeof(structure)" Parameters::Size, "Octets of a structure, or of a field and all its elements.";
+    "offsetof" "offsetof(structure.field)" Parameters::Field, "Octets before a field: the same as `structure.field`.";
+    "defined" "defined(name)" Parameters::Defined, "1 when the name is defined above, else 0.";
+    "min" "min(a, b)" Parameters::Numbers(Function::Min, 2), "The smaller number.";
+    "max" "max(a, b)" Parameters::Numbers(Function::Max, 2), "The larger number.";
+    "abs" "abs(a)" Parameters::Numbers(Function::Abs, 1), "The absolute value.";
+    "bits" "bits(a)" Parameters::Numbers(Function::Bits, 1), "The number of bits that `a` needs, which is not negative; 0 for 0.";
+    "low" "low(a)" Parameters::Numbers(Function::Low, 1), "The low 16 bits of a number of 32 bits, with their sign: what `movi` takes.";
+    "high" "high(a)" Parameters::Numbers(Function::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
 }
 
 /// Whether the text is a function's name.

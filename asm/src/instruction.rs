@@ -10,7 +10,7 @@ use crate::explain;
 use crate::expression::Expression;
 use crate::message::{Among, At, Problem};
 use crate::operand::{Operand, Written, file_name};
-use crate::symbol::Meaning;
+use crate::symbol::SymbolValue;
 
 /// An operand as a row takes it.
 #[derive(Clone, Debug)]
@@ -270,7 +270,7 @@ impl Assembler<'_> {
     pub(crate) fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, Failure> {
         if let Some(name) = expression.symbol()
             && let Some(symbol) = self.names.get(name)
-            && matches!(symbol.meaning, Meaning::Buffer(_))
+            && matches!(symbol.value, SymbolValue::Buffer(_))
         {
             let text = self.names.text(name);
             let message = format!("`{text}` is an address in the buffer, not in the code");

@@ -89,10 +89,10 @@ fn made(attempt: &Attempt, record: &Record) -> Vec<String> {
     }
 }
 
-type At = (u16, u32);
+type SourceLine = (u16, u32);
 
 /// The messages in short, by line.
-fn line_messages(attempt: &Attempt) -> Vec<(At, String)> {
+fn line_messages(attempt: &Attempt) -> Vec<(SourceLine, String)> {
     let index = |source: &Arc<Source>| attempt.program.sources.iter().position(|other| Arc::ptr_eq(other, source));
     let one = |message: &messages::Diagnostic| {
         let at = message.place.as_ref().and_then(|(place, _)| {

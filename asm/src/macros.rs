@@ -9,7 +9,7 @@ use crate::frame::{Frame, Origin, Repeat, leading_directive};
 use crate::limits::LINES;
 use crate::line::{Line, Substitution};
 use crate::message::{At, Call, Parsed, Problem, Via};
-use crate::symbol::Meaning;
+use crate::symbol::SymbolValue;
 use crate::token::{Kind, Token, tokens};
 
 /// A parameter of a macro.
@@ -358,16 +358,16 @@ impl Assembler<'_> {
     pub(crate) fn set_variable(&mut self, text: &str, at: At, value: i64) -> Parsed<()> {
         self.check_name(text, at)?;
         let name = self.names.intern(text);
-        let times = match self.names.get(name).map(|symbol| (&symbol.meaning, symbol.at)) {
+        let times = match self.names.get(name).map(|symbol| (&symbol.value, symbol.at)) {
             None => 0,
-            Some((Meaning::Variable(_, times), _)) => *times,
-            Some((Meaning::Broken, _)) => 0,
+            Some((SymbolValue::Variable(_, times), _)) => *times,
+            Some((SymbolValue::Broken, _)) => 0,
             Some((_, other)) => {
                 let message = format!("`{text}` cannot be set: it is no variable");
                 return Err(Problem::new(explain::DUPLICATE, message, at, "set here").also(other, "defined here"));
             }
         };
-        self.names.set(name, Meaning::Variable(value, times.saturating_add(1)), Some(at));
+        self.names.set(name, SymbolValue::Variable(value, times.saturating_add(1)), Some(at));
         Ok(())
     }
 }

@@ -8,7 +8,7 @@ use messages::Source;
 
 use crate::Assembled;
 use crate::assembler::Assembler;
-use crate::symbol::Meaning;
+use crate::symbol::SymbolValue;
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -99,11 +99,11 @@ impl Assembler<'_> {
         let starts: Vec<Vec<usize>> = self.program.sources.iter().map(starts).collect();
         let mut entries = Vec::new();
         for (_, text, symbol) in self.names.symbols() {
-            let (kind, value) = match symbol.meaning {
-                Meaning::Code(value) => (NameKind::Code, value),
-                Meaning::Buffer(value) => (NameKind::Buffer, value),
-                Meaning::Constant(value) | Meaning::Variable(value, _) => (NameKind::Constant, value),
-                Meaning::Pending(_) | Meaning::Broken => continue,
+            let (kind, value) = match symbol.value {
+                SymbolValue::Code(value) => (NameKind::Code, value),
+                SymbolValue::Buffer(value) => (NameKind::Buffer, value),
+                SymbolValue::Constant(value) | SymbolValue::Variable(value, _) => (NameKind::Constant, value),
+                SymbolValue::Pending(_) | SymbolValue::Broken => continue,
             };
             if !text.contains(['$', '#']) {
                 let place = symbol.at.map(|at| {

@@ -9,7 +9,7 @@ use crate::frame::{Origin, leading_directive};
 use crate::line::Line;
 use crate::listing::Record;
 use crate::message::{At, Parsed, Problem};
-use crate::symbol::Meaning;
+use crate::symbol::SymbolValue;
 use crate::token::{Kind, tokens};
 
 impl Assembler<'_> {
@@ -21,14 +21,16 @@ impl Assembler<'_> {
         self.read_line(line);
         // The record has the section behind the line, so that a line which changes it shows no address.
         let (section, end) = (self.section, self.location() as u32);
-        let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.meaning.clone()));
+        let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.value.clone()));
         let record = &mut self.records[place];
         if record.section == section {
             record.made.end = end;
         }
         match (value, self.named) {
-            (Some(Some(Meaning::Constant(value) | Meaning::Variable(value, _))), _) => record.value = Some(value),
-            (Some(Some(Meaning::Pending(_))), Some(name)) => self.pending_records.push((place, name)),
+            (Some(Some(SymbolValue::Constant(value) | SymbolValue::Variable(value, _))), _) => {
+                record.value = Some(value)
+            }
+            (Some(Some(SymbolValue::Pending(_))), Some(name)) => self.pending_records.push((place, name)),
             _ => {}
         }
     }

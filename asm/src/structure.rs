@@ -6,7 +6,7 @@ use crate::data::next_multiple;
 use crate::explain;
 use crate::limits::STRUCTURE;
 use crate::message::{At, Parsed, Problem};
-use crate::symbol::Meaning;
+use crate::symbol::SymbolValue;
 
 /// The structure that is being described.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl Assembler<'_> {
         let octets = *size.as_ref().unwrap_or(&0);
         open.size = (offset + octets).min(STRUCTURE);
         if !open.name.is_empty() {
-            let name = self.define(&name, name_at, Meaning::Constant(offset))?;
+            let name = self.define(&name, name_at, SymbolValue::Constant(offset))?;
             self.named = Some(name);
             self.names.set_size(name, octets);
         }

@@ -12,7 +12,7 @@ pub(crate) struct Name(u32);
 
 /// What a name stands for.
 #[derive(Clone, Debug)]
-pub(crate) enum Meaning {
+pub(crate) enum SymbolValue {
     /// Word address of code.
     Code(i64),
     /// Octet address in the buffer.
@@ -30,7 +30,7 @@ pub(crate) enum Meaning {
 /// A definition with its place; names from outside have none.
 #[derive(Clone, Debug)]
 pub(crate) struct Symbol {
-    pub meaning: Meaning,
+    pub value: SymbolValue,
     pub at: Option<At>,
 }
 
@@ -74,8 +74,8 @@ impl Names {
     }
 
     /// Defines a name or changes its definition.
-    pub fn set(&mut self, name: Name, meaning: Meaning, at: Option<At>) {
-        self.symbols[name.0 as usize] = Some(Symbol { meaning, at });
+    pub fn set(&mut self, name: Name, value: SymbolValue, at: Option<At>) {
+        self.symbols[name.0 as usize] = Some(Symbol { value, at });
     }
 
     /// Fraction bits of the format of that name.

@@ -1,7 +1,7 @@
 //! Meanings of the rows of the ray unit. The decisions are those of [`isa::number::ray`]; here they meet registers.
 
 use isa::number::ray::{
-    BoxEnd, Plane, Ray, Step, TriangleEnd, across_box, exit_face, is_surely_before, ratio, step, triangle,
+    BoxEnd, Plane, Ray, SplitEnd, TriangleEnd, across_box, exit_face, is_surely_before, ratio, step, triangle,
 };
 use isa::number::{Arithmetic, Vector};
 use isa::table::{Done, outcome};
@@ -57,11 +57,11 @@ impl<T: Arithmetic> RayRoom for T {
         let found = step(&ray, split, entry, leave);
         let (first, second) = if found.is_right_first(&ray, split.axis) { (right, left) } else { (left, right) };
         match found {
-            Step::Leaf => (left, -1, Outcome::Leaf),
-            Step::Behind => (first, 0, Outcome::Behind),
-            Step::Passed => (first, 0, Outcome::Passed),
-            Step::Near => (first, 0, Outcome::Near),
-            Step::Both => (first, second, Outcome::Both),
+            SplitEnd::Leaf => (left, -1, Outcome::Leaf),
+            SplitEnd::Behind => (first, 0, Outcome::Behind),
+            SplitEnd::Passed => (first, 0, Outcome::Passed),
+            SplitEnd::Near => (first, 0, Outcome::Near),
+            SplitEnd::Both => (first, second, Outcome::Both),
         }
     }
 

@@ -75,45 +75,49 @@ impl AnyOutcome for Each {
     }
 }
 
+/// An enum with the outcomes of an instruction, numbered in their order.
+macro_rules! outcome_enum {
+    ($type:ident $name:ident [$($outcome:ident)+]) => {
+        #[doc = concat!("Outcomes of `", stringify!($name), "`.")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $type {
+            $(#[doc = concat!("Outcome `", stringify!($outcome), "`.")] $outcome,)+
+        }
+        impl crate::table::AnyOutcome for $type {
+            const OUTCOMES: usize = [$(stringify!($outcome)),+].len();
+            #[inline]
+            fn index(self) -> usize { self as usize }
+            #[inline]
+            fn units(self) -> u32 { 0 }
+        }
+    };
+}
+
+/// The module of an instruction with the type of its outcome: `Done`, `Each`, an enum, or an enum with a number of units.
 macro_rules! outcome_type {
     ($name:ident [Done($($class:ident $n:literal),*)]) => {
-        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        #[doc = concat!("The outcome of `", stringify!($name), "`.")]
         pub mod $name {
             pub use super::super::Done as Outcome;
         }
     };
     ($name:ident [Done($($class:ident $n:literal),* ; each $($unit:ident $m:literal),+)]) => {
-        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        #[doc = concat!("The outcome of `", stringify!($name), "`.")]
         pub mod $name {
             pub use super::super::Each as Outcome;
         }
     };
     ($name:ident [$($outcome:ident($($class:ident $n:literal),*)),+]) => {
-        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        #[doc = concat!("Outcomes of `", stringify!($name), "`.")]
         pub mod $name {
-            #[doc = concat!("How `", stringify!($name), "` ends.")]
-            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub enum Outcome {
-                $(#[doc = concat!("Outcome `", stringify!($outcome), "`.")] $outcome,)+
-            }
-            impl crate::table::AnyOutcome for Outcome {
-                const OUTCOMES: usize = [$(stringify!($outcome)),+].len();
-                #[inline]
-                fn index(self) -> usize { self as usize }
-                #[inline]
-                fn units(self) -> u32 { 0 }
-            }
+            outcome_enum! { Outcome $name [$($outcome)+] }
         }
     };
     ($name:ident [$($outcome:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+]) => {
-        #[doc = concat!("How `", stringify!($name), "` ends.")]
+        #[doc = concat!("Outcomes of `", stringify!($name), "`.")]
         pub mod $name {
-            #[doc = concat!("The ways in which `", stringify!($name), "` ends.")]
-            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub enum Way {
-                $(#[doc = concat!("Outcome `", stringify!($outcome), "`.")] $outcome,)+
-            }
-            #[doc = concat!("How `", stringify!($name), "` ends, with the number of units.")]
+            outcome_enum! { Way $name [$($outcome)+] }
+            #[doc = concat!("An outcome of `", stringify!($name), "`, with its number of units.")]
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
             pub struct Outcome {
                 /// Which outcome.
@@ -122,7 +126,7 @@ macro_rules! outcome_type {
                 pub units: u32,
             }
             impl crate::table::AnyOutcome for Outcome {
-                const OUTCOMES: usize = [$(stringify!($outcome)),+].len();
+                const OUTCOMES: usize = <Way as crate::table::AnyOutcome>::OUTCOMES;
                 #[inline]
                 fn index(self) -> usize { self.way as usize }
                 #[inline]

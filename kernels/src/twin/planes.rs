@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use isa::number::ray::{BoxEnd, Plane, Ray, Step, across_box, step};
+use isa::number::ray::{BoxEnd, Plane, Ray, SplitEnd, across_box, step};
 use scenes::kdtree::Bounds;
 
 use super::stage::Node;
@@ -52,7 +52,7 @@ impl Iterator for Packets<'_> {
             let found = step(&self.ray, split, entry, self.exit());
             let (first, second) =
                 if found.is_right_first(&self.ray, axis) { (left + 1, left) } else { (left, left + 1) };
-            if found == Step::Both {
+            if found == SplitEnd::Both {
                 self.notes.push((split, second));
             }
             number = first;

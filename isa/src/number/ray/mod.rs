@@ -14,7 +14,7 @@ mod triangle;
 
 use super::Vector;
 pub use filter::triangle;
-pub use plane::{BoxEnd, Plane, Step, across_box, exit_face, is_surely_before, step};
+pub use plane::{BoxEnd, Plane, SplitEnd, across_box, exit_face, is_surely_before, step};
 pub use ratio::ratio;
 pub use triangle::{Meeting, TriangleEnd, exact_triangle};
 

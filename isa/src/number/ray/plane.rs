@@ -135,7 +135,7 @@ pub fn across_box(ray: &Ray, low: Vector, high: Vector) -> (Plane, Plane, BoxEnd
 
 /// Which sides of a split a ray visits between two planes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum SplitEnd {
     /// The node is a leaf: its plane has axis 3.
     Leaf,
     /// Only the far side, the one that the ray goes to: the split is met before the ray starts, or at its origin.
@@ -150,28 +150,28 @@ pub enum Step {
 
 /// How a ray that is between `entry` and `exit` meets a split.
 #[inline]
-pub fn step(ray: &Ray, split: Plane, entry: Plane, exit: Plane) -> Step {
+pub fn step(ray: &Ray, split: Plane, entry: Plane, exit: Plane) -> SplitEnd {
     if split.axis == TIME {
-        Step::Leaf
+        SplitEnd::Leaf
     } else if !split.is_ahead(ray) {
-        Step::Behind
+        SplitEnd::Behind
     } else if !entry.is_before(split, ray) {
-        Step::Passed
+        SplitEnd::Passed
     } else if !split.is_before(exit, ray) {
-        Step::Near
+        SplitEnd::Near
     } else {
-        Step::Both
+        SplitEnd::Both
     }
 }
 
-impl Step {
+impl SplitEnd {
     /// Whether the first side to visit is the one of larger coordinates; of a leaf it is none.
     #[inline]
     pub fn is_right_first(self, ray: &Ray, axis: usize) -> bool {
         match self {
-            Step::Leaf => false,
-            Step::Behind | Step::Passed => !is_backwards(ray, axis),
-            Step::Near | Step::Both => is_backwards(ray, axis),
+            SplitEnd::Leaf => false,
+            SplitEnd::Behind | SplitEnd::Passed => !is_backwards(ray, axis),
+            SplitEnd::Near | SplitEnd::Both => is_backwards(ray, axis),
         }
     }
 }

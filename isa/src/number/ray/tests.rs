@@ -224,18 +224,18 @@ proptest! {
         let entry = if starts { Plane::START } else { entry };
         let found = step(&ray, split, entry, exit);
         let expected = if moment(split).0 <= 0 {
-            Step::Behind
+            SplitEnd::Behind
         } else if !is_less(enters, moment(split)) {
-            Step::Passed
+            SplitEnd::Passed
         } else if is_less(moment(split), moment(exit)) {
-            Step::Both
+            SplitEnd::Both
         } else {
-            Step::Near
+            SplitEnd::Near
         };
         prop_assert_eq!(found, expected);
         // The side of the point between the planes that the ray visits first.
         let is_forwards = direction[split.axis] > 0;
-        let is_far = matches!(expected, Step::Behind | Step::Passed);
+        let is_far = matches!(expected, SplitEnd::Behind | SplitEnd::Passed);
         prop_assert_eq!(found.is_right_first(&ray, split.axis), is_forwards == is_far);
     }
 

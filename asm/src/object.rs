@@ -155,15 +155,15 @@ fn damaged_or(body: &[u8], check: &[u8], error: ObjectError) -> ObjectError {
     }
 }
 
-type Part<'a, T> = IResult<&'a [u8], T>;
+type Piece<'a, T> = IResult<&'a [u8], T>;
 
-fn text(input: &[u8]) -> Part<'_, Result<String, &'static str>> {
+fn text(input: &[u8]) -> Piece<'_, Result<String, &'static str>> {
     let (rest, octets) = length_data(le_u32).parse(input)?;
     Ok((rest, String::from_utf8(octets.to_vec()).map_err(|_| "a text is not UTF-8")))
 }
 
 /// A list of `count` items; memory grows with the file, not with the count.
-fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Part<'a, T>) -> Part<'a, Vec<T>> {
+fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Piece<'a, T>) -> Piece<'a, Vec<T>> {
     let mut items = Vec::with_capacity(count.min(input.len()));
     for _ in 0..count {
         let (rest, found) = item(input)?;
@@ -173,7 +173,7 @@ fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Par
     Ok((input, items))
 }
 
-fn parts(input: &[u8]) -> Part<'_, Result<Program, &'static str>> {
+fn parts(input: &[u8]) -> Piece<'_, Result<Program, &'static str>> {
     let (input, (reserved, entry, word_count)) = (le_u16, le_u32, le_u32).parse(input)?;
     let count = word_count as usize;
     let (input, octets) = take(4 * u64::from(word_count) as usize)(input)?;

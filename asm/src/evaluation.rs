@@ -89,7 +89,7 @@ impl Assembler<'_> {
                     let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
                     let a = pop();
                     let is_half = matches!(name, Function::Low | Function::High);
-                    if is_half && a > i32::MAX.into() && has_fixed(steps) {
+                    if is_half && a > i64::from(i32::MAX) && has_fixed(steps) {
                         let fits = Err((explain::RANGE, "the number does not fit 32 bits with its sign"));
                         checked(fits, &|| format!("of {a}"))?;
                     }

@@ -200,7 +200,8 @@ fn parts(input: &[u8]) -> Piece<'_, Result<Program, &'static str>> {
             }
             names.insert(name, value);
         }
-        let sources = sources.into_iter().map(|(name, text)| Ok(Arc::new(Source { name: name?, text: text? })));
+        let sources =
+            sources.into_iter().map(|(name, text)| Ok::<_, &str>(Arc::new(Source { name: name?, text: text? })));
         let regions = regions.into_iter().map(|(name, kind, parent)| match kind {
             0 | 1 => Ok(Region { name: name?, is_function: kind == 1, parent: region(parent) }),
             _ => Err("a region is of no known kind"),

@@ -39,7 +39,7 @@ impl Assembler<'_> {
     pub(crate) fn is_short_immediate(&self, expression: &Expression) -> bool {
         let [(_, letter)] = self.letters(expression)[..] else { return false };
         let (least, most) = self.letter_range(letter);
-        expression.symbol().is_some() && least >= i16::MIN.into() && most <= i16::MAX.into()
+        expression.symbol().is_some() && least >= i64::from(i16::MIN) && most <= i64::from(i16::MAX)
     }
 
     /// A number that may depend on one immediate of the row, by addition of and multiplication with constants.
@@ -93,7 +93,7 @@ impl Assembler<'_> {
         }
         for value in [least, most] {
             let result = line(value);
-            if result < range.0.into() || result > range.1.into() {
+            if result < i128::from(range.0) || result > i128::from(range.1) {
                 let message = format!(
                     "with {} = {value} this is {result}, beyond operand `{}` of `{}`",
                     letter as char, operand.letter as char, row.name

@@ -275,7 +275,7 @@ impl Assembler<'_> {
             };
             match number {
                 Ok(Immediate::Number(number))
-                    if operand.kind != Kind::Rel && !(range.0..=range.1).contains(&number.into()) =>
+                    if operand.kind != Kind::Rel && !(range.0..=range.1).contains(&i64::from(number)) =>
                 {
                     failures.push(Failure::Wrong(out_of_range(row, *operand, argument.at, number.into(), range)));
                 }

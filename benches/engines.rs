@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use emu::engine::EngineKind;
-use emu::machine::{self, Options};
+use emu::machine::Options;
 use kernels::KernelSet;
 use lancer::job::Job;
 use lancer::load::Load;
@@ -33,7 +33,7 @@ fn engines(criterion: &mut Criterion) {
             for engine in EngineKind::ALL {
                 let setup = load.setup(&job.machine, Options { engine, ..Options::default() });
                 group.bench_function(BenchmarkId::from_parameter(engine.name()), |bencher| {
-                    bencher.iter(|| machine::count(&setup, &load.memory).expect("it runs").expect("it is counted"));
+                    bencher.iter(|| emu::count(&setup, &load.memory).expect("it runs").expect("it is counted"));
                 });
             }
             group.finish();

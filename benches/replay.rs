@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, Options, Recorded};
+use emu::machine::{Config, Options};
+use emu::replay::Recorded;
 use lancer::job::Job;
 use lancer::load::Load;
 use scenes::generate;

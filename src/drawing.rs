@@ -90,7 +90,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let engine = setup.engine();
     let (frame, reference) = std::thread::scope(|scope| {
         let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
-        let frame = timed(|| machine::run(&setup, load.memory.clone(), progress));
+        let frame = timed(|| emu::run(&setup, load.memory.clone(), progress));
         (frame, beside.join().expect("the reference does not panic"))
     });
     let (frame, run) = frame;

@@ -10,7 +10,12 @@ mod order;
 pub mod profile;
 pub mod quantity;
 pub mod registers;
+pub mod replay;
+mod run;
 mod splice;
 pub mod tally;
 pub mod timing;
 pub mod trap;
+
+pub use replay::count;
+pub use run::{run, run_all, step};

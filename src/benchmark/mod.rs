@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use emu::code::Code;
 use emu::engine::EngineKind;
-use emu::machine::{self, Options, Setup};
+use emu::machine::{Options, Setup};
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::SceneFeatures;
@@ -92,8 +92,8 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let modes = job.machine.arithmetic.modes();
     let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
     let crop = load.build.crop;
-    let count = |setup: &Setup| -> Result<machine::Count, Failure> {
-        let count = machine::count(setup, &load.memory)?;
+    let count = |setup: &Setup| -> Result<emu::replay::Count, Failure> {
+        let count = emu::count(setup, &load.memory)?;
         count.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };
     let counted = count(&setup(EngineKind::Fast))?;
@@ -110,7 +110,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 Runner::Fast => timed(|| count(&setup(EngineKind::Fast)).map(drop))?,
                 Runner::Checked => timed(|| count(&setup(EngineKind::Checked)).map(drop))?,
                 Runner::FastClocks => {
-                    let run = || machine::run(&setup(EngineKind::Fast), load.memory.clone(), &mut |_| {});
+                    let run = || emu::run(&setup(EngineKind::Fast), load.memory.clone(), &mut |_| {});
                     timed(|| run().map(drop).map_err(Failure::from))?
                 }
                 Runner::Twin => timed(|| twin(&image, &features, &crop, job, modes))?,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use emu::machine::trace::Window;
-use emu::machine::{self, Config, Frame, Options};
+use emu::machine::{Config, Frame, Options};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 
@@ -130,7 +130,7 @@ fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal
     let crop = load.build.crop;
     let bar = terminal.progress("pixels", u64::from(crop.width) * u64::from(crop.height));
     let setup = load.setup(config, Options { has_items: true, window, engine: load.engine, ..Options::default() });
-    let frame = machine::run(&setup, load.memory.clone(), &mut |done| bar.set_position(done));
+    let frame = emu::run(&setup, load.memory.clone(), &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     Ok(frame?)
 }

@@ -126,7 +126,7 @@ pub fn measure(
     let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
     let Some(first) = configs.first() else { return Err(no_machine()) };
     let setup = load.setup(first, Options { engine: load.engine, ..Options::default() });
-    let frames = machine::run_all(&setup, &configs, &load.memory, progress);
+    let frames = emu::run_all(&setup, &configs, &load.memory, progress);
     let frames = frames.into_iter().collect::<Result<Vec<Frame>, _>>()?;
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
         let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();

@@ -32,7 +32,7 @@ fn the_table_and_the_chart_name_all_runners() {
     let text = session.succeed("bench triangle --size 4x3 --runs 1 --svg bench.svg");
     let chart = String::from_utf8(session.read("bench.svg")).expect("text");
     for name in ["fast", "fast, clocks", "checked", "native twin", "native f64"] {
-        assert!(text.contains(&format!("| {name:>15} |")) && chart.contains(name), "{name} in\n{text}");
+        assert!(text.contains(&format!("| {name:>12} |")) && chart.contains(name), "{name} in\n{text}");
     }
     session.fail("bench nothing.dsc", 1, "nothing.dsc");
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::engine::EngineKind;
-use emu::machine::{self, Frame, Options};
+use emu::machine::{Frame, Options};
 use kernels::{Function, KernelSet};
 use lancer::job::Job;
 use lancer::load::Load;
@@ -85,7 +85,7 @@ fn all_ways_to_run_an_example_agree() {
         let run = |engine, steps: bool| -> Frame {
             let options = Options { engine, has_profile: true, has_items: true, ..Options::default() };
             let setup = load.setup(&job.machine, options);
-            let run = if steps { machine::step } else { machine::run };
+            let run = if steps { emu::step } else { emu::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
         assert_eq!(

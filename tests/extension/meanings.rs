@@ -344,7 +344,7 @@ fn each_work_item_begins_with_the_state_after_reset_unless_it_is_kept() {
             options: Default::default(),
         };
         let memory = Memory::new(vec![0; 64]);
-        let frame = machine::run(&setup, memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
+        let frame = emu::run(&setup, memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
         let words: Vec<i32> = (0..6).map(|at| frame.memory.word(4 * at).unwrap()).collect();
         if keeps {
             assert_eq!(words[..4], [0xa300, 0x5180, 0x28c0, 0x1460]);
@@ -352,7 +352,7 @@ fn each_work_item_begins_with_the_state_after_reset_unless_it_is_kept() {
         } else {
             assert_eq!(words, [0xa300, 0x5180, 0xa300, 0x5180, 0xa300, 0x5180]);
             assert_eq!(frame.method.name(), "replayed");
-            let stepped = machine::step(&setup, memory, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
+            let stepped = emu::step(&setup, memory, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
             assert_eq!(machine::Frame { method: frame.method, ..stepped }, frame);
         }
     }

@@ -35,7 +35,7 @@ impl Subject {
             kinds: Vec::new(),
             options: emu::machine::Options::default(),
         };
-        let frame = match emu::machine::run(&setup, Memory::new(self.image.bytes.clone()), &mut |_| {}) {
+        let frame = match emu::run(&setup, Memory::new(self.image.bytes.clone()), &mut |_| {}) {
             Ok(frame) => frame,
             Err(Failure::Trap(trap)) if trap.kind == Fault::User(STUCK) => return None,
             Err(failure) => panic!("{failure}"),

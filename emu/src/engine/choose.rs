@@ -2,7 +2,7 @@
 
 use super::fast::Fast;
 use super::host::HostSimd;
-use super::state::{Pause, Seat, State};
+use super::state::{CoreId, Pause, State};
 use super::taint::Origin;
 use super::{Engine, Refusal, Stopped, Timeless, Wire, interpreter};
 use crate::code::Code;
@@ -102,7 +102,7 @@ macro_rules! engines {
             #[inline(always)]
             fn run<L: Wire, O: RunObserver>(
                 &mut self,
-                seat: Seat,
+                seat: CoreId,
                 state: &mut State,
                 link: &mut L,
                 origin: &mut Origin,
@@ -167,7 +167,7 @@ impl Runner<'_> {
     /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`Runner::fold`].
     pub fn run<T: Watch, O: RunObserver>(
         &mut self,
-        seat: Seat,
+        seat: CoreId,
         state: &mut State,
         arithmetic: &T,
         link: &mut dyn Link,
@@ -189,7 +189,7 @@ impl Runner<'_> {
     #[inline]
     pub(crate) fn run_ahead<L: Wire, O: RunObserver>(
         &mut self,
-        seat: Seat,
+        seat: CoreId,
         state: &mut State,
         link: &mut L,
         origin: &mut Origin,

@@ -4,7 +4,7 @@
 use isa::Op;
 use isa::table::AnyOutcome;
 
-use super::state::{Pause, Seat, State};
+use super::state::{CoreId, Pause, State};
 use crate::code::Code;
 use crate::exec::{
     BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom,
@@ -30,7 +30,7 @@ enum After {
 /// without a profile pays nothing for it.
 pub fn run<T: Watch, O: Observer>(
     code: &Code,
-    seat: Seat,
+    seat: CoreId,
     state: &mut State,
     arithmetic: &T,
     link: &mut dyn Link,

@@ -15,7 +15,7 @@ pub use choose::{Choice, Demand, EngineKind, Runner, Wish, choose};
 pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;
-pub use state::{Pause, Seat, State};
+pub use state::{CoreId, Pause, State};
 pub(crate) use taint::{Independence, Origin};
 
 use crate::exec::{Link, Message, methods};
@@ -44,7 +44,7 @@ pub trait Engine<'a>: Sized {
     /// request of when that is made.
     fn run<L: Wire, O: RunObserver>(
         &mut self,
-        seat: Seat,
+        seat: CoreId,
         state: &mut State,
         link: &mut L,
         origin: &mut Origin,

@@ -48,7 +48,7 @@ impl State {
 
 /// Who and where a core is, and how long it may run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Seat {
+pub struct CoreId {
     /// Its number.
     pub core: u32,
     /// Number of cores, the main processor not counted.

@@ -2,7 +2,6 @@
 
 use super::arbiter::{Arbiter, Claims, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
-use super::reel::{Alone, Reel};
 use super::waits::Waits;
 use crate::quantity::{Clocks, Octets};
 
@@ -103,15 +102,62 @@ impl Lengths {
     }
 }
 
-/// A bus with its arbiter and the requests that wait for it. It knows nothing of what is transferred, so it serves the
-/// stepped machine and a replay of recorded transfers alike.
+/// A master of the bus that may go from one transfer to the next by itself.
+pub trait NextTransfer: Default {
+    /// Goes on from a transfer that has ended to the next one, and yields the clocks between them and the first burst; `None` when something else
+    /// is next.
+    fn next_transfer(&mut self, lengths: &Lengths) -> Option<(Clocks, Burst)>;
+
+    /// Goes on while it asks before `limit`, where nobody else does, so that it never waits; with `first`, the burst that it asks for from
+    /// `arrival` on. Where something else than a transfer comes next, the last burst before that is left. A master may leave all bursts.
+    fn go_alone(&mut self, lengths: &Lengths, first: Burst, arrival: Clocks, limit: Clocks) -> Alone {
+        let _ = (lengths, limit);
+        Alone::none(first, arrival)
+    }
+
+    /// Is told how long it waited for a grant.
+    fn note_wait(&mut self, waited: Clocks);
+
+    /// The longest wait for a grant since this was asked last.
+    fn take_longest_wait(&mut self) -> Clocks;
+}
+
+/// Bursts of a master while nobody else asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Alone {
+    /// The burst that it asks for next.
+    pub burst: Burst,
+    /// When it asks for that.
+    pub arrival: Clocks,
+    /// When the last one ended.
+    pub free: Clocks,
+    /// How long all held the bus.
+    pub held: Clocks,
+    /// What they moved.
+    pub octets: Octets,
+    /// Transfers that ended.
+    pub transfers: u64,
+    /// Bursts, each granted at once.
+    pub bursts: u64,
+}
+
+impl Alone {
+    /// No bursts before the one that is asked for.
+    pub fn none(burst: Burst, arrival: Clocks) -> Alone {
+        let none = Clocks(0);
+        Alone { burst, arrival, free: none, held: none, octets: Octets(0), transfers: 0, bursts: 0 }
+    }
+}
+
+/// A bus with its arbiter and the requests that wait for it. Nothing is known here of what is transferred, nor whether a master executes a
+/// program or replays what one has done.
 pub struct Bus {
     /// How long bursts are.
     pub lengths: Lengths,
     arbiter: Box<dyn Arbiter>,
-    free_at: Clocks,
+    pub(crate) free_at: Clocks,
     not_before: Clocks,
-    claims: Claims,
+    pub(crate) claims: Claims,
     used: BusUse,
     waits: Vec<Waits>,
     /// The masters twice round the circle, and more: from each one on, the ranks of all.
@@ -175,29 +221,29 @@ impl Bus {
         Some(grant)
     }
 
-    /// Decides as long as that is before a clock and concerns nobody but the bus and reels, and yields the grant that ends a transfer of a master
+    /// Decides as long as that is before a clock and concerns nobody but the bus and its masters, and yields the grant that ends a transfer of a master
     /// who has something else to do then.
-    pub fn serve(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+    pub fn serve(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
         let is_ranked =
             self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.claims.are_before(1 << 57);
         match (is_ranked, self.claims.masters()) {
-            (true, 0..=2) => self.serve_ranked::<2>(reels, until),
-            (true, 3) => self.serve_ranked::<3>(reels, until),
-            (true, 4..=5) => self.serve_ranked::<5>(reels, until),
-            (true, 6..=9) => self.serve_ranked::<9>(reels, until),
-            (true, 10..=17) => self.serve_ranked::<17>(reels, until),
-            _ => self.serve_by_choice(reels, until),
+            (true, 0..=2) => self.serve_ranked::<2, _>(masters, until),
+            (true, 3) => self.serve_ranked::<3, _>(masters, until),
+            (true, 4..=5) => self.serve_ranked::<5, _>(masters, until),
+            (true, 6..=9) => self.serve_ranked::<9, _>(masters, until),
+            (true, 10..=17) => self.serve_ranked::<17, _>(masters, until),
+            _ => self.serve_by_choice(masters, until),
         }
     }
 
     /// The same with any arbiter.
-    fn serve_by_choice(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+    pub(crate) fn serve_by_choice(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
         while let Some(clock) = self.next_decision().filter(|&clock| clock < until) {
             let Some(grant) = self.decide(clock) else { continue };
-            let reel = &mut reels[grant.master as usize];
-            reel.note_wait(grant.waited);
+            let master = &mut masters[grant.master as usize];
+            master.note_wait(grant.waited);
             if grant.is_last {
-                let Some((computing, burst)) = reel.roll_on(&self.lengths) else { return Some(grant) };
+                let Some((computing, burst)) = master.next_transfer(&self.lengths) else { return Some(grant) };
                 self.claims.ask(grant.master, grant.end + computing, burst);
             }
         }
@@ -206,10 +252,14 @@ impl Bus {
 
     /// The same for an arbiter that ranks its masters, of which there are at most `SIZE`. Who comes next is found without branches, since nobody
     /// could foresee them: the smallest number of a clock and, in its last bits, a rank.
-    fn serve_ranked<const SIZE: usize>(&mut self, reels: &mut [Reel], until: Clocks) -> Option<Grant> {
+    fn serve_ranked<const SIZE: usize, M: NextTransfer>(
+        &mut self,
+        all_masters: &mut [M],
+        until: Clocks,
+    ) -> Option<Grant> {
         const RANK: u32 = 6;
         let masters = self.claims.masters() as usize;
-        let (lengths, waits, reels) = (self.lengths, &mut self.waits[..masters], &mut reels[..masters]);
+        let (lengths, waits, all_masters) = (self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
         let (all, bursts) = (&mut self.claims.arrivals[..masters], &mut self.claims.bursts[..masters]);
         let mut arrivals = [NEVER.0; SIZE];
         for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
@@ -245,7 +295,7 @@ impl Bus {
             let master = (keys[0] & ((1 << RANK) - 1)) as usize + first;
             let master = if master >= masters { master - masters } else { master };
             first = if master + 1 == masters { 0 } else { master + 1 } & in_turn;
-            let (burst, reel) = (&mut bursts[master], &mut reels[master]);
+            let (burst, one) = (&mut bursts[master], &mut all_masters[master]);
             let (waited, end) = (start - Clocks(arrivals[master]), start + burst.length);
             let Burst { octets, rest, .. } = *burst;
             let is_last = rest == Octets(0);
@@ -253,9 +303,9 @@ impl Bus {
             free = end;
             used.add(&grant);
             waits[master].add(waited);
-            reel.note_wait(waited);
+            one.note_wait(waited);
             let (computing, next) = if is_last {
-                let Some(ahead) = reel.roll_on(&lengths) else {
+                let Some(ahead) = one.next_transfer(&lengths) else {
                     arrivals[master] = NEVER.0;
                     break Some(grant);
                 };
@@ -268,7 +318,7 @@ impl Bus {
             if SIZE == 2 && masters == 2 {
                 // With one rival it often asks again before that does.
                 let limit = Clocks(arrivals[1 - master]).min(until);
-                let alone = reel.roll_alone(&lengths, *burst, Clocks(arrivals[master]), limit);
+                let alone = one.go_alone(&lengths, *burst, Clocks(arrivals[master]), limit);
                 if alone.bursts != 0 {
                     (free, *burst, arrivals[master]) = (alone.free, alone.burst, alone.arrival.0);
                     used.add_alone(&alone);
@@ -299,17 +349,7 @@ impl Bus {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use proptest::prelude::*;
-    use proptest::test_runner::RngSeed;
-
-    use super::super::arbiter::ArbiterKind;
-    use super::super::recording::{Recording, Segment};
-    use super::super::station::{Access, Request};
     use super::*;
-    use crate::engine::Pause;
-    use crate::exec::Message;
 
     #[test]
     fn a_burst_is_as_long_with_a_shift_as_with_a_division() {
@@ -320,75 +360,6 @@ mod tests {
                 bus.request(0, Clocks(5), Octets(octets));
                 let grant = bus.decide(Clocks(5)).expect("it is alone");
                 assert_eq!(grant.end - grant.start, config.length(Octets(octets)), "{octets_per_beat} {octets}");
-            }
-        }
-    }
-    /// A work item that reads what these segments say: clocks of computing, octets.
-    fn recording(segments: &[(u64, u64)]) -> Arc<Recording> {
-        let segment = |&(clocks, octets): &(u64, u64)| {
-            let request = Request::Transfer { address: 0, octets: Octets(octets), access: Access::Read };
-            Segment::new(clocks, 0, request, 0).expect("it fits")
-        };
-        Arc::new(Recording {
-            message: Message::new([[0; 3]]),
-            segments: segments.iter().map(segment).collect(),
-            reads: 0..64,
-            octets: Octets(0),
-            sent: Vec::new(),
-            last_clocks: 0,
-            last_pc: 0,
-            end: Pause::Halt,
-            steps: 0,
-            elementary: 0,
-            depends_on_cores: false,
-        })
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(3), ..ProptestConfig::default() })]
-
-        /// All that a bus does by itself, it does as if the arbiter had been asked each time.
-        #[test]
-        fn ranks_and_masters_alone_are_short_cuts(
-            kind in prop::sample::select(vec![ArbiterKind::FixedPriority, ArbiterKind::RoundRobin, ArbiterKind::OldestFirst]),
-            masters in 1u32..6, burst_octets in 0u64..30, setup_clocks in 0u64..4,
-            items in prop::collection::vec(
-                (0u32..6, 0u64..40, prop::collection::vec((0u64..30, 1u64..60), 1..8), 0u64..200, any::<bool>()), 1..20,
-            ),
-        ) {
-            let config = BusConfig { arbiter: kind, burst_octets, setup_clocks, ..BusConfig::default() };
-            let new = || (Bus::new(&config, masters), (0..masters).map(|_| Reel::default()).collect::<Vec<_>>());
-            let ((mut quick, mut reels), (mut plain, mut plain_reels)) = (new(), new());
-            let mut now = Clocks(0);
-            for (master, pause, segments, time, is_stopped) in items {
-                let master = master % masters;
-                let arrival = now + Clocks(pause);
-                if quick.claims.arrival(master) == NEVER {
-                    let item = recording(&segments);
-                    for (bus, reels) in [(&mut quick, &mut reels), (&mut plain, &mut plain_reels)] {
-                        let reel = &mut reels[master as usize];
-                        let _ = reel.unwind(arrival);
-                        bus.request(master, arrival, item.segments[0].octets());
-                        reel.wind(item.clone(), 1, arrival, &bus.lengths);
-                        if is_stopped {
-                            reel.stop_at(&(0..1));
-                        }
-                    }
-                }
-                now = arrival + Clocks(time);
-                loop {
-                    let grant = quick.serve(&mut reels, now);
-                    prop_assert_eq!(grant, plain.serve_by_choice(&mut plain_reels, now));
-                    prop_assert_eq!(quick.used(), plain.used());
-                    prop_assert_eq!((quick.waits(), quick.free_at), (plain.waits(), plain.free_at));
-                    prop_assert_eq!(format!("{:?}", reels), format!("{:?}", plain_reels));
-                    for master in 0..masters {
-                        prop_assert_eq!(quick.claims.arrival(master), plain.claims.arrival(master));
-                    }
-                    if grant.is_none() {
-                        break;
-                    }
-                }
             }
         }
     }

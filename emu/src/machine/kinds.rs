@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::frame::KindUse;
-use super::station::Request;
+use super::outcome::KindUse;
+use super::request::Request;
 use crate::quantity::Octets;
 
 /// Instructions whose ranges are remembered.
@@ -111,7 +111,7 @@ impl Kinds {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::station::Access;
+    use super::super::request::Access;
     use super::*;
 
     proptest! {

@@ -1,33 +1,24 @@
 //! The machine: cores, the main processor that feeds them, global memory and the bus between them, stepped in the order
-//! of their clocks.
+//! of their clocks. A processor's work is done by a [`worker::Worker`], which executes a program or replays what one has done.
 
 pub mod arbiter;
 pub mod bus;
 pub mod cache;
 pub mod config;
-mod count;
-mod ending;
-pub mod frame;
-mod kinds;
-mod library;
+mod finish;
+pub(crate) mod kinds;
 pub mod mailbox;
-mod meeting;
+pub mod outcome;
+pub(crate) mod port;
 pub mod preset;
 mod processor;
-mod recorded;
-mod recorder;
-mod recording;
-mod reel;
-mod replay;
-mod room;
-mod schedule;
-mod scout;
+pub(crate) mod request;
+pub(crate) mod schedule;
 pub mod single;
-mod station;
-mod strands;
-mod tape;
+mod sync;
 pub mod trace;
 pub mod waits;
+pub(crate) mod worker;
 
 use std::fmt;
 use std::ops::Range;
@@ -36,19 +27,13 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
-pub use count::{Count, count};
-pub use frame::{Frame, Item, KindUse, Method, ProcessorUse};
-pub use recorded::Recorded;
+pub use outcome::{Frame, Item, KindUse, Method, ProcessorUse};
 
 use trace::Window;
 
 use crate::code::{Code, check_bodies};
-use crate::engine::{Choice, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
-use crate::exec::Watch;
-use crate::octets::Memory;
-use crate::profile::RunObserver;
+use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
 use crate::trap::Trap;
-use ending::Ending;
 
 /// What a machine runs.
 #[derive(Clone)]
@@ -68,6 +53,12 @@ pub struct Setup<'a> {
 }
 
 impl Setup<'_> {
+    /// Number and step limit of the main processor.
+    pub(crate) fn main_id(&self) -> CoreId {
+        let cores = self.config.cores;
+        CoreId { core: cores, cores, step_limit: self.config.main.step_limit }
+    }
+
     /// The engine that runs the cores' program, and why not a faster one that was wanted.
     pub fn engine(&self) -> Choice {
         let code = Code::new(self.core, self.isa, self.config.timing());
@@ -151,69 +142,11 @@ impl From<Report> for Failure {
     }
 }
 
-/// Runs a frame on a memory image: until the main processor has halted and no core has anything more to do. `progress`
-/// is called with the number of work items finished, each time one is.
-///
-/// Work items that only take a message, read global memory and send messages to the main processor run once, on all host
-/// threads, and are then replayed in the order of the machine's clocks; anything else is stepped in that order. The
-/// result is the same, but for [`Frame::method`].
+/// Whether a machine and its programs can be used.
 ///
 /// # Errors
-/// A machine out of its ranges, a program whose initial buffer does not fit, or a trap.
-pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
-    check(setup)?;
-    let results = run_alike(std::slice::from_ref(setup), &memory, progress);
-    results.into_iter().next().expect("a machine has a result")
-}
-
-/// Runs a frame by stepping, also where it could be replayed.
-///
-/// # Errors
-/// As [`run`].
-pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
-    check(setup)?;
-    let frame = on_arithmetic(setup, Stepping { setup, memory, progress });
-    frame.map_err(Ending::into_failure)
-}
-
-/// Runs the same frame on several machines. Those that compute alike (in the same clocks, with the same arithmetic and
-/// buffer) and differ only in cores, bus, caches and main processor share one run of the work items. `progress` is told of the first
-/// of those that share one.
-pub fn run_all(
-    setup: &Setup,
-    machines: &[Config],
-    memory: &Memory,
-    progress: &mut dyn FnMut(u64),
-) -> Vec<Result<Frame, Failure>> {
-    let setups: Vec<Setup> = machines.iter().map(|config| Setup { config, ..setup.clone() }).collect();
-    let mut results: Vec<Option<Result<Frame, Failure>>> = setups.iter().map(|_| None).collect();
-    for first in 0..setups.len() {
-        if results[first].is_some() {
-            continue;
-        }
-        if let Err(failure) = check(&setups[first]) {
-            results[first] = Some(Err(failure));
-            continue;
-        }
-        let is_alike = |at: &usize| {
-            results[*at].is_none() && machines[*at].computes_like(&machines[first]) && check(&setups[*at]).is_ok()
-        };
-        let alike: Vec<usize> = (first..setups.len()).filter(is_alike).take(at_once(memory)).collect();
-        let group: Vec<Setup> = alike.iter().map(|&at| setups[at].clone()).collect();
-        for (&at, result) in alike.iter().zip(run_alike(&group, memory, progress)) {
-            results[at] = Some(result);
-        }
-    }
-    results.into_iter().flatten().collect()
-}
-
-/// Machines that share a run of the work items, at most: each has a thread, and of global memory what it writes, which may be all of it.
-fn at_once(memory: &Memory) -> usize {
-    const OCTETS: usize = 256 << 20;
-    (OCTETS / memory.size().max(1)).clamp(1, 64)
-}
-
-fn check(setup: &Setup) -> Result<(), Failure> {
+/// A machine out of its ranges, initial data that do not fit a buffer, or a cache of data that nothing is called.
+pub(crate) fn check(setup: &Setup) -> Result<(), Failure> {
     setup.config.check()?;
     check_buffer("a core", setup.core, setup.config.buffer_octets)?;
     check_buffer("the main processor", setup.main, setup.config.main.buffer_octets)?;
@@ -232,42 +165,8 @@ fn check(setup: &Setup) -> Result<(), Failure> {
 }
 
 /// Does work on the arithmetic and for the observer that a machine needs.
-fn on_arithmetic<W: Task>(setup: &Setup, task: W) -> W::Result {
+pub(crate) fn on_arithmetic<W: Task>(setup: &Setup, task: W) -> W::Result {
     dispatch(setup.config.arithmetic.watching(setup.options.has_losses), setup.options.has_profile, task)
-}
-
-/// Runs machines that compute alike.
-fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<Frame, Failure>> {
-    let Some(first) = setups.first() else { return Vec::new() };
-    on_arithmetic(first, Replaying { setups, memory, progress })
-}
-
-struct Stepping<'a> {
-    setup: &'a Setup<'a>,
-    memory: Memory,
-    progress: &'a mut dyn FnMut(u64),
-}
-
-impl Task for Stepping<'_> {
-    type Result = Result<Frame, Ending>;
-
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
-        schedule::run::<T, O>(self.setup, self.memory, arithmetic, None, self.progress)
-    }
-}
-
-struct Replaying<'a> {
-    setups: &'a [Setup<'a>],
-    memory: &'a Memory,
-    progress: &'a mut dyn FnMut(u64),
-}
-
-impl Task for Replaying<'_> {
-    type Result = Vec<Result<Frame, Failure>>;
-
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
-        replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)
-    }
 }
 
 /// Whether what a program wants in its buffer fits.

@@ -2,18 +2,16 @@
 
 use isa::number::Vector;
 
+use super::bus::NextTransfer;
 use super::cache::Cache;
-use super::frame::ProcessorUse;
-use super::station::{Request, Shared, Station};
-use super::tape::Tape;
+use super::outcome::ProcessorUse;
+use super::port::Shared;
+use super::request::Request;
 use super::trace::{Doing, Spans};
+use super::worker::{Advance, Played, Worker};
 use crate::code::Code;
-use crate::engine::{Choice, Pause, Runner, Seat, State, interpreter};
-use crate::exec::{Message, Watch};
-use crate::octets::Buffer;
-use crate::profile::{RunObserver, Unobserved};
+use crate::engine::{CoreId, Pause};
 use crate::quantity::{Clocks, Octets};
-use crate::tally::Tally;
 use crate::trap::Fault;
 
 /// What a processor does without the bus, at its own clock.
@@ -78,34 +76,14 @@ impl Work {
     }
 }
 
-/// What an engine's run was given leave for and did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Advance {
-    /// Why it stopped.
-    pub pause: Pause,
-    /// The message that it took, and its sender.
-    pub taken: Option<(Message, u32)>,
-    /// Instructions executed.
-    pub steps: u64,
-}
-
 /// One processor.
-pub struct Processor<'a, O> {
+pub struct Processor<'a, W> {
     /// Its program.
     pub code: &'a Code<'a>,
-    /// What executes it.
-    runner: Runner<'a>,
-    /// Who it is.
-    pub seat: Seat,
-    /// What its program sees.
-    pub state: State,
-    /// The buffer after reset.
-    pub initial: Buffer,
-    tally: Tally,
-    /// Who watches it.
-    pub observer: O,
-    /// The work item that it replays instead of running its program.
-    pub tape: Option<Tape>,
+    /// Its number, and how long a work item may be.
+    pub core: CoreId,
+    /// Whoever does its work.
+    pub worker: W,
     /// How far it has come.
     pub clock: Clocks,
     /// What it is at.
@@ -129,19 +107,13 @@ pub struct Processor<'a, O> {
     pub begins_by_receiving: bool,
 }
 
-impl<'a, O: RunObserver> Processor<'a, O> {
-    /// A processor after reset, with what executes its program.
-    pub fn new(code: &'a Code<'a>, seat: Seat, buffer_octets: u32, runner: Runner<'a>) -> Processor<'a, O> {
-        let initial = Buffer::new(&code.program.buffer, buffer_octets);
+impl<'a, W: Worker> Processor<'a, W> {
+    /// A processor after reset, with whoever does its work.
+    pub fn new(code: &'a Code<'a>, core: CoreId, worker: W) -> Processor<'a, W> {
         Processor {
             code,
-            runner,
-            seat,
-            state: State::new(code, initial.clone()),
-            initial,
-            tally: Tally::new(code),
-            observer: O::new(code),
-            tape: None,
+            core,
+            worker,
             clock: Clocks(0),
             standing: Standing::Asleep,
             request: None,
@@ -155,59 +127,27 @@ impl<'a, O: RunObserver> Processor<'a, O> {
         }
     }
 
-    /// The engine that executes its program.
-    pub fn engine(&self) -> Choice {
-        self.runner.choice()
+    /// Goes on up to the next thing that concerns others, with permission for the one that it waits for, done at the processor's clock, or
+    /// without.
+    pub fn advance(&mut self, shared: &mut Shared, is_permitted: bool) -> Advance {
+        let advance = self.worker.advance(shared, is_permitted.then_some(self.clock));
+        self.request = advance.request;
+        self.used.octets += advance.octets;
+        self.spend(advance.clocks, advance.steps, is_permitted);
+        advance
     }
 
-    /// Whether the program, from reset, comes to a receive before it does anything else outside itself. What runs for
-    /// that is not counted.
-    pub fn probe<T: Watch>(&self, shared: &mut Shared, arithmetic: &T) -> bool {
-        let mut state = State::new(self.code, self.initial.clone());
-        let mut station = Station::new(shared, self.seat.core, None);
-        let mut tally = Tally::new(self.code);
-        let mut nobody = Unobserved;
-        let pause =
-            interpreter::run(self.code, self.seat, &mut state, arithmetic, &mut station, &mut tally, &mut nobody);
-        pause == Pause::Wait && station.request == Some(Request::Receive)
-    }
-
-    /// Runs the engine up to the next thing that concerns others, with leave for the one that it waits for, done at
-    /// the processor's clock, or without.
-    pub fn advance<T: Watch>(&mut self, shared: &mut Shared, arithmetic: &T, has_leave: bool) -> Advance {
-        if let Some(tape) = self.tape.take() {
-            return self.replay(tape, shared, has_leave);
-        }
-        let (clocks, steps) = (self.state.clocks, self.state.steps);
-        let mut station = Station::new(shared, self.seat.core, has_leave.then_some(self.clock));
-        let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
-        let pause = self.runner.run(self.seat, state, arithmetic, &mut station, tally, observer);
-        self.request = station.request;
-        let taken = station.taken;
-        let steps = self.state.steps - steps;
-        self.spend(self.state.clocks - clocks, steps, has_leave);
-        Advance { pause, taken, steps }
-    }
-
-    /// The passes of its program so far.
-    pub fn take_tally(&mut self) -> Tally {
-        self.runner.fold(&mut self.tally);
-        std::mem::replace(&mut self.tally, Tally::new(self.code))
-    }
-
-    /// Starts its program, or the next recorded work item, from reset.
-    pub fn restart(&mut self) {
-        match &mut self.tape {
-            Some(tape) => *tape = Tape::default(),
-            None => {
-                self.state.begin(self.code, &self.initial);
-                self.observer.begin(self.state.pc);
-            }
+    /// Takes back what its master of the bus went on to, up to a transfer that ended at a clock.
+    pub(super) fn take_back(&mut self, master: &mut W::Master, end: Clocks) {
+        self.used.longest_wait = self.used.longest_wait.max(master.take_longest_wait());
+        if let Some(Played { busy, waiting }) = self.worker.take_back(master, end) {
+            self.used.busy += busy;
+            self.used.waiting += waiting;
+            self.clock = end;
+            self.work.has_acted = true;
         }
     }
-}
 
-impl<O> Processor<'_, O> {
     /// Notes what it does from its clock on.
     #[inline]
     fn note(&mut self, doing: Doing, until: Clocks) {
@@ -217,12 +157,12 @@ impl<O> Processor<'_, O> {
     }
 
     /// Computes for some clocks.
-    pub(super) fn spend(&mut self, clocks: u64, steps: u64, has_leave: bool) {
+    fn spend(&mut self, clocks: u64, steps: u64, is_permitted: bool) {
         self.note(Doing::Busy, self.clock + Clocks(clocks));
         self.clock += Clocks(clocks);
         self.used.busy += Clocks(clocks);
         self.used.instructions += steps;
-        self.work.has_acted |= has_leave;
+        self.work.has_acted |= is_permitted;
     }
 
     /// Does nothing until a clock.
@@ -270,8 +210,8 @@ impl<O> Processor<'_, O> {
         let place = self
             .code
             .program
-            .place(self.code.word(self.state.pc))
+            .place(self.code.word(self.worker.progress().pc))
             .map_or(String::new(), |place| format!(" at {place}"));
-        format!("core {} {what}{place}", self.seat.core)
+        format!("core {} {what}{place}", self.core.core)
     }
 }

@@ -6,57 +6,65 @@ use std::ops::Range;
 use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
-use super::ending::Ending;
-use super::frame::{Frame, Item};
 use super::kinds::Kinds;
-use super::library::Library;
+use super::outcome::{Frame, Item};
+use super::port::Shared;
 use super::processor::{Act, Processor, Standing, Work};
-use super::reel::Reel;
-use super::station::{Access, Request, Shared};
-use super::tape::Tape;
+use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
+use super::worker::{Executor, Progress, Worker};
 use super::{Failure, Setup};
 use crate::code::Code;
-use crate::engine::{Demand, EngineKind, Pause, Seat, Wish, choose};
+use crate::engine::{CoreId, Demand, Pause, Runner, Wish, choose};
 use crate::exec::Watch;
 use crate::octets::Memory;
 use crate::profile::RunObserver;
 use crate::quantity::{Clocks, Octets};
 use crate::trap::Fault;
 
-/// Runs a frame on one arithmetic and with one kind of observer. With recorded work items the cores replay them; their
-/// counts are then missing from the frame.
+/// Runs a frame by stepping, on one arithmetic and with one kind of observer.
+///
+/// # Errors
+/// A trap.
 pub fn run<T: Watch, O: RunObserver>(
     setup: &Setup,
     memory: Memory,
     arithmetic: &T,
-    library: Option<Library>,
     progress: &mut dyn FnMut(u64),
-) -> Result<Frame, Ending> {
+) -> Result<Frame, Failure> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
-    let shared = Shared::new(memory, setup.config.cores + 1, library);
-    let mut machine: Machine<T, O> = Machine::new(setup, shared, &core_code, &main_code, arithmetic, progress);
-    let done = machine.run();
-    if let Some(library) = &mut machine.shared.library {
-        if done.is_ok() && library.lost.is_none() && !library.is_used_up() {
-            library.lose::<()>("the main processor hands out other work than it would to many cores");
-        }
-        if let Some(reason) = library.lost {
-            return Err(Ending::Lost(reason));
-        }
-    }
-    done.map_err(Ending::Failure)?;
-    Ok(machine.finish(&core_code, &main_code))
+    let runner = runner_of::<T>(setup, &core_code);
+    let core = |core: CoreId| {
+        let buffer_octets = setup.config.buffer_octets;
+        Executor::<T, O>::new(&core_code, core, buffer_octets, runner.clone(), arithmetic)
+    };
+    let main = main_worker(setup, &main_code, arithmetic);
+    Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()
+}
+
+/// Runner of a program on a machine.
+fn runner_of<'a, T: Watch>(setup: &Setup, code: &'a Code<'a>) -> Runner<'a> {
+    let Wish { kind, simd } = setup.options.wish();
+    choose(kind, &Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false })
+}
+
+/// Worker of the main processor, which executes its program on any machine.
+pub(crate) fn main_worker<'a, T: Watch, O: RunObserver>(
+    setup: &Setup,
+    code: &'a Code<'a>,
+    arithmetic: &'a T,
+) -> Executor<'a, T, O> {
+    let main = &setup.config.main;
+    Executor::new(code, setup.main_id(), main.buffer_octets, runner_of::<T>(setup, code), arithmetic)
 }
 
 /// All processors, what they share, and what they have done so far.
-pub(super) struct Machine<'a, T, O> {
+pub(crate) struct Machine<'a, W: Worker> {
     pub setup: &'a Setup<'a>,
-    arithmetic: &'a T,
     /// The cores, then the main processor.
-    pub processors: Vec<Processor<'a, O>>,
+    pub processors: Vec<Processor<'a, W>>,
     pub shared: Shared,
     pub bus: Bus,
     /// Who watches the bus, where somebody does.
@@ -72,51 +80,43 @@ pub(super) struct Machine<'a, T, O> {
     pub meeting: usize,
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
-    /// What the masters of the bus play by themselves, where a recorded transfer is nothing but a transfer: no cache, no overlap, nobody who
-    /// watches.
-    reels: Option<Vec<Reel>>,
-    /// Octets that were written when the reels were looked at.
+    /// The masters of the bus, which go from transfer to transfer by themselves; none where a transfer is more than that: with a cache, overlap,
+    /// or somebody who watches.
+    masters: Option<Vec<W::Master>>,
+    /// Octets that were written when the masters were told of it.
     written: Range<u64>,
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
-    fn new(
+impl<'a, W: Worker> Machine<'a, W> {
+    /// A machine before its first clock: its cores do what `core` makes for each of them, the main processor has the worker `main`. Codes are
+    /// those of the cores and of the main processor.
+    pub(crate) fn new(
         setup: &'a Setup<'a>,
-        shared: Shared,
-        core_code: &'a Code<'a>,
-        main_code: &'a Code<'a>,
-        arithmetic: &'a T,
+        memory: Memory,
+        [core_code, main_code]: [&'a Code<'a>; 2],
+        core: impl Fn(CoreId) -> W,
+        main: W,
         progress: &'a mut dyn FnMut(u64),
-    ) -> Machine<'a, T, O> {
+    ) -> Machine<'a, W> {
         let config = setup.config;
         let cores = config.cores;
         let mut processors = Vec::with_capacity(cores as usize + 1);
-        // Who replays executes nothing.
-        let Wish { kind, simd } = setup.options.wish();
-        let core_kind = if shared.library.is_none() { kind } else { EngineKind::Checked };
-        let runner = |kind, code| {
-            choose(kind, &Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false })
-        };
-        let core_runner = runner(core_kind, core_code);
-        for core in 0..cores {
-            let seat = Seat { core, cores, step_limit: config.step_limit };
-            let mut processor = Processor::new(core_code, seat, config.buffer_octets, core_runner.clone());
-            processor.tape = shared.library.is_some().then(Tape::default);
+        for number in 0..cores {
+            let id = CoreId { core: number, cores, step_limit: config.step_limit };
+            let mut processor = Processor::new(core_code, id, core(id));
             processor.cache = Cache::new(&config.cache, &setup.kinds);
             processors.push(processor);
         }
         let window = setup.options.window;
-        let seat = Seat { core: cores, cores, step_limit: config.main.step_limit };
-        processors.push(Processor::new(main_code, seat, config.main.buffer_octets, runner(kind, main_code)));
+        processors.push(Processor::new(main_code, setup.main_id(), main));
         for processor in &mut processors {
             processor.spans = window.map(Spans::new);
         }
         Machine {
             setup,
-            arithmetic,
             processors,
-            shared,
+            shared: Shared::new(memory, cores + 1),
             bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             kinds: Kinds::new(&setup.kinds),
@@ -127,18 +127,22 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            reels: (config.cache.octets == 0 && !config.bus.overlap && window.is_none())
-                .then(|| (0..=cores).map(|_| Reel::default()).collect()),
+            masters: (config.cache.octets == 0 && !config.bus.overlap && window.is_none())
+                .then(|| (0..=cores).map(|_| W::Master::default()).collect()),
             written: 0..0,
             progress,
         }
     }
 
     /// Runs to the end.
-    fn run(&mut self) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// A trap.
+    pub(crate) fn run(mut self) -> Result<Frame, Failure> {
         self.begin();
         while self.step()? {}
-        self.check_end()
+        self.check_end()?;
+        Ok(self.finish())
     }
 
     /// Number of the main processor.
@@ -149,9 +153,7 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
     /// Starts every processor at clock 0.
     fn begin(&mut self) {
         for number in 0..self.processors.len() {
-            // What was recorded begins with a message.
-            let processor = &self.processors[number];
-            let receives = processor.tape.is_some() || processor.probe(&mut self.shared, self.arithmetic);
+            let receives = self.processors[number].worker.receives_first(&mut self.shared);
             self.processors[number].begins_by_receiving = receives && number != self.main();
             self.start(number);
         }
@@ -165,23 +167,23 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             return;
         }
         processor.work = Work::new(processor.clock);
-        processor.restart();
+        processor.worker.restart();
         self.advance(number, false);
     }
 
-    /// Lets a processor run up to the next thing that concerns others, and notes what that is. With leave, what it
+    /// Lets a processor run up to the next thing that concerns others, and notes what that is. With permission, what it
     /// waits for is done first, at its clock.
-    fn advance(&mut self, number: usize, has_leave: bool) {
-        self.run_on(number, has_leave, false);
+    fn advance(&mut self, number: usize, is_permitted: bool) {
+        self.run_on(number, is_permitted, false);
     }
 
     /// The same; who runs ahead of its own transfer does the next thing when that has ended.
-    fn run_on(&mut self, number: usize, has_leave: bool, is_ahead: bool) {
+    fn run_on(&mut self, number: usize, is_permitted: bool, is_ahead: bool) {
         let is_main = number == self.main();
         let steps_allowed = self.steps_allowed();
         let processor = &mut self.processors[number];
         let (at, asked) = (processor.clock, processor.request);
-        let advance = processor.advance(&mut self.shared, self.arithmetic, has_leave);
+        let advance = processor.advance(&mut self.shared, is_permitted);
         self.steps_without_main = if is_main { 0 } else { self.steps_without_main + advance.steps };
         if let Some((message, _)) = advance.taken
             && processor.work.subject.is_none()
@@ -192,7 +194,7 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         // them needs at most a work item.
         let pause = match advance.pause {
             Pause::Wait if self.steps_without_main > steps_allowed => {
-                Pause::Fault(Fault::StepLimit(processor.seat.step_limit))
+                Pause::Fault(Fault::StepLimit(processor.core.step_limit))
             }
             pause => pause,
         };
@@ -201,12 +203,12 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         } else {
             self.settle(number, pause);
         }
-        // What was done with the leave may be what another processor waits for.
+        // What was permitted may be what another processor waits for.
         if let Some((_, sender)) = advance.taken {
             self.unblock(sender as usize, number as u32, at);
         }
         if let Some(Request::Send { to, .. }) = asked
-            && has_leave
+            && is_permitted
         {
             self.deliver(to as usize);
         }
@@ -273,8 +275,9 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             watch.ask(number as u32, processor.request);
         }
         self.bus.request(number as u32, processor.clock, octets);
-        if let Some(reels) = &mut self.reels {
-            processor.wind(&mut reels[number], &self.shared, &self.bus.lengths);
+        if let Some(masters) = &mut self.masters {
+            let (clock, written) = (processor.clock, &self.shared.written);
+            processor.worker.hand_over(&mut masters[number], clock, written, &self.bus.lengths);
         }
         if is_ahead {
             self.account(number);
@@ -282,14 +285,14 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         }
     }
 
-    /// Adds what a processor has asked for to the totals; of recorded work items they are known already.
+    /// Adds what a processor has asked for to the totals, where those are not known already.
     fn account(&mut self, number: usize) {
         let processor = &mut self.processors[number];
-        if processor.tape.is_some() {
+        if processor.worker.is_accounted() {
             return;
         }
         processor.used.octets += processor.asked_octets();
-        self.kinds.add(processor.state.pc, processor.request);
+        self.kinds.add(processor.worker.progress().pc, processor.request);
     }
 
     /// Does the next thing that concerns others; false when there is none.
@@ -304,7 +307,7 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
         let act = acts.min();
         // Nothing but decisions of the arbiter comes before the next act, as long as those wake nobody.
         let until = act.map_or(NEVER, |(at, ..)| at);
-        if self.reels.is_some() {
+        if self.masters.is_some() {
             if self.play(until) {
                 return Ok(true);
             }
@@ -323,15 +326,15 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
     /// Lets the arbiter choose before a clock, and the chosen ones do what they wait for; true when anyone but the arbiter may have something to
     /// do now.
     fn play(&mut self, until: Clocks) -> bool {
-        let Some(reels) = &mut self.reels else { return false };
+        let Some(masters) = &mut self.masters else { return false };
         if self.written != self.shared.written {
             self.written = self.shared.written.clone();
-            reels.iter_mut().for_each(|reel| reel.stop_at(&self.written));
+            masters.iter_mut().for_each(|master| W::stop_at(master, &self.written));
         }
-        let Some(grant) = self.bus.serve(reels, until) else { return false };
+        let Some(grant) = self.bus.serve(masters, until) else { return false };
         self.now = grant.start;
         let number = grant.master as usize;
-        self.processors[number].unwind(&mut reels[number], grant.end);
+        self.processors[number].take_back(&mut masters[number], grant.end);
         self.end_transfer(number, grant.end);
         true
     }
@@ -382,7 +385,7 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
             }
             Act::Receive | Act::Leave => self.advance(number, true),
             Act::Halt if number == main => {
-                processor.observer.end();
+                processor.worker.end();
                 processor.standing = Standing::Rests;
                 self.has_main_halted = true;
             }
@@ -395,7 +398,8 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
     /// A core has halted: its work item is done, and it starts over where there may be more to do.
     fn end_item(&mut self, number: usize) {
         let processor = &mut self.processors[number];
-        processor.observer.end();
+        processor.worker.end();
+        let Progress { steps, elementary, .. } = processor.worker.progress();
         processor.used.items += 1;
         self.item_count += 1;
         if self.setup.options.has_items {
@@ -404,8 +408,8 @@ impl<'a, T: Watch, O: RunObserver> Machine<'a, T, O> {
                 core: number as u32,
                 start: processor.work.start,
                 end: processor.clock,
-                instructions: processor.state.steps,
-                elementary: processor.state.elementary,
+                instructions: steps,
+                elementary,
             });
         }
         (self.progress)(self.item_count);

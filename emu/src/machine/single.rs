@@ -5,10 +5,12 @@ use messages::{Diagnostic, Report};
 
 use super::check_buffer;
 use super::config::Config;
+use super::port::Shared;
 use super::processor::Processor;
-use super::station::{Request, Shared};
+use super::request::Request;
+use super::worker::Executor;
 use crate::code::{Code, check_bodies};
-use crate::engine::{Choice, Demand, Pause, Seat, State, Task, Wish, choose, dispatch};
+use crate::engine::{Choice, CoreId, Demand, Pause, State, Task, Wish, choose, dispatch};
 use crate::exec::Watch;
 use crate::octets::Memory;
 use crate::profile::{Profile, RunObserver};
@@ -108,16 +110,17 @@ impl Task for Run<'_> {
 
 fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic: &T, wish: Wish) -> SingleRun {
     let code = Code::new(single.program, single.isa, single.config.timing());
-    let seat = Seat { core: 0, cores: 1, step_limit: single.step_limit };
+    let core = CoreId { core: 0, cores: 1, step_limit: single.step_limit };
     let demand = Demand { code: &code, simd: wish.simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false };
-    let mut processor: Processor<O> =
-        Processor::new(&code, seat, single.config.buffer_octets, choose(wish.kind, &demand));
-    let mut shared = Shared::new(memory, 1, None);
-    processor.state.registers = single.registers.clone();
-    processor.observer.begin(processor.state.pc);
-    let mut has_leave = false;
+    let runner = choose(wish.kind, &demand);
+    let mut worker: Executor<T, O> = Executor::new(&code, core, single.config.buffer_octets, runner, arithmetic);
+    worker.state.registers = single.registers.clone();
+    worker.observer.begin(worker.state.pc);
+    let mut processor = Processor::new(&code, core, worker);
+    let mut shared = Shared::new(memory, 1);
+    let mut is_permitted = false;
     let fault = loop {
-        match processor.advance(&mut shared, arithmetic, has_leave).pause {
+        match processor.advance(&mut shared, is_permitted).pause {
             Pause::Halt => break None,
             Pause::Fault(fault) => break Some(fault),
             Pause::Wait => {}
@@ -135,18 +138,19 @@ fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic:
             let start = processor.clock;
             processor.wait_until(start + single.config.bus.whole_length(octets));
         }
-        has_leave = true;
+        is_permitted = true;
     };
-    processor.observer.end();
-    let tally = processor.take_tally();
-    let trap = fault.map(|fault| Trap::new(fault, 0, processor.state.pc, &code));
+    let Processor { mut worker, clock, used, .. } = processor;
+    worker.observer.end();
+    let tally = worker.take_tally();
+    let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, &code));
     SingleRun {
-        engine: processor.engine(),
-        profile: processor.observer.into_profile(&code, &tally),
-        state: processor.state,
+        engine: worker.engine(),
+        profile: worker.observer.into_profile(&code, &tally),
+        state: worker.state,
         memory: shared.memory,
-        clocks: processor.clock,
-        waiting: processor.used.waiting,
+        clocks: clock,
+        waiting: used.waiting,
         tally,
         trap,
     }

@@ -2,7 +2,7 @@
 //! crate.
 
 use super::bus::Grant;
-use super::station::{Access, Request};
+use super::request::{Access, Request};
 use crate::quantity::{Clocks, Octets};
 
 /// A part of the frame: from `start` on, `end` no longer.

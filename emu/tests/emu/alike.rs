@@ -2,7 +2,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{self, Config, Options, Setup};
+use emu::machine::{Config, Options, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 
@@ -44,7 +44,7 @@ fn both_engines_count_what_they_read() {
         let kinds = vec![(500..508, "first".to_owned()), (512..600, "second".to_owned())];
         let options = Options { engine, simd: features, ..Options::default() };
         let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds, options };
-        let count = machine::count(&setup, &memory()).expect("it runs").expect("it is counted");
+        let count = emu::count(&setup, &memory()).expect("it runs").expect("it is counted");
         let octets = count.kinds.totals().iter().map(|kind| (kind.kind.clone(), kind.octets)).collect::<Vec<_>>();
         (count.memory, count.tally, octets)
     };
@@ -62,7 +62,7 @@ fn what_they_may_not_read_is_the_interpreters() {
     let end = |core: &Program, engine| {
         let options = Options { engine, ..Options::default() };
         let setup = Setup { config: &config, isa: &isa, core, main: &main, kinds: Vec::new(), options };
-        machine::run(&setup, memory(), &mut |_| {}).map(|frame| (frame.method, frame.clocks)).map_err(|e| e.to_string())
+        emu::run(&setup, memory(), &mut |_| {}).map(|frame| (frame.method, frame.clocks)).map_err(|e| e.to_string())
     };
     let beyond = program(|p| {
         p.emit(Op::recv5, &[0, 20]).emit(Op::movi, &[3, 2968]).emit(Op::ldv3, &[4, 3, 0]).emit(Op::halt, &[]);

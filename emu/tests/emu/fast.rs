@@ -3,7 +3,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{self, Config, Failure, Frame, Options, Setup};
+use emu::machine::{Config, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
 use random::SplitMix64;
@@ -30,7 +30,7 @@ fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_li
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
     let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-    machine::run(&setup, Memory::new(image), &mut |_| {})
+    emu::run(&setup, Memory::new(image), &mut |_| {})
 }
 
 /// Runs a program on both engines, the fast one with each of the host's features, and yields what all said.
@@ -246,8 +246,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
     let (config, main) = (Config { step_limit: 1 << 30, ..Config::default() }, dispatch(1));
     let options = Options::default();
     let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
-    let count =
-        machine::count(&setup, &Memory::new(vec![3; MEMORY as usize])).expect("it runs").expect("it is counted");
+    let count = emu::count(&setup, &Memory::new(vec![3; MEMORY as usize])).expect("it runs").expect("it is counted");
     assert!(count.tally.instructions() > 20_000 * 100);
 }
 
@@ -374,12 +373,12 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
             Setup { config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
         };
         let stepped = machines.each_ref().map(|config| {
-            machine::step(&setup(config, EngineKind::Checked), memory.clone(), &mut |_| {}).expect("it runs")
+            emu::step(&setup(config, EngineKind::Checked), memory.clone(), &mut |_| {}).expect("it runs")
         });
         dependent[usize::from(stepped[0].memory != stepped[2].memory)] += 1;
         for engine in EngineKind::ALL {
             // The three share what was recorded, but for what depends on how many they are.
-            let frames = machine::run_all(&setup(&machines[0], engine), &machines, &memory, &mut |_| {});
+            let frames = emu::run_all(&setup(&machines[0], engine), &machines, &memory, &mut |_| {});
             for (frame, stepped) in frames.into_iter().zip(&stepped) {
                 let frame = frame.unwrap_or_else(|failure| panic!("{failure}"));
                 let found = (&frame.memory, frame.clocks, &frame.tally);

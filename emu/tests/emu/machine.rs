@@ -1,6 +1,6 @@
 //! Cores, messages and the bus together.
 
-use emu::machine::{self, Config, Frame, Options, Setup};
+use emu::machine::{Config, Frame, Options, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 
@@ -54,7 +54,7 @@ pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> Fr
     let isa = Isa::base();
     let options = Options { has_profile: true, has_items: true, ..Options::default() };
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![(0..400, "answer".to_owned())], options };
-    match machine::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
+    match emu::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
         Ok(frame) => frame,
         Err(failure) => panic!("{}", failure.report().render(false)),
     }

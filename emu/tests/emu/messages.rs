@@ -2,7 +2,7 @@
 
 use emu::exec::Message;
 use emu::machine::mailbox::Mailboxes;
-use emu::machine::{self, Config, Failure, Frame, Options, Setup};
+use emu::machine::{Config, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use emu::trap::{Fault, Trap};
@@ -13,7 +13,7 @@ use super::builder::{Builder, program};
 fn result(config: &Config, core: &Program, main: &Program) -> Result<Frame, Box<Trap>> {
     let isa = Isa::base();
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![], options: Options::default() };
-    match machine::run(&setup, Memory::new(vec![0; 400]), &mut |_| {}) {
+    match emu::run(&setup, Memory::new(vec![0; 400]), &mut |_| {}) {
         Ok(frame) => Ok(frame),
         Err(Failure::Trap(trap)) => Err(trap),
         Err(failure) => panic!("{failure}"),

@@ -3,7 +3,7 @@
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::{BusConfig, CacheConfig};
 use emu::machine::preset::PRESETS;
-use emu::machine::{self, Config, Frame, Method, Options, Setup};
+use emu::machine::{Config, Frame, Method, Options, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 use proptest::prelude::*;
@@ -56,8 +56,8 @@ fn wander(steps: i32, spin: i32, octets: i32) -> Program {
 fn both(config: &Config, core: &Program, main: &Program) -> Frame {
     let isa = Isa::base();
     let setup = setup(config, &isa, core, main);
-    let run = machine::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
-    let mut stepped = machine::step(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
+    let run = emu::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
+    let mut stepped = emu::step(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     stepped.method = run.method;
     assert!(run == stepped, "{config:?}\n{run:#?}\n{stepped:#?}");
     run
@@ -78,12 +78,11 @@ fn every_preset_and_arbiter_on_one_to_sixteen_cores() {
             .flat_map(|arbiter| (1..=16).map(move |cores| with(arbiter, cores, preset.config())))
             .collect();
         // All of them share what the work items did, and each is as if it had been alone, and stepped.
-        let frames = machine::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
+        let frames = emu::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
         let mut answers = None;
         for (config, frame) in machines.iter().zip(frames) {
             let frame = frame.unwrap_or_else(|failure| panic!("{failure}"));
-            let mut stepped =
-                machine::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
+            let mut stepped = emu::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
             assert_eq!(frame.method, Method::Replayed);
             stepped.method = Method::Replayed;
             assert!(frame == stepped, "{} {config:?}\n{frame:#?}\n{stepped:#?}", preset.name);
@@ -218,12 +217,12 @@ fn work_that_depends_on_the_number_of_cores_is_not_shared() {
     });
     let main = dispatch(20);
     let machines: Vec<Config> = [3, 5].into_iter().map(|cores| Config { cores, ..Config::default() }).collect();
-    let frames = machine::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
+    let frames = emu::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
     let frames: Vec<Frame> = frames.into_iter().map(|frame| frame.expect("it runs")).collect();
     assert_eq!(frames[0].method, Method::Replayed);
     assert_eq!(frames[1].method, Method::Stepped { why: "the work items depend on the number of cores" });
     for (config, frame) in machines.iter().zip(frames) {
-        let stepped = machine::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
+        let stepped = emu::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
         assert_eq!(frame.clocks, stepped.clocks);
     }
 }
@@ -243,8 +242,8 @@ fn a_trap_is_the_same_either_way() {
     for cores in [1, 4] {
         let config = Config { cores, ..Config::default() };
         let setup = setup(&config, &isa, &core, &main);
-        let run = machine::run(&setup, memory(), &mut |_| {}).expect_err("it traps");
-        let stepped = machine::step(&setup, memory(), &mut |_| {}).expect_err("it traps");
+        let run = emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps");
+        let stepped = emu::step(&setup, memory(), &mut |_| {}).expect_err("it traps");
         assert_eq!(run.to_string(), stepped.to_string());
         assert!(run.to_string().contains("began with 33, 33, 33"), "{run}");
     }

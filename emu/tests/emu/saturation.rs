@@ -1,7 +1,7 @@
 //! Where the bus saturates: the report's estimate of a pixel as a load, against the closed form.
 
 use emu::machine::config::MainConfig;
-use emu::machine::{self, Config, Frame, Options, Setup};
+use emu::machine::{Config, Frame, Options, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use isa::{Isa, Op, Program};
@@ -65,7 +65,7 @@ fn frames(cores: &[u32]) -> Vec<Frame> {
     let machines: Vec<Config> = cores.iter().map(machine).collect();
     let setup =
         Setup { config: &machines[0], isa: &isa, core: &core, main: &main, kinds: vec![], options: Options::default() };
-    let frames = machine::run_all(&setup, &machines, &Memory::new(vec![0; 1_240]), &mut |_| {});
+    let frames = emu::run_all(&setup, &machines, &Memory::new(vec![0; 1_240]), &mut |_| {});
     frames.into_iter().map(|frame| frame.unwrap_or_else(|failure| panic!("{failure}"))).collect()
 }
 

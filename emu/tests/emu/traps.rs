@@ -196,7 +196,7 @@ fn a_trap_on_the_machine_names_the_work_item() {
     });
     let setup =
         Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: vec![], options: Options::default() };
-    match emu::machine::run(&setup, Memory::new(vec![0; 100]), &mut |_| {}) {
+    match emu::run(&setup, Memory::new(vec![0; 100]), &mut |_| {}) {
         Err(Failure::Trap(trap)) => {
             assert_eq!((trap.core, trap.pc), (1, 2));
             assert_eq!(trap.kind, Fault::Memory { address: 98, octets: 4, size: 100 });

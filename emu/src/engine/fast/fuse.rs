@@ -4,7 +4,7 @@
 use crate::engine::cost::{FLAG, HALVES, Toll};
 use crate::engine::plan::Plan;
 use crate::engine::taint::Origin;
-use crate::engine::{Seat, State};
+use crate::engine::{CoreId, State};
 
 /// The bits which say that something is to be looked at before a run begins: a sum has come to half of its room, or the run is flagged.
 pub(super) const LOOK: u64 = HALVES | FLAG;
@@ -30,7 +30,7 @@ pub(super) struct Fuse {
 
 impl Fuse {
     /// At the state of an item.
-    pub(super) fn new(state: &State, seat: Seat, origin: Origin, is_following: bool) -> Fuse {
+    pub(super) fn new(state: &State, seat: CoreId, origin: Origin, is_following: bool) -> Fuse {
         let State { steps, inner_steps, clocks, elementary, pc, .. } = *state;
         let (limit, bias, followed) = (seat.step_limit, Toll::default(), (pc, 0));
         Fuse { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }

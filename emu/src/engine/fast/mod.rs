@@ -19,7 +19,7 @@ use count::Count;
 
 use super::host::{HostSimd, Present};
 use super::plan::Plan;
-use super::state::{Seat, State};
+use super::state::{CoreId, State};
 use super::taint::Origin;
 use super::{Demand, Engine, Refusal, Stopped, Wire};
 use crate::profile::RunObserver;
@@ -43,7 +43,7 @@ impl<'a> Engine<'a> for Fast<'a> {
 
     fn run<L: Wire, O: RunObserver>(
         &mut self,
-        seat: Seat,
+        seat: CoreId,
         state: &mut State,
         link: &mut L,
         origin: &mut Origin,
@@ -66,7 +66,7 @@ const TOO_LONG: Refusal = "an instruction takes more clocks than the sums of the
 fn run<L: Wire, O: RunObserver>(
     Present(simd): Present,
     plan: &Plan,
-    seat: Seat,
+    seat: CoreId,
     state: &mut State,
     link: &mut L,
     count: &mut Count,
@@ -89,7 +89,7 @@ fn run<L: Wire, O: RunObserver>(
 
 fn walk<L: Wire, O: RunObserver>(
     plan: &Plan,
-    seat: Seat,
+    seat: CoreId,
     state: &mut State,
     link: &mut L,
     count: &mut Count,

@@ -4,8 +4,8 @@ use isa::table::AnyOutcome;
 
 use super::count::Count;
 use super::fuse::Fuse;
+use crate::engine::CoreId;
 use crate::engine::Moment;
-use crate::engine::Seat;
 use crate::engine::cost::FLAG;
 use crate::engine::plan::{Plan, Step};
 use crate::engine::{Stopped, Wire};
@@ -43,7 +43,7 @@ pub(super) struct Ended {
 /// All but the registers.
 pub(super) struct Walk<'a, L, O> {
     pub plan: &'a Plan<'a>,
-    pub seat: Seat,
+    pub seat: CoreId,
     pub buffer: &'a mut Buffer,
     pub units: &'a mut Units,
     pub link: &'a mut L,

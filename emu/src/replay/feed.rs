@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 
-use super::recorder::Prefix;
+use super::record::Prefix;
 use super::recording::{Reason, Recording};
 use crate::exec::Message;
 
@@ -16,7 +16,7 @@ const MOST_HELD: usize = 1 << 14;
 
 /// The recordings of one machine, each of which it uses once.
 #[derive(Debug)]
-pub struct Library {
+pub struct Feed {
     /// What every work item does before its message comes.
     pub prefix: Prefix,
     /// Number of cores that the items were recorded with.
@@ -30,10 +30,10 @@ pub struct Library {
     pub lost: Option<Reason>,
 }
 
-impl Library {
+impl Feed {
     /// The recordings that come through a channel.
-    pub fn new(prefix: Prefix, recorded_cores: u32, cores: u32, batches: Receiver<Arc<Batch>>) -> Library {
-        Library { prefix, recorded_cores, cores, batches, held: VecDeque::new(), lost: None }
+    pub fn new(prefix: Prefix, recorded_cores: u32, cores: u32, batches: Receiver<Arc<Batch>>) -> Feed {
+        Feed { prefix, recorded_cores, cores, batches, held: VecDeque::new(), lost: None }
     }
 
     /// Takes the recording of the work item that begins with a message; `None` when the replay is lost.

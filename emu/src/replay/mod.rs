@@ -1,25 +1,40 @@
-//! Runs machines that differ in time only: work items run once, on all host threads, and each machine puts what they did
+//! Replay of machines that differ in time only: work items run once, on all host threads, and each machine puts what they did
 //! on its own clock. Whatever that cannot be done for is stepped, with the same result.
 
+mod budget;
+mod bus_cursor;
+mod count;
+mod cursor;
+mod feed;
+mod item;
+mod prerun;
+mod record;
+mod recorded;
+mod recording;
+
+use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use isa::Class;
 
-use super::ending::Ending;
-use super::frame::Method;
-use super::library::{Batch, Library};
-use super::recorder::{Prefix, Recorder};
-use super::recording::Reason;
-use super::schedule;
-use super::scout::{self, Survey};
-use super::strands::Keeping;
-use super::{Failure, Frame, Setup};
+pub use count::{Count, count};
+pub use recorded::Recorded;
+pub use recording::Reason;
+
 use crate::code::Code;
 use crate::exec::Watch;
+use crate::machine::outcome::Method;
+use crate::machine::schedule::{self, Machine};
+use crate::machine::{Failure, Frame, Setup};
 use crate::octets::Memory;
 use crate::profile::{RunObserver, Unobserved};
 use crate::quantity::Octets;
+use cursor::{Cursor, Replayer};
+use feed::{Batch, Feed};
+use item::Keeping;
+use prerun::Survey;
+use record::{Prefix, Recorder};
 
 /// Batches that may wait for a machine.
 const AHEAD: usize = 2;
@@ -33,11 +48,8 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
 ) -> Vec<Result<Frame, Failure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     let step = |setup: &Setup, why: Reason, progress: &mut dyn FnMut(u64)| {
-        let ending = schedule::run::<T, O>(setup, memory.clone(), arithmetic, None, progress);
-        ending.map(|frame| Frame { method: Method::Stepped { why }, ..frame }).map_err(|ending| match ending {
-            Ending::Failure(failure) => failure,
-            Ending::Lost(_) => unreachable!("what is stepped cannot lose a recording"),
-        })
+        let frame = schedule::run::<T, O>(setup, memory.clone(), arithmetic, progress)?;
+        Ok(Frame { method: Method::Stepped { why }, ..frame })
     };
     let prefix = match prefix(first, memory, arithmetic) {
         Ok(prefix) => prefix,
@@ -47,9 +59,8 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut results = Vec::with_capacity(setups.len());
     for (setup, ending) in setups.iter().zip(endings) {
         results.push(match ending {
-            Ok(frame) => Ok(with_counts(frame, setup, &survey)),
-            Err(Ending::Failure(failure)) => Err(failure),
-            Err(Ending::Lost(why)) => step(setup, why, progress),
+            Ok(frame) => frame.map(|frame| with_counts(frame, setup, &survey)),
+            Err(why) => step(setup, why, progress),
         });
     }
     results
@@ -64,24 +75,23 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
     Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), Keeping::Segments).prefix()
 }
 
-/// The scout on a thread of its own, the first machine on this one, each other one on another.
+/// The prerun on a thread of its own, the first machine on this one, each other one on another.
 fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     setups: &[Setup],
     prefix: Prefix,
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> (Survey, Vec<Result<Frame, Ending>>) {
+) -> (Survey, Vec<Result<Result<Frame, Failure>, Reason>>) {
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
     let recorded_cores = setups[0].config.cores;
-    let library = |setup: &Setup, batches: Receiver<Arc<Batch>>| {
-        Library::new(prefix, recorded_cores, setup.config.cores, batches)
-    };
+    let feed =
+        |setup: &Setup, batches: Receiver<Arc<Batch>>| Feed::new(prefix, recorded_cores, setup.config.cores, batches);
     std::thread::scope(|scope| {
         let own = arithmetic.clone();
-        let scout = scope.spawn(move || {
-            scout::run::<T, O>(&setups[0], memory, own, Keeping::Segments, &mut |batch| {
+        let prerun = scope.spawn(move || {
+            prerun::run::<T, O>(&setups[0], memory, own, Keeping::Segments, &mut |batch| {
                 senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
             })
         });
@@ -89,16 +99,44 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
         let (first, batches) = machines.next().expect("there is a machine");
         let others: Vec<_> = machines
             .map(|(setup, batches)| {
-                let (own, library) = (arithmetic.clone(), library(setup, batches));
-                scope.spawn(move || schedule::run::<T, O>(setup, memory.clone(), &own, Some(library), &mut |_| {}))
+                let (own, feed) = (arithmetic.clone(), feed(setup, batches));
+                scope.spawn(move || on_clock::<T, O>(setup, memory.clone(), &own, feed, &mut |_| {}))
             })
             .collect();
-        let library = library(first, batches);
-        let mut endings = vec![schedule::run::<T, O>(first, memory.clone(), arithmetic, Some(library), progress)];
+        let feed = feed(first, batches);
+        let mut endings = vec![on_clock::<T, O>(first, memory.clone(), arithmetic, feed, progress)];
         let panicless = "a machine does not panic";
         endings.extend(others.into_iter().map(|other| other.join().expect(panicless)));
-        (scout.join().expect("the scout does not panic"), endings)
+        (prerun.join().expect("the prerun does not panic"), endings)
     })
+}
+
+/// Puts recorded work items on a machine's clock. The counts of the cores are then missing from the frame.
+///
+/// # Errors
+/// Why the machine does not do what was recorded; the inner error is a trap.
+fn on_clock<T: Watch, O: RunObserver>(
+    setup: &Setup,
+    memory: Memory,
+    arithmetic: &T,
+    feed: Feed,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Result<Frame, Failure>, Reason> {
+    let timing = setup.config.timing();
+    let core_code = Code::new(setup.core, setup.isa, timing);
+    let main_code = Code::new(setup.main, setup.isa, timing);
+    let feed = RefCell::new(feed);
+    let core = |core| Replayer::Core(Cursor::new(&core_code, core, &feed));
+    let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, &main_code, arithmetic)));
+    let done = Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run();
+    let mut feed = feed.into_inner();
+    if done.is_ok() && feed.lost.is_none() && !feed.is_used_up() {
+        feed.lose::<()>("the main processor hands out other work than it would to many cores");
+    }
+    match feed.lost {
+        Some(reason) => Err(reason),
+        None => Ok(done),
+    }
 }
 
 /// The frame with what the cores counted, which the replay does not know.

@@ -1,16 +1,16 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
-use super::Setup;
-use super::kinds::Kinds;
+use super::budget::Room;
+use super::item::{Keeping, Strand, StrandLink};
 use super::recording::{Reason, Recording, Segment, reads};
-use super::room::Room;
-use super::station::{Access, Request};
-use super::strands::{Keeping, Strand, StrandLink};
 use crate::code::Code;
 use crate::engine::{
-    self, Demand, Independence, Moment, Pause, Runner, Seat, State, Stopped, Wish, choose, interpreter,
+    self, CoreId, Demand, Independence, Moment, Pause, Runner, State, Stopped, Wish, choose, interpreter,
 };
 use crate::exec::{Link, Message, Watch};
+use crate::machine::Setup;
+use crate::machine::kinds::Kinds;
+use crate::machine::request::{Access, Request};
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, RunObserver, Unobserved};
 use crate::quantity::Octets;
@@ -114,7 +114,7 @@ pub struct Recorder<'a, T, O> {
     code: &'a Code<'a>,
     memory: &'a Memory,
     arithmetic: T,
-    seat: Seat,
+    seat: CoreId,
     state: State,
     initial: Buffer,
     keeping: Keeping,
@@ -132,7 +132,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// A core that has recorded nothing.
     pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, keeping: Keeping) -> Self {
         let config = setup.config;
-        let seat = Seat { core: 0, cores: config.cores, step_limit: config.step_limit };
+        let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
         let Wish { kind, simd } = setup.options.wish();
         let demand = Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: true };

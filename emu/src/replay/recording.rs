@@ -3,9 +3,9 @@
 
 use std::ops::Range;
 
-use super::station::{Access, Request};
 use crate::engine::Pause;
 use crate::exec::Message;
+use crate::machine::request::{Access, Request};
 use crate::quantity::Octets;
 
 /// Why a program's work items cannot be replayed and have to be stepped.

@@ -1,11 +1,12 @@
 //! A frame without clocks: what the work items answer and count, for those who ask nothing of time.
 
-use super::kinds::Kinds;
+use super::item::Keeping;
+use super::prerun;
 use super::recording::Reason;
-use super::strands::Keeping;
-use super::{Failure, Setup, check, on_arithmetic, replay, scout};
 use crate::engine::{Pause, Task};
 use crate::exec::Watch;
+use crate::machine::kinds::Kinds;
+use crate::machine::{Failure, Setup, check, on_arithmetic};
 use crate::octets::Memory;
 use crate::profile::{Profile, RunObserver};
 use crate::tally::Tally;
@@ -29,7 +30,7 @@ pub struct Count {
 ///
 /// # Errors
 /// A machine out of its ranges, or a program whose initial buffer does not fit. The inner error says why there is no such
-/// result: the frame traps, or what its work items do depends on time, which [`super::run`] finds out about.
+/// result: the frame traps, or what its work items do depends on time, which [`crate::run()`] finds out about.
 pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
     check(setup)?;
     Ok(on_arithmetic(setup, Counting { setup, memory }))
@@ -45,9 +46,9 @@ impl Task for Counting<'_> {
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let Counting { setup, memory } = self;
-        replay::prefix(setup, memory, arithmetic)?;
+        super::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);
-        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Passes, &mut |batch| {
+        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Passes, &mut |batch| {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {

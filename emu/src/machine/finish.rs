@@ -1,45 +1,25 @@
-//! How a schedule ends: with a frame, with a trap, or with the news that its recordings were of no use.
+//! End of a schedule: a frame or a trap.
 
 use isa::Class;
 
 use super::Failure;
 use super::cache::Cache;
-use super::frame::{Frame, Method};
+use super::outcome::{Frame, Method};
 use super::processor::Standing;
-use super::recording::Reason;
 use super::schedule::Machine;
 use super::trace::Spans;
-use crate::code::Code;
-use crate::exec::Watch;
-use crate::profile::{Profile, RunObserver};
+use super::worker::Worker;
+use crate::profile::Profile;
 use crate::quantity::Octets;
 use crate::tally::Tally;
 use crate::trap::{Fault, Trap};
 
-/// Why a schedule has no result.
-pub enum Ending {
-    /// The machine stopped.
-    Failure(Failure),
-    /// The recorded work items turned out not to be what this machine does.
-    Lost(Reason),
-}
-
-impl Ending {
-    /// What a run without recordings ended with.
-    pub fn into_failure(self) -> Failure {
-        match self {
-            Ending::Failure(failure) => failure,
-            Ending::Lost(_) => unreachable!("only a replay has recordings to lose"),
-        }
-    }
-}
-
-impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
+impl<W: Worker> Machine<'_, W> {
     /// The trap of a processor that stopped.
     pub(super) fn trap(&self, number: usize) -> Trap {
         let processor = &self.processors[number];
         let kind = processor.fault.unwrap_or(Fault::Deadlock);
-        let trap = Trap::new(kind, number as u32, processor.state.pc, processor.code);
+        let trap = Trap::new(kind, number as u32, processor.worker.progress().pc, processor.code);
         match processor.work.subject {
             Some([x, y, z]) => {
                 trap.with_detail(format!("in the work item whose first message began with {x}, {y}, {z}"))
@@ -68,7 +48,8 @@ impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
         Err(self.trap(first).with_detail(others.join(", ")).into())
     }
 
-    pub(super) fn finish(mut self, core_code: &Code, main_code: &Code) -> Frame {
+    /// The outcome of a run that has ended.
+    pub(super) fn finish(mut self) -> Frame {
         let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
         for processor in &mut self.processors {
             processor.idle_until(clocks);
@@ -81,14 +62,16 @@ impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
             self.processors.iter_mut().map(|processor| processor.spans.take().map_or(Vec::new(), Spans::into_list));
         let spans = spans.collect();
         let trace = self.bus_watch.map(|watch| watch.into_trace(spans));
-        let mut main = self.processors.pop().expect("a machine has a main processor");
-        let main_tally = main.take_tally();
+        let main = self.processors.pop().expect("a machine has a main processor");
+        let main_code = main.code;
+        let (main_tally, main_profile) = main.worker.into_counts();
+        let core_code = self.processors.first().map_or(main_code, |core| core.code);
         let mut tally = Tally::new(core_code);
         let mut profile: Option<Profile> = None;
-        for mut processor in self.processors {
-            let more = processor.take_tally();
+        for processor in self.processors {
+            let (more, observed) = processor.worker.into_counts();
             tally.merge(&more);
-            match (&mut profile, processor.observer.into_profile(core_code, &more)) {
+            match (&mut profile, observed) {
                 (Some(profile), Some(more)) => profile.merge(&more),
                 (profile, more) => *profile = more,
             }
@@ -106,7 +89,7 @@ impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
             kinds: self.kinds.into_totals(),
             memory: self.shared.memory,
             tally,
-            main_profile: main.observer.into_profile(main_code, &main_tally),
+            main_profile,
             main_tally,
             profile,
             trace,

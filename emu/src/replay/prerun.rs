@@ -5,16 +5,16 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::Setup;
-use super::kinds::Kinds;
-use super::library::Batch;
-use super::recorder::Recorder;
+use super::budget::Room;
+use super::feed::Batch;
+use super::item::Keeping;
+use super::record::Recorder;
 use super::recording::{Reason, Recording};
-use super::room::Room;
-use super::strands::Keeping;
 use crate::code::Code;
-use crate::engine::{Demand, Pause, Seat, State, Wish, choose};
+use crate::engine::{CoreId, Demand, Pause, State, Wish, choose};
 use crate::exec::{Link, Message, Watch};
+use crate::machine::Setup;
+use crate::machine::kinds::Kinds;
 use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, Profile, RunObserver, Unobserved};
 use crate::tally::Tally;
@@ -157,7 +157,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut runner = choose(kind, &demand);
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
-        let seat = Seat { core: LANES, cores: LANES, step_limit };
+        let seat = CoreId { core: LANES, cores: LANES, step_limit };
         let nobody = &mut Unobserved;
         let pause = runner.run(seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
         if desk.work.is_empty() {

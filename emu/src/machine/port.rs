@@ -2,48 +2,12 @@
 
 use std::ops::Range;
 
-use super::library::Library;
 use super::mailbox::Mailboxes;
+use super::request::{Access, Request};
 use crate::exec::{Link, Message};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::{Clocks, Octets};
 use crate::trap::{Fault, Stop};
-
-/// What a transfer does with global memory.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Access {
-    /// It copies a block to the buffer.
-    Load,
-    /// It reads a word.
-    Read,
-    /// It writes, or reads and writes.
-    Write,
-}
-
-/// What a core waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Request {
-    /// A transfer between it and global memory.
-    Transfer {
-        /// First octet in global memory.
-        address: u32,
-        /// Octets that go over the bus.
-        octets: Octets,
-        /// What it does.
-        access: Access,
-    },
-    /// A message to another processor.
-    Send {
-        /// The receiver.
-        to: u32,
-        /// Octets that go over the bus.
-        octets: Octets,
-    },
-    /// A message for it.
-    Receive,
-    /// The others, at a barrier.
-    Barrier,
-}
 
 /// What all processors share.
 #[derive(Debug)]
@@ -54,14 +18,12 @@ pub struct Shared {
     pub written: Range<u64>,
     /// Messages on their way.
     pub mailboxes: Mailboxes,
-    /// The work items that the cores replay, where they do.
-    pub library: Option<Library>,
 }
 
 impl Shared {
-    /// A memory, empty mailboxes, and recorded work items.
-    pub fn new(memory: Memory, processors: u32, library: Option<Library>) -> Shared {
-        Shared { memory, written: 0..0, mailboxes: Mailboxes::new(processors), library }
+    /// A memory and empty mailboxes.
+    pub fn new(memory: Memory, processors: u32) -> Shared {
+        Shared { memory, written: 0..0, mailboxes: Mailboxes::new(processors) }
     }
 
     fn note_written(&mut self, address: u32, octets: u32) {
@@ -77,7 +39,7 @@ impl Shared {
 /// The link of one core while its engine runs. An instruction is tried twice: without leave it only says what it asks
 /// for, so that range errors show at once; with leave it happens.
 #[derive(Debug)]
-pub struct Station<'a> {
+pub struct CorePort<'a> {
     /// What it shares with the others.
     pub shared: &'a mut Shared,
     /// Number of the processor.
@@ -90,10 +52,10 @@ pub struct Station<'a> {
     pub taken: Option<(Message, u32)>,
 }
 
-impl<'a> Station<'a> {
+impl<'a> CorePort<'a> {
     /// A link with or without leave.
-    pub fn new(shared: &'a mut Shared, processor: u32, leave: Option<Clocks>) -> Station<'a> {
-        Station { shared, processor, leave, request: None, taken: None }
+    pub fn new(shared: &'a mut Shared, processor: u32, leave: Option<Clocks>) -> CorePort<'a> {
+        CorePort { shared, processor, leave, request: None, taken: None }
     }
 
     /// Uses up the leave, or notes what is asked for.
@@ -109,7 +71,7 @@ fn transfer(access: Access, address: u32, octets: u32) -> Request {
     Request::Transfer { address, octets: Octets(octets.into()), access }
 }
 
-impl Link for Station<'_> {
+impl Link for CorePort<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
         self.shared.memory.holds(from, octets)?;

@@ -1,18 +1,17 @@
 //! Work items that were recorded once and are kept, to be replayed as often as one likes. Where memory must stay
-//! bounded, [`super::run_all`] streams them instead.
+//! bounded, [`crate::run_all`] streams them instead.
 
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 
-use super::ending::Ending;
-use super::library::{Batch, Library};
-use super::recorder::Prefix;
+use super::feed::{Batch, Feed};
+use super::item::Keeping;
+use super::prerun::{self, Survey};
+use super::record::Prefix;
 use super::recording::Reason;
-use super::scout::{self, Survey};
-use super::strands::Keeping;
-use super::{Failure, Frame, Setup, check, on_arithmetic, replay, schedule};
 use crate::engine::Task;
 use crate::exec::Watch;
+use crate::machine::{Failure, Frame, Setup, check, on_arithmetic};
 use crate::octets::Memory;
 use crate::profile::RunObserver;
 
@@ -43,13 +42,12 @@ impl Recorded {
     /// Replays them on a machine that computes as the one that they were recorded for.
     ///
     /// # Errors
-    /// As [`super::run`]; the inner error says why this machine would not do what was recorded.
+    /// As [`crate::run()`]; the inner error says why this machine would not do what was recorded.
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<Frame, Reason>, Failure> {
         check(setup)?;
         match on_arithmetic(setup, Replaying { recorded: self, setup, memory }) {
-            Ok(frame) => Ok(Ok(replay::with_counts(frame, setup, &self.survey))),
-            Err(Ending::Lost(reason)) => Ok(Err(reason)),
-            Err(Ending::Failure(failure)) => Err(failure),
+            Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.survey))),
+            Err(reason) => Ok(Err(reason)),
         }
     }
 }
@@ -64,9 +62,9 @@ impl Task for Recording<'_> {
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let Recording { setup, memory } = self;
-        let prefix = replay::prefix(setup, memory, arithmetic)?;
+        let prefix = super::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
-        let survey = scout::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Segments, &mut |batch| {
+        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Segments, &mut |batch| {
             batches.push(batch);
             true
         });
@@ -84,7 +82,7 @@ struct Replaying<'a> {
 }
 
 impl Task for Replaying<'_> {
-    type Result = Result<Frame, Ending>;
+    type Result = Result<Result<Frame, Failure>, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         let (sender, receiver) = channel();
@@ -93,7 +91,7 @@ impl Task for Replaying<'_> {
         }
         drop(sender);
         let Recorded { prefix, cores, .. } = *self.recorded;
-        let library = Library::new(prefix, cores, self.setup.config.cores, receiver);
-        schedule::run::<T, O>(self.setup, self.memory, arithmetic, Some(library), &mut |_| {})
+        let feed = Feed::new(prefix, cores, self.setup.config.cores, receiver);
+        super::on_clock::<T, O>(self.setup, self.memory, arithmetic, feed, &mut |_| {})
     }
 }

@@ -2,11 +2,10 @@
 
 use super::processor::{Act, Processor, Standing};
 use super::schedule::Machine;
-use crate::exec::Watch;
-use crate::profile::RunObserver;
+use super::worker::Worker;
 use crate::quantity::Clocks;
 
-impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
+impl<W: Worker> Machine<'_, W> {
     /// Sets when a listening processor takes its next message, when there is one.
     pub(super) fn listen(&mut self, number: usize) {
         let processor = &mut self.processors[number];
@@ -43,7 +42,7 @@ impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
 
     /// Lets all leave the barrier, when nobody is missing, at the clock at which the last one came or had no more to do.
     pub(super) fn leave_barrier(&mut self) {
-        let is_here = |processor: &Processor<O>| match processor.standing {
+        let is_here = |processor: &Processor<W>| match processor.standing {
             Standing::Meets | Standing::Rests => true,
             // Nobody but the main processor begins work.
             Standing::Asleep | Standing::Listens => self.has_main_halted && processor.work.subject.is_none(),
@@ -52,7 +51,7 @@ impl<T: Watch, O: RunObserver> Machine<'_, T, O> {
         if !self.processors.iter().all(is_here) {
             return;
         }
-        let meets = |processor: &&mut Processor<O>| processor.standing == Standing::Meets;
+        let meets = |processor: &&mut Processor<W>| processor.standing == Standing::Meets;
         let last = self.processors.iter_mut().filter(meets).map(|processor| processor.clock).max();
         let at = last.unwrap_or_default().max(self.now);
         for processor in self.processors.iter_mut().filter(meets) {

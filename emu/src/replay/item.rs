@@ -1,11 +1,11 @@
 //! The links of work items that are recorded by the fast engine, and what they do.
 
-use super::kinds::Kinds;
+use super::budget::Room;
 use super::recording::Segment;
-use super::room::Room;
-use super::station::{Access, Request};
 use crate::engine::{Moment, Wire};
 use crate::exec::{Link, Message};
+use crate::machine::kinds::Kinds;
+use crate::machine::request::{Access, Request};
 use crate::octets::{Buffer, Memory};
 use crate::quantity::Octets;
 use crate::trap::Stop;

@@ -1,0 +1,216 @@
+//! Work of a processor: who does it, and what the machine has to know of that. [`Executor`] executes the processor's program.
+
+use std::ops::Range;
+
+use super::bus::{Lengths, NextTransfer};
+use super::port::{CorePort, Shared};
+use super::request::Request;
+use crate::code::Code;
+use crate::engine::{Choice, CoreId, Pause, Runner, State, interpreter};
+use crate::exec::{Message, Watch};
+use crate::octets::Buffer;
+use crate::profile::{Profile, RunObserver, Unobserved};
+use crate::quantity::{Clocks, Octets};
+use crate::tally::Tally;
+
+/// One advance of a worker: what it did, and what it waits for now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Advance {
+    /// Why it stopped.
+    pub pause: Pause,
+    /// The request that it waits for, where it stopped to wait.
+    pub request: Option<Request>,
+    /// The message that it took, and its sender.
+    pub taken: Option<(Message, u32)>,
+    /// Clocks of computing.
+    pub clocks: u64,
+    /// Instructions executed.
+    pub steps: u64,
+    /// Octets of transfers still to come, where a worker knows them beforehand: then it [is accounted](Worker::is_accounted).
+    pub octets: Octets,
+}
+
+/// How far a work item has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Slot of the next instruction.
+    pub pc: u32,
+    /// Instructions executed since its reset.
+    pub steps: u64,
+    /// Elementary operations of those.
+    pub elementary: u64,
+}
+
+/// Clocks of a worker in which it was a master of the bus by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Played {
+    /// Clocks of computing.
+    pub busy: Clocks,
+    /// Clocks of waiting for transfers.
+    pub waiting: Clocks,
+}
+
+/// Whoever does the work of a processor, item after item.
+pub trait Worker {
+    /// The worker as a master of the bus, where it can go from transfer to transfer by itself.
+    type Master: NextTransfer;
+
+    /// Goes on up to the next thing that concerns others. With permission, what the worker waits for is done first, at that clock.
+    fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance;
+
+    /// Starts the next work item from reset.
+    fn restart(&mut self);
+
+    /// Is told that the work item is over.
+    fn end(&mut self);
+
+    /// How far the work item has come.
+    fn progress(&self) -> Progress;
+
+    /// Whether the first thing that a work item does outside itself is a receive.
+    fn receives_first(&self, shared: &mut Shared) -> bool;
+
+    /// Whether its octets are known from elsewhere, so that the machine does not add up what it asks for.
+    fn is_accounted(&self) -> bool;
+
+    /// Hands the work item over to its master when a transfer is asked for at a clock, where nothing but the bus is needed for what comes next.
+    /// `written` is the part of global memory that was written so far.
+    fn hand_over(&mut self, master: &mut Self::Master, clock: Clocks, written: &Range<u64>, lengths: &Lengths);
+
+    /// Takes the work item back when the last transfer that its master went on to has ended at a clock; `None` where it was not handed over.
+    fn take_back(&mut self, master: &mut Self::Master, end: Clocks) -> Option<Played>;
+
+    /// Makes a master stop after the transfer that it asks for, where what follows may depend on what was written.
+    fn stop_at(master: &mut Self::Master, written: &Range<u64>);
+
+    /// Passes of its program, and what was observed of it.
+    fn into_counts(self) -> (Tally, Option<Profile>);
+}
+
+/// Master that goes on to nothing by itself.
+#[derive(Debug, Default)]
+pub struct PlainMaster {
+    longest_wait: Clocks,
+}
+
+impl NextTransfer for PlainMaster {
+    fn next_transfer(&mut self, _: &Lengths) -> Option<(Clocks, super::bus::Burst)> {
+        None
+    }
+
+    fn note_wait(&mut self, waited: Clocks) {
+        self.longest_wait = self.longest_wait.max(waited);
+    }
+
+    fn take_longest_wait(&mut self) -> Clocks {
+        std::mem::take(&mut self.longest_wait)
+    }
+}
+
+/// Worker that executes a program on an engine.
+pub struct Executor<'a, T, O> {
+    code: &'a Code<'a>,
+    core: CoreId,
+    runner: Runner<'a>,
+    arithmetic: &'a T,
+    initial: Buffer,
+    tally: Tally,
+    /// State that the program sees.
+    pub state: State,
+    /// Observer of the program.
+    pub observer: O,
+}
+
+impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
+    /// A worker before its first item.
+    pub fn new(
+        code: &'a Code<'a>,
+        core: CoreId,
+        buffer_octets: u32,
+        runner: Runner<'a>,
+        arithmetic: &'a T,
+    ) -> Executor<'a, T, O> {
+        let initial = Buffer::new(&code.program.buffer, buffer_octets);
+        Executor {
+            code,
+            core,
+            runner,
+            arithmetic,
+            tally: Tally::new(code),
+            state: State::new(code, initial.clone()),
+            initial,
+            observer: O::new(code),
+        }
+    }
+
+    /// The engine that executes its program.
+    pub fn engine(&self) -> Choice {
+        self.runner.choice()
+    }
+
+    /// The passes of its program so far.
+    pub fn take_tally(&mut self) -> Tally {
+        self.runner.fold(&mut self.tally);
+        std::mem::replace(&mut self.tally, Tally::new(self.code))
+    }
+}
+
+impl<T: Watch, O: RunObserver> Worker for Executor<'_, T, O> {
+    type Master = PlainMaster;
+
+    fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {
+        let (clocks, steps) = (self.state.clocks, self.state.steps);
+        let mut port = CorePort::new(shared, self.core.core, permission);
+        let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
+        let pause = self.runner.run(self.core, state, self.arithmetic, &mut port, tally, observer);
+        Advance {
+            pause,
+            request: port.request,
+            taken: port.taken,
+            clocks: self.state.clocks - clocks,
+            steps: self.state.steps - steps,
+            octets: Octets(0),
+        }
+    }
+
+    fn restart(&mut self) {
+        self.state.begin(self.code, &self.initial);
+        self.observer.begin(self.state.pc);
+    }
+
+    fn end(&mut self) {
+        self.observer.end();
+    }
+
+    fn progress(&self) -> Progress {
+        let State { pc, steps, elementary, .. } = self.state;
+        Progress { pc, steps, elementary }
+    }
+
+    /// The program runs for that, and is not counted.
+    fn receives_first(&self, shared: &mut Shared) -> bool {
+        let mut state = State::new(self.code, self.initial.clone());
+        let mut port = CorePort::new(shared, self.core.core, None);
+        let (mut tally, nobody) = (Tally::new(self.code), &mut Unobserved);
+        let pause = interpreter::run(self.code, self.core, &mut state, self.arithmetic, &mut port, &mut tally, nobody);
+        pause == Pause::Wait && port.request == Some(Request::Receive)
+    }
+
+    fn is_accounted(&self) -> bool {
+        false
+    }
+
+    fn hand_over(&mut self, _: &mut PlainMaster, _: Clocks, _: &Range<u64>, _: &Lengths) {}
+
+    fn take_back(&mut self, _: &mut PlainMaster, _: Clocks) -> Option<Played> {
+        None
+    }
+
+    fn stop_at(_: &mut PlainMaster, _: &Range<u64>) {}
+
+    fn into_counts(mut self) -> (Tally, Option<Profile>) {
+        let tally = self.take_tally();
+        let profile = self.observer.into_profile(self.code, &tally);
+        (tally, profile)
+    }
+}

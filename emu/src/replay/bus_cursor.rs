@@ -1,0 +1,220 @@
+//! Recorded transfers of a work item, one after the other, as long as nothing but the arbiter stands between them: the core that replays the item
+//! hands it over when it asks for a transfer, and takes it back when something else is next.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::recording::{Recording, Segment};
+use crate::machine::arbiter::NEVER;
+use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
+use crate::machine::worker::Played;
+use crate::quantity::{Clocks, Octets};
+
+/// Recorded work item that a master of the bus goes through by itself; none at first.
+#[derive(Debug)]
+pub struct BusCursor {
+    /// The work item; none while its core has it.
+    recording: Option<Arc<Recording>>,
+    /// Segments that are behind it; the last of them is the transfer that the master asks for.
+    next: usize,
+    /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
+    computing: Clocks,
+    /// That transfer's first burst.
+    ahead: Burst,
+    /// When it was handed over.
+    start: Clocks,
+    /// Clocks of computing since then.
+    busy: Clocks,
+    /// The longest wait of the master for a grant that nobody was told of.
+    longest_wait: Clocks,
+}
+
+/// Clocks of computing before a transfer that reads, and its first burst; [`NEVER`] before anything else.
+#[inline(always)]
+fn ahead_of(segments: &[Segment], next: usize, lengths: &Lengths) -> (Clocks, Burst) {
+    match segments.get(next) {
+        Some(segment) if segment.is_read() => (Clocks(segment.clocks.into()), lengths.burst(segment.octets())),
+        _ => (NEVER, Burst::default()),
+    }
+}
+
+/// Whether two ranges have an octet in common.
+pub fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
+    one.start < other.end && other.start < one.end
+}
+
+impl Default for BusCursor {
+    fn default() -> BusCursor {
+        let none = Clocks(0);
+        let (computing, ahead) = (NEVER, Burst::default());
+        BusCursor { recording: None, next: 0, computing, ahead, start: none, busy: none, longest_wait: none }
+    }
+}
+
+impl BusCursor {
+    /// Takes over a work item at a clock, when its core begins to ask for the last of the segments that are behind it.
+    pub fn begin(&mut self, recording: Arc<Recording>, next: usize, clock: Clocks, lengths: &Lengths) {
+        (self.next, self.start, self.busy) = (next, clock, Clocks(0));
+        self.recording = Some(recording);
+        self.look(lengths);
+    }
+
+    #[inline(always)]
+    fn look(&mut self, lengths: &Lengths) {
+        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        (self.computing, self.ahead) = ahead_of(segments, self.next, lengths);
+    }
+
+    /// Makes it end with the transfer that its master asks for, where it reads any of these octets.
+    pub fn stop_at(&mut self, written: &Range<u64>) {
+        if self.recording.as_ref().is_some_and(|recording| overlap(&recording.reads, written)) {
+            self.computing = NEVER;
+        }
+    }
+
+    /// Hands the work item back when its transfer has ended at a clock, with the segments that are behind it and the clocks since it was handed
+    /// over; `None` where its core has it.
+    pub fn end(&mut self, clock: Clocks) -> Option<(Arc<Recording>, usize, Played)> {
+        let recording = self.recording.take()?;
+        self.computing = NEVER;
+        let played = Played { busy: self.busy, waiting: clock - self.start - self.busy };
+        Some((recording, self.next, played))
+    }
+}
+
+impl NextTransfer for BusCursor {
+    #[inline(always)]
+    fn next_transfer(&mut self, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+        let (computing, ahead) = (self.computing, self.ahead);
+        if computing == NEVER {
+            return None;
+        }
+        self.busy += computing;
+        self.next += 1;
+        self.look(lengths);
+        Some((computing, ahead))
+    }
+
+    #[inline(never)]
+    fn go_alone(&mut self, lengths: &Lengths, first: Burst, arrival: Clocks, limit: Clocks) -> Alone {
+        let mut alone = Alone::none(first, arrival);
+        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
+        let before = (next, arrival);
+        while alone.arrival < limit {
+            let Burst { octets, rest, length } = alone.burst;
+            let is_last = rest == Octets(0);
+            if is_last && computing == NEVER {
+                break;
+            }
+            alone.free = alone.arrival + length;
+            alone.held += length;
+            alone.octets += octets;
+            alone.bursts += 1;
+            if !is_last {
+                (alone.burst, alone.arrival) = (lengths.burst(rest), alone.free);
+                continue;
+            }
+            (alone.burst, alone.arrival) = (ahead, alone.free + computing);
+            next += 1;
+            (computing, ahead) = ahead_of(segments, next, lengths);
+        }
+        alone.transfers = (next - before.0) as u64;
+        self.busy += alone.arrival - before.1 - alone.held;
+        (self.next, self.computing, self.ahead) = (next, computing, ahead);
+        alone
+    }
+
+    #[inline(always)]
+    fn note_wait(&mut self, waited: Clocks) {
+        self.longest_wait = self.longest_wait.max(waited);
+    }
+
+    fn take_longest_wait(&mut self) -> Clocks {
+        std::mem::take(&mut self.longest_wait)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::*;
+    use crate::engine::Pause;
+    use crate::exec::Message;
+    use crate::machine::arbiter::ArbiterKind;
+    use crate::machine::bus::Bus;
+    use crate::machine::config::BusConfig;
+    use crate::machine::request::{Access, Request};
+
+    /// A work item that reads what these segments say: clocks of computing, octets.
+    fn recording(segments: &[(u64, u64)]) -> Arc<Recording> {
+        let segment = |&(clocks, octets): &(u64, u64)| {
+            let request = Request::Transfer { address: 0, octets: Octets(octets), access: Access::Read };
+            Segment::new(clocks, 0, request, 0).expect("it fits")
+        };
+        Arc::new(Recording {
+            message: Message::new([[0; 3]]),
+            segments: segments.iter().map(segment).collect(),
+            reads: 0..64,
+            octets: Octets(0),
+            sent: Vec::new(),
+            last_clocks: 0,
+            last_pc: 0,
+            end: Pause::Halt,
+            steps: 0,
+            elementary: 0,
+            depends_on_cores: false,
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(3), ..ProptestConfig::default() })]
+
+        /// All that a bus does by itself, it does as if the arbiter had been asked each time.
+        #[test]
+        fn ranks_and_masters_alone_are_short_cuts(
+            kind in prop::sample::select(&ArbiterKind::ALL[..]),
+            masters in 1u32..6, burst_octets in 0u64..30, setup_clocks in 0u64..4,
+            items in prop::collection::vec(
+                (0u32..6, 0u64..40, prop::collection::vec((0u64..30, 1u64..60), 1..8), 0u64..200, any::<bool>()), 1..20,
+            ),
+        ) {
+            let config = BusConfig { arbiter: kind, burst_octets, setup_clocks, ..BusConfig::default() };
+            let new = || (Bus::new(&config, masters), (0..masters).map(|_| BusCursor::default()).collect::<Vec<_>>());
+            let ((mut quick, mut cursors), (mut plain, mut plain_cursors)) = (new(), new());
+            let mut now = Clocks(0);
+            for (master, pause, segments, time, is_stopped) in items {
+                let master = master % masters;
+                let arrival = now + Clocks(pause);
+                if quick.claims.arrival(master) == NEVER {
+                    let item = recording(&segments);
+                    for (bus, cursors) in [(&mut quick, &mut cursors), (&mut plain, &mut plain_cursors)] {
+                        let cursor = &mut cursors[master as usize];
+                        let _ = cursor.end(arrival);
+                        bus.request(master, arrival, item.segments[0].octets());
+                        cursor.begin(item.clone(), 1, arrival, &bus.lengths);
+                        if is_stopped {
+                            cursor.stop_at(&(0..1));
+                        }
+                    }
+                }
+                now = arrival + Clocks(time);
+                loop {
+                    let grant = quick.serve(&mut cursors, now);
+                    prop_assert_eq!(grant, plain.serve_by_choice(&mut plain_cursors, now));
+                    prop_assert_eq!(quick.used(), plain.used());
+                    prop_assert_eq!((quick.waits(), quick.free_at), (plain.waits(), plain.free_at));
+                    prop_assert_eq!(format!("{:?}", cursors), format!("{:?}", plain_cursors));
+                    for master in 0..masters {
+                        prop_assert_eq!(quick.claims.arrival(master), plain.claims.arrival(master));
+                    }
+                    if grant.is_none() {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Cores that replay what work items were recorded to do, in the place of an engine that does it.
+
+use std::cell::RefCell;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::bus_cursor::{BusCursor, overlap};
+use super::feed::Feed;
+use super::recording::{Recording, Segment};
+use crate::code::Code;
+use crate::engine::{CoreId, Pause};
+use crate::exec::Watch;
+use crate::machine::bus::Lengths;
+use crate::machine::port::Shared;
+use crate::machine::request::{Access, Request};
+use crate::machine::worker::{Advance, Executor, Played, Progress, Worker};
+use crate::profile::{Profile, RunObserver};
+use crate::quantity::{Clocks, Octets};
+use crate::tally::Tally;
+use crate::trap::Fault;
+
+/// A core's place in the work item that it replays.
+pub struct Cursor<'a> {
+    code: &'a Code<'a>,
+    core: CoreId,
+    feed: &'a RefCell<Feed>,
+    /// The work item; none before its message has come, and while the bus cursor has it.
+    recording: Option<Arc<Recording>>,
+    /// Segments that are behind it.
+    next: usize,
+    progress: Progress,
+}
+
+impl<'a> Cursor<'a> {
+    /// A core that has replayed nothing.
+    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>) -> Cursor<'a> {
+        Cursor { code, core, feed, recording: None, next: 0, progress: Progress::default() }
+    }
+
+    /// The segment that asked for what the core waits for; none where that is its message.
+    fn asked(&self) -> Option<&Segment> {
+        self.recording.as_ref()?.segments.get(self.next.checked_sub(1)?)
+    }
+
+    /// Does what the core waits for, and yields the message that it took with its sender.
+    fn act(&mut self, shared: &mut Shared, at: Clocks) -> Option<(crate::exec::Message, u32)> {
+        let own = self.core.core;
+        let Some(segment) = self.asked() else {
+            let (_, sender) = shared.mailboxes.next(own)?;
+            let message = shared.mailboxes.take(own, sender)?;
+            self.recording = self.feed.borrow_mut().take(&message);
+            return Some((message, sender));
+        };
+        match segment.request(self.core.cores) {
+            Request::Send { to, .. } => {
+                let sent = self.recording.as_ref().and_then(|recording| recording.sent.get(segment.address as usize));
+                if let Some(&message) = sent {
+                    shared.mailboxes.put(to, own, at, message);
+                }
+            }
+            Request::Transfer { access: Access::Load | Access::Read, .. }
+                if overlap(&segment.range(), &shared.written) =>
+            {
+                self.feed.borrow_mut().lose::<()>("the cores read what the main processor has written");
+            }
+            _ => {}
+        }
+        None
+    }
+}
+
+impl Worker for Cursor<'_> {
+    type Master = BusCursor;
+
+    /// Replays what [`Executor::advance`] would have done.
+    ///
+    /// An item of two segments, `(7 clocks, read)` and `(3 clocks, send)`, with 2 clocks after them, and a prefix of 1 clock:
+    ///
+    /// | advance | clocks | request |
+    /// | --- | --- | --- |
+    /// | after reset | 1 | receive |
+    /// | permitted: takes the message and with it the recording | 7 | read |
+    /// | permitted: nothing to do, nobody looks at what is read | 3 | send |
+    /// | permitted: sends the recorded message | 2 | none, it halts |
+    fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {
+        // Do what is permitted.
+        let taken = permission.and_then(|at| self.act(shared, at));
+        let has_begun = taken.is_some() && self.recording.is_some();
+        let octets = self.recording.as_ref().filter(|_| has_begun).map_or(Octets(0), |recording| recording.octets);
+        // Go on to the next request.
+        let (prefix, is_lost) = {
+            let feed = self.feed.borrow();
+            (feed.prefix, feed.lost.is_some())
+        };
+        let (mut request, mut steps) = (None, 0);
+        let (clocks, pause) = match &self.recording {
+            // What comes of a lost replay is thrown away; this ends it.
+            _ if is_lost => (0, Pause::Fault(Fault::Deadlock)),
+            None if permission.is_none() => {
+                request = Some(Request::Receive);
+                self.progress.pc = prefix.pc;
+                (prefix.clocks, Pause::Wait)
+            }
+            None => (0, Pause::Fault(Fault::Deadlock)),
+            Some(recording) => match recording.segments.get(self.next) {
+                Some(segment) => {
+                    self.next += 1;
+                    request = Some(segment.request(self.core.cores));
+                    self.progress.pc = segment.pc;
+                    (segment.clocks.into(), Pause::Wait)
+                }
+                None => {
+                    let Recording { last_pc: pc, steps: all, elementary, .. } = **recording;
+                    self.progress = Progress { pc, steps: all, elementary };
+                    steps = all;
+                    (recording.last_clocks, recording.end)
+                }
+            },
+        };
+        Advance { pause, request, taken, clocks, steps, octets }
+    }
+
+    fn restart(&mut self) {
+        (self.recording, self.next) = (None, 0);
+    }
+
+    fn end(&mut self) {}
+
+    fn progress(&self) -> Progress {
+        self.progress
+    }
+
+    fn receives_first(&self, _: &mut Shared) -> bool {
+        // What was recorded begins with a message.
+        true
+    }
+
+    fn is_accounted(&self) -> bool {
+        true
+    }
+
+    fn hand_over(&mut self, master: &mut BusCursor, clock: Clocks, written: &Range<u64>, lengths: &Lengths) {
+        let is_safe =
+            |recording: &Recording| self.asked().is_some_and(Segment::is_read) && !overlap(&recording.reads, written);
+        if self.recording.as_deref().is_some_and(is_safe)
+            && let Some(recording) = self.recording.take()
+        {
+            master.begin(recording, self.next, clock, lengths);
+        }
+    }
+
+    fn take_back(&mut self, master: &mut BusCursor, end: Clocks) -> Option<Played> {
+        let (recording, next, played) = master.end(end)?;
+        (self.recording, self.next) = (Some(recording), next);
+        Some(played)
+    }
+
+    fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
+        master.stop_at(written);
+    }
+
+    fn into_counts(self) -> (Tally, Option<Profile>) {
+        (Tally::new(self.code), None)
+    }
+}
+
+/// Workers of a machine that replays: cores do, the main processor executes its program.
+pub enum Replayer<'a, T, O> {
+    /// A core.
+    Core(Cursor<'a>),
+    /// The main processor.
+    Main(Box<Executor<'a, T, O>>),
+}
+
+/// Hands a method on to whichever it is.
+macro_rules! each {
+    ($self:expr, $worker:ident => $do:expr) => {
+        match $self {
+            Replayer::Core($worker) => $do,
+            Replayer::Main($worker) => $do,
+        }
+    };
+}
+
+impl<T: Watch, O: RunObserver> Worker for Replayer<'_, T, O> {
+    type Master = BusCursor;
+
+    #[inline]
+    fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {
+        each!(self, worker => worker.advance(shared, permission))
+    }
+
+    fn restart(&mut self) {
+        each!(self, worker => worker.restart());
+    }
+
+    fn end(&mut self) {
+        each!(self, worker => worker.end());
+    }
+
+    fn progress(&self) -> Progress {
+        each!(self, worker => worker.progress())
+    }
+
+    fn receives_first(&self, shared: &mut Shared) -> bool {
+        each!(self, worker => worker.receives_first(shared))
+    }
+
+    fn is_accounted(&self) -> bool {
+        each!(self, worker => worker.is_accounted())
+    }
+
+    fn hand_over(&mut self, master: &mut BusCursor, clock: Clocks, written: &Range<u64>, lengths: &Lengths) {
+        if let Replayer::Core(core) = self {
+            core.hand_over(master, clock, written, lengths);
+        }
+    }
+
+    fn take_back(&mut self, master: &mut BusCursor, end: Clocks) -> Option<Played> {
+        match self {
+            Replayer::Core(core) => core.take_back(master, end),
+            Replayer::Main(_) => None,
+        }
+    }
+
+    fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
+        master.stop_at(written);
+    }
+
+    fn into_counts(self) -> (Tally, Option<Profile>) {
+        match self {
+            Replayer::Core(core) => core.into_counts(),
+            Replayer::Main(main) => main.into_counts(),
+        }
+    }
+}

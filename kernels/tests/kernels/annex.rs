@@ -3,7 +3,7 @@
 
 use emu::code::Code;
 use emu::engine::interpreter::run;
-use emu::engine::{Pause, CoreId, State};
+use emu::engine::{CoreId, Pause, State};
 use emu::exec::{Link, Message, Motion};
 use emu::machine::Config;
 use emu::machine::single::{self, Single};

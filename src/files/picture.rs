@@ -1,9 +1,12 @@
-//! Picture files. PNG and PPM hold 8 bits a component under the sRGB transfer curve, so that screens show the light as
-//! it was computed; PFM holds the linear components as they are, not clamped.
+//! Picture files, written and read back. PNG and PPM hold 8 bits a component under the sRGB transfer curve, so that screens show the light
+//! as it was computed; PFM, which the crate `image` does not know, holds the linear components as they are, not clamped.
 
+use std::io::Cursor;
 use std::path::Path;
 
-use png::{BitDepth, ColorType, Encoder, SrgbRenderingIntent};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat, ImageReader};
 use scenes::model::{Picture, Vec3};
 
 /// A picture of 8 bits a component, row 0 on top.
@@ -50,6 +53,22 @@ impl Format {
         }
     }
 
+    /// The pixels of a PNG or PPM of 8 bits a component, as a comparison with another picture needs them.
+    ///
+    /// # Errors
+    /// What is wrong in the file, in one line, and a PFM, whose components are no octets.
+    pub fn decode(self, octets: &[u8]) -> Result<Pixels, String> {
+        let format = match self {
+            Format::Png => ImageFormat::Png,
+            Format::Ppm => ImageFormat::Pnm,
+            Format::Pfm => return Err("a PFM holds light, not the octets that a screen shows".into()),
+        };
+        let image = ImageReader::with_format(Cursor::new(octets), format).decode();
+        let image = image.map_err(|error| error.to_string())?.into_rgb8();
+        let colours = image.pixels().map(|pixel| pixel.0).collect();
+        Ok(Pixels { size: image.dimensions(), colours })
+    }
+
     /// The octets of a file that holds these pixels as they are, and in PFM as fractions of 255.
     pub fn encode_pixels(self, pixels: &Pixels) -> Vec<u8> {
         match self {
@@ -76,23 +95,28 @@ fn transferred(linear: f64) -> u8 {
     (curved * 255.0).round() as u8
 }
 
+/// Where in a PNG the header chunk ends: 8 octets of signature, then length, name, 13 octets of content and check sum.
+const HEADER_END: usize = 8 + 4 + 4 + 13 + 4;
+
+/// The chunk that says sRGB with the relative colorimetric intent, which `image` does not write: length, name, intent and check sum.
+const SRGB: &[u8] = b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
+
 fn png(pixels: &Pixels) -> Vec<u8> {
     let mut out = Vec::new();
-    let mut encoder = Encoder::new(&mut out, pixels.size.0, pixels.size.1);
-    encoder.set_color(ColorType::Rgb);
-    encoder.set_depth(BitDepth::Eight);
-    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(pixels.colours.as_flattened())?;
-        writer.finish()
-    });
+    let encoder = PngEncoder::new_with_quality(&mut out, CompressionType::Default, FilterType::Adaptive);
+    let written =
+        encoder.write_image(pixels.colours.as_flattened(), pixels.size.0, pixels.size.1, ExtendedColorType::Rgb8);
     written.expect("a picture with as many pixels as its size says fits a PNG in memory");
+    out.splice(HEADER_END..HEADER_END, SRGB.iter().copied());
     out
 }
 
 fn ppm(pixels: &Pixels) -> Vec<u8> {
-    let mut out = format!("P6\n{} {}\n255\n", pixels.size.0, pixels.size.1).into_bytes();
-    out.extend_from_slice(pixels.colours.as_flattened());
+    let mut out = Vec::new();
+    let encoder = PnmEncoder::new(&mut out).with_subtype(PnmSubtype::Pixmap(SampleEncoding::Binary));
+    let (width, height) = pixels.size;
+    let written = encoder.write_image(pixels.colours.as_flattened(), width, height, ExtendedColorType::Rgb8);
+    written.expect("a picture with as many pixels as its size says fits a PPM in memory");
     out
 }
 
@@ -108,8 +132,6 @@ fn pfm(picture: &Picture) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
-
     use super::*;
 
     fn picture() -> Picture {
@@ -137,11 +159,12 @@ mod tests {
 
     #[test]
     fn every_format_has_its_header_and_its_rows() {
+        let expected = Pixels { size: (1, 2), colours: vec![[0, 188, 255], [0, 137, 255]] };
         let png = Format::Png.encode(&picture());
-        let mut reader = png::Decoder::new(Cursor::new(png)).read_info().unwrap();
-        let mut octets = vec![0; 6];
-        let frame = reader.next_frame(&mut octets).unwrap();
-        assert_eq!((frame.width, frame.height, octets), (1, 2, vec![0, 188, 255, 0, 137, 255]));
+        assert_eq!(Format::Png.decode(&png), Ok(expected.clone()));
+        assert!(png.windows(4).any(|name| name == b"sRGB"));
+        assert_eq!(Format::Ppm.decode(&Format::Ppm.encode(&picture())), Ok(expected));
+        assert!(Format::Png.decode(&png[..40]).is_err() && Format::Pfm.decode(&png).is_err());
         assert_eq!(Format::Ppm.encode(&picture()), b"P6\n1 2\n255\n\x00\xbc\xff\x00\x89\xff");
         let pfm = Format::Pfm.encode(&picture());
         let rows: Vec<f32> =

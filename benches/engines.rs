@@ -23,9 +23,8 @@ fn engines(criterion: &mut Criterion) {
         let scene = scene.expect("it is generated");
         for &profile in KernelSet::ALL {
             let mut job = Job::new(scene.clone());
-            job.view.shift = [0.137, 0.071];
+            job.view.shift = lancer::job::SHIFT;
             job.kernels.profile = profile;
-            job.memory.layout = profile.layout();
             let (load, _) = Load::picture(&job).expect("it fits");
             let mut group = criterion.benchmark_group(format!("{}/{}", generator.name, profile.name()));
             group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));

@@ -70,6 +70,14 @@ pub struct Drawing {
     pub times: Times,
 }
 
+/// Draws a picture and measures it against double precision.
+///
+/// # Errors
+/// See [`draw`].
+pub fn render(job: &Job) -> Result<Drawing, Failure> {
+    draw(job, Comparison::Reference, &mut |_| {})
+}
+
 /// Draws a picture. `progress` is told the number of pixels that are done.
 ///
 /// # Errors

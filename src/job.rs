@@ -1,5 +1,4 @@
-//! A picture to be drawn: everything that decides its bits, its counts and its clocks, put together from what the user
-//! says. Nothing here runs anything.
+//! A picture to be drawn: everything that decides its bits, its counts and its clocks. Nothing here runs anything.
 
 use std::path::{Path, PathBuf};
 
@@ -7,23 +6,18 @@ use emu::engine::EngineKind;
 use emu::machine::Config;
 use isa::Isa;
 use kernels::build::{Crop, KernelOptions};
-use messages::{Diagnostic, Report};
+use messages::Report;
+use scenes::cadrage::Overrides;
 use scenes::image::MemoryOptions;
-use scenes::model::{Camera, Scene, View};
+use scenes::kdtree::{BuildMethod, Depth};
+use scenes::layout::Layout;
+use scenes::model::{Scene, View};
 
-use crate::arguments::{
-    CameraKind, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments, overrides,
-};
-use crate::failure::Failure;
-use crate::table::grouped;
-use crate::{files, input, machine};
+use crate::machine;
 
 /// Where in its pixel a ray passes in pictures that are measured, in pixels to the right of the middle and above it: parallel rays through the
 /// middles would run along edges of axis-aligned scenes.
 pub const SHIFT: [f64; 2] = [0.137, 0.071];
-
-/// Pixels of the largest picture.
-const MOST_PIXELS: u64 = 1 << 24;
 
 /// What is asked of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +35,14 @@ pub struct Job {
     pub scene: Scene,
     /// How it is looked at.
     pub view: View,
-    /// How it lies in memory.
-    pub memory: MemoryOptions,
+    /// Structures of global memory; `None` for those that the set of kernels is made for.
+    pub layout: Option<Layout>,
+    /// Levels of the kd tree below its root.
+    pub kd_depth: Depth,
+    /// Which triangles a node of the kd tree holds.
+    pub kd_method: BuildMethod,
+    /// Fraction bits that the scene does not choose.
+    pub formats: Overrides,
     /// The instructions that there are.
     pub isa: Isa,
     /// Which kernels draw it.
@@ -63,39 +63,18 @@ pub struct Job {
     pub files: Vec<PathBuf>,
 }
 
-/// The options that decide a picture.
-#[derive(clap::Args, Clone, Debug)]
-pub struct JobArguments {
-    /// Scene: a .dsc with its mesh beside it, a mesh, or the name of a generated scene such as cornell.
-    pub scene: String,
-    /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
-    #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
-    #[command(flatten)]
-    #[allow(missing_docs, reason = "the group has its own")]
-    pub view: ViewArguments,
-    #[command(flatten)]
-    #[allow(missing_docs, reason = "the group has its own")]
-    pub kernels: KernelArguments,
-    #[command(flatten)]
-    #[allow(missing_docs, reason = "the group has its own")]
-    pub machine: MachineArguments,
-    #[command(flatten)]
-    #[allow(missing_docs, reason = "the group has its own")]
-    pub numbers: NumberArguments,
-    #[command(flatten)]
-    #[allow(missing_docs, reason = "the group has its own")]
-    pub effort: EffortArguments,
-}
-
 impl Job {
     /// A scene with the defaults of everything else.
     pub fn new(scene: Scene) -> Job {
         let view = View::new(scene.size);
+        let MemoryOptions { kd_depth, kd_method, formats, .. } = MemoryOptions::default();
         Job {
             scene,
             view,
-            memory: MemoryOptions::default(),
+            layout: None,
+            kd_depth,
+            kd_method,
+            formats,
             isa: Isa::base(),
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
@@ -108,107 +87,26 @@ impl Job {
         }
     }
 
-    /// What a command line asks for; reads the scene, the machine and the user's kernels.
-    ///
-    /// # Errors
-    /// What is wrong in those files, and options that do not go together.
-    pub fn from_arguments(arguments: &JobArguments) -> Result<Job, Failure> {
-        let camera = camera(&arguments.view)?;
-        let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), arguments.view.size)?;
-        let mut job = Job::new(loaded.scene);
-        job.warnings = loaded.warnings;
-        job.files = loaded.files;
-        job.files.extend(arguments.kernels.replaced.iter().map(|(_, path)| path.clone()));
-        job.files.push(PathBuf::from(&arguments.machine.machine));
-        job.files.extend(arguments.kernels.extensions.extensions.iter().cloned());
-        job.isa = arguments.kernels.extensions.isa()?;
-        job.view = View {
-            size: arguments.view.size.unwrap_or(job.scene.size),
-            camera,
-            shift: arguments.view.shift,
-            ambient: arguments.view.ambient,
-            background: arguments.view.background,
-            bounces: arguments.effort.bounces,
-        };
-        check_size(job.view.size)?;
-        (job.machine_name, job.machine) = machine::find(&arguments.machine.machine)?;
-        job.engine = arguments.machine.engine;
-        job.adjust_machine(&arguments.machine, &arguments.numbers);
-        job.memory = MemoryOptions {
-            word: job.machine.arithmetic.word,
-            layout: arguments.machine.layout.unwrap_or(arguments.kernels.profile.layout()),
-            kd_depth: arguments.effort.tree.kd_depth,
-            kd_method: arguments.effort.tree.kd_build,
-            formats: overrides::collect(&arguments.numbers.formats),
-        };
-        job.kernels.profile = arguments.kernels.profile;
-        job.kernels.interpolate = arguments.effort.interpolate;
-        job.kernels.skips = arguments.effort.skips();
-        job.kernels.weight_cutoff = arguments.effort.weight_cutoff;
-        for (function, path) in &arguments.kernels.replaced {
-            job.kernels.replaced.push((*function, files::source(path)?));
+    /// The scene's layout in memory: in the machine's words, in the chosen structures or those of the kernels.
+    pub fn memory(&self) -> MemoryOptions {
+        MemoryOptions {
+            word: self.machine.arithmetic.word,
+            layout: self.layout(),
+            kd_depth: self.kd_depth,
+            kd_method: self.kd_method,
+            formats: self.formats.clone(),
         }
-        job.kernels.crop = crop(&arguments.view, job.view.size)?;
-        Ok(job)
     }
 
-    fn adjust_machine(&mut self, machine: &MachineArguments, numbers: &NumberArguments) {
-        let config = &mut self.machine;
-        config.cores = machine.cores.unwrap_or(config.cores);
-        let arithmetic = &mut config.arithmetic;
-        arithmetic.word = numbers.word.unwrap_or(arithmetic.word);
-        arithmetic.quantization = numbers.rounding.unwrap_or(arithmetic.quantization);
-        arithmetic.overflow = numbers.overflow.unwrap_or(arithmetic.overflow);
+    /// Structures of global memory.
+    pub fn layout(&self) -> Layout {
+        self.layout.unwrap_or(self.kernels.profile.layout())
     }
 
     /// The part of the picture that is drawn: all of it unless the user chose one.
     pub fn crop(&self) -> Crop {
         let (width, height) = self.view.size;
         self.kernels.crop.unwrap_or(Crop { column: 0, row: 0, width, height })
-    }
-}
-
-/// Refuses pictures that would fill the host's memory.
-fn check_size((width, height): (u32, u32)) -> Result<(), Failure> {
-    if u64::from(width) * u64::from(height) <= MOST_PIXELS {
-        return Ok(());
-    }
-    let message = format!("a picture of {width} x {height} pixels has more than {}", grouped(MOST_PIXELS));
-    Err(Diagnostic::error(message).hint("choose a smaller one with `--size WxH`").into())
-}
-
-/// The camera; options that only a perspective one has imply it.
-fn camera(view: &ViewArguments) -> Result<Camera, Failure> {
-    let given = [("--eye", view.eye.is_some()), ("--look", view.look.is_some()), ("--fov", view.fov.is_some())];
-    let first = given.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
-    match (view.camera, first) {
-        (Some(CameraKind::Orthographic), Some(option)) => {
-            let message = Diagnostic::error(format!("`{option}` has no meaning for an orthographic camera"));
-            Err(Failure::usage(message.hint("choose `--camera perspective`")))
-        }
-        (Some(CameraKind::Orthographic), None) | (None, None) => Ok(Camera::Orthographic),
-        (Some(CameraKind::Perspective), _) | (None, Some(_)) => {
-            Ok(Camera::Perspective { eye: view.eye, look: view.look, field: view.fov.unwrap_or(45.0) })
-        }
-    }
-}
-
-/// The part that is drawn, which must lie inside the picture.
-fn crop(view: &ViewArguments, (width, height): (u32, u32)) -> Result<Option<Crop>, Failure> {
-    let pixel = view.pixel.map(|[column, row]| Crop { column, row, width: 1, height: 1 });
-    let Some(crop) = view.crop.or(pixel) else { return Ok(None) };
-    let is_inside = |first: u32, length: u32, whole: u32| u64::from(first) + u64::from(length) <= u64::from(whole);
-    match is_inside(crop.column, crop.width, width) && is_inside(crop.row, crop.height, height) {
-        true => Ok(Some(crop)),
-        false => {
-            let Crop { column, row, width: w, height: h } = crop;
-            let asked = match view.pixel {
-                Some(_) => format!("pixel {column},{row} lies"),
-                None => format!("{w} x {h} pixels from {column},{row} on lie"),
-            };
-            let message = format!("{asked} outside a picture of {width} x {height} pixels");
-            Err(Failure::usage(Diagnostic::error(message).hint("columns and rows count from 0, at the top left")))
-        }
     }
 }
 

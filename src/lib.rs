@@ -1,11 +1,13 @@
-//! lancer's command line as a library: from scene files through the emulated coprocessor to pictures, counts and
-//! tables. What a command prints is decided here; what it computes, in the crates below.
+#![doc = include_str!("../docs/library.md")]
 
 pub mod accuracy;
 pub mod annex;
+#[cfg(feature = "cli")]
 pub mod arguments;
 pub mod benchmark;
+#[cfg(feature = "cli")]
 pub mod command;
+pub mod cores;
 pub mod drawing;
 pub mod extension;
 pub mod failure;
@@ -14,13 +16,27 @@ pub mod input;
 pub mod job;
 pub mod load;
 pub mod machine;
+#[cfg(feature = "cli")]
 pub mod manual;
+pub mod numeral;
 pub mod profiles;
 pub mod result;
-pub mod savings;
-pub mod scaling;
+pub mod skips;
 pub mod stress;
+#[cfg(feature = "cli")]
 pub mod summary;
+#[cfg(feature = "cli")]
 pub mod table;
+#[cfg(feature = "cli")]
 pub mod terminal;
+#[cfg(feature = "cli")]
 pub mod trace;
+
+pub use drawing::{Drawing, draw, render};
+pub use emu::machine::Config as MachineConfig;
+pub use failure::Failure;
+pub use files::picture::Format;
+pub use input::scene;
+pub use job::Job;
+pub use kernels::KernelSet;
+pub use result::Render;

@@ -52,7 +52,7 @@ impl Load {
     /// A scene that does not fit its formats, errors in the user's kernels.
     pub fn picture(job: &Job) -> Result<(Load, MemoryImage), Failure> {
         let isa = job.isa.clone();
-        let mut image = image::build(&job.scene, &job.view, &job.memory)?;
+        let mut image = image::build(&job.scene, &job.view, &job.memory())?;
         let build = kernels::build(&job.scene, &job.view, &image, &isa, &job.kernels)?;
         let kinds = image.regions.iter().map(|(kind, range)| (range.clone(), traffic(*kind).to_owned())).collect();
         let memory = Memory::new(std::mem::take(&mut image.bytes));

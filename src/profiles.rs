@@ -31,14 +31,14 @@ pub struct Profiles {
     /// Where in its pixel a ray passes, in pixels to the right of the middle and above it.
     pub shift: [f64; 2],
     /// The pictures, scene by scene.
-    pub pictures: Vec<Spending>,
+    pub pictures: Vec<ProfileResult>,
     /// Each profile against the one before it, scene by scene, and then in the mean of the scenes.
     pub ratios: Vec<Ratio>,
 }
 
 /// What a picture took.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Spending {
+pub struct ProfileResult {
     /// Name of the scene.
     pub scene: String,
     /// Name of the kernels' profile.
@@ -112,8 +112,7 @@ pub fn measure(
         for &profile in KernelSet::ALL {
             let mut job = job(scene, size, profile);
             (job.machine_name, job.machine) = machine.clone();
-            job.memory.word = job.machine.arithmetic.word;
-            result.pictures.push(Spending::new(&job, &drawing::draw(&job, Comparison::Reference, &mut |_| {})?));
+            result.pictures.push(ProfileResult::new(&job, &drawing::draw(&job, Comparison::Reference, &mut |_| {})?));
             done();
         }
         let pairs = result.pictures[first..].windows(2);
@@ -128,7 +127,6 @@ fn job(scene: &Scene, size: (u32, u32), profile: KernelSet) -> Job {
     let mut job = Job::new(scene.clone());
     job.view = View { shift: SHIFT, ..View::new(size) };
     job.kernels.profile = profile;
-    job.memory.layout = profile.layout();
     job.detail = Detail::Totals;
     job
 }
@@ -146,15 +144,15 @@ fn search_instructions(spent: &Profile) -> u64 {
     inside.map(|(_, region)| region.instructions).sum()
 }
 
-impl Spending {
-    fn new(job: &Job, drawing: &Drawing) -> Spending {
+impl ProfileResult {
+    fn new(job: &Job, drawing: &Drawing) -> ProfileResult {
         let frame = &drawing.frame;
         let cores = &frame.processors[..job.machine.cores as usize];
         let counts = frame.profile.as_ref().map_or(Counts::ZERO, Profile::total);
-        Spending {
+        ProfileResult {
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
-            layout: job.memory.layout.name(),
+            layout: job.layout().name(),
             instructions: cores.iter().map(|core| core.instructions).sum(),
             search_instructions: frame.profile.as_ref().map_or(0, search_instructions),
             operations: counts.operations(),
@@ -170,8 +168,8 @@ impl Spending {
 }
 
 impl Ratio {
-    fn new(spending: &Spending, of: &Spending) -> Ratio {
-        let ratio = |figure: fn(&Spending) -> u64| figure(spending) as f64 / figure(of).max(1) as f64;
+    fn new(spending: &ProfileResult, of: &ProfileResult) -> Ratio {
+        let ratio = |figure: fn(&ProfileResult) -> u64| figure(spending) as f64 / figure(of).max(1) as f64;
         Ratio {
             scene: Some(spending.scene.clone()),
             profile: spending.profile,

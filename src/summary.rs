@@ -4,8 +4,9 @@ use isa::Class;
 use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
-use crate::result::{Processor, Region, Render};
-use crate::table::{count, grouped, percent, row, short, table};
+use crate::numeral::{count, grouped, percent, short};
+use crate::result::{ProcessorResult, Region, Render};
+use crate::table::{row, table};
 
 /// Classes with a column of their own in tables of functions.
 const COLUMNS: [Class; 7] = [Class::Add, Class::Sub, Class::Mul, Class::Div, Class::Cmp, Class::Mem, Class::Octet];
@@ -100,7 +101,7 @@ fn left_last(rows: Vec<Vec<String>>) -> String {
 /// Where the clocks of all processors went, and the bus.
 pub fn processors(result: &Render) -> String {
     let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "octets", "pixels"])];
-    let processor = |name: String, of: &Processor| {
+    let processor = |name: String, of: &ProcessorResult| {
         let share = |part: u64| percent(part, result.clocks);
         vec![name, share(of.busy), share(of.waiting), share(of.idle), grouped(of.octets), grouped(of.items)]
     };
@@ -145,7 +146,7 @@ pub fn processors(result: &Render) -> String {
 }
 
 /// How long the cores waited for the bus: the share of no wait, then bounds that so many waits keep.
-fn waits(cores: &[Processor]) -> String {
+fn waits(cores: &[ProcessorResult]) -> String {
     let columns = cores.iter().map(|core| core.waits.len()).max().unwrap_or(0);
     let count = |column: usize| cores.iter().filter_map(|core| core.waits.get(column)).sum::<u64>();
     let counts: Vec<u64> = (0..columns).map(count).collect();

@@ -2,7 +2,7 @@
 
 use kernels::KernelSet;
 use lancer::drawing::{self, Comparison};
-use lancer::job::Job;
+use lancer::job::{Job, SHIFT};
 use peak_alloc::PeakAlloc;
 use scenes::generate;
 use scenes::kdtree::Depth;
@@ -21,9 +21,9 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
     let mut job = Job::new(generate::scene("terrain", &options).expect("the terrain has any number of triangles"));
-    job.view.shift = [0.137, 0.071];
+    job.view.shift = SHIFT;
     job.kernels.profile = KernelSet::Ray;
-    job.memory.kd_depth = Depth::Auto;
+    job.kd_depth = Depth::Auto;
     let drawing =
         drawing::draw(&job, Comparison::Reference, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
     let image = drawing.frame.memory.size();

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use kernels::{KernelSet, Skip};
 use lancer::drawing::Comparison;
 use lancer::job::Job;
-use lancer::savings::{self, Saving, Savings};
+use lancer::skips::{self, SkipResult, SkipsResult};
 use scenes::generate::{self, SCENES};
 use scenes::layout::Layout;
 use scenes::model::Scene;
@@ -27,17 +27,17 @@ fn job(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> Job 
 
 fn set_up(scene: Scene, profile: KernelSet, layout: Layout) -> Job {
     let mut job = Job::new(scene);
-    job.view.shift = [0.137, 0.071];
+    job.view.shift = lancer::job::SHIFT;
     job.kernels.profile = profile;
-    job.memory.layout = layout;
+    job.layout = Some(layout);
     job
 }
 
-fn measured(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> Savings {
-    savings::measure(&job(name, profile, layout, size), &|| {}).unwrap_or_else(|error| panic!("{name}: {error:?}"))
+fn measured(name: &str, profile: KernelSet, layout: Layout, size: (u32, u32)) -> SkipsResult {
+    skips::measure(&job(name, profile, layout, size), &|| {}).unwrap_or_else(|error| panic!("{name}: {error:?}"))
 }
 
-fn saving<'a>(savings: &'a Savings, name: &str) -> &'a Saving {
+fn saving<'a>(savings: &'a SkipsResult, name: &str) -> &'a SkipResult {
     savings.rows.iter().find(|saving| saving.name == name).unwrap()
 }
 
@@ -65,10 +65,10 @@ fn no_skip_changes_a_picture() {
 #[test]
 fn each_skip_saves_something_somewhere() {
     let scenes = ["cornell", "slabs", "terrain"];
-    let all: Vec<Savings> =
+    let all: Vec<SkipsResult> =
         scenes.iter().map(|name| measured(name, KernelSet::Vector, Layout::Wide, (12, 9))).collect();
     for skip in Skip::ALL {
-        let saves = |savings: &Savings| {
+        let saves = |savings: &SkipsResult| {
             let saving = saving(savings, skip.name());
             saving.operations_saved > 0.0
                 || saving.octets_saved > 0.0
@@ -91,7 +91,7 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
             continue;
         }
         let saved = KernelSet::ALL.iter().map(|&profile| {
-            let savings = savings::together(&set_up(scene.clone(), profile, profile.layout())).unwrap();
+            let savings = skips::together(&set_up(scene.clone(), profile, profile.layout())).unwrap();
             saving(&savings, "all").operations_saved
         });
         let saved: Vec<f64> = saved.collect();
@@ -109,7 +109,7 @@ fn scenes_with_glass_or_mirrors_need_30_percent_fewer_operations() {
 fn a_diffuse_scene_has_no_word_of_secondary_rays() {
     for &profile in KernelSet::ALL {
         let job = job("terrain", profile, profile.layout(), (8, 6));
-        let image = scenes::image::build(&job.scene, &job.view, &job.memory).unwrap();
+        let image = scenes::image::build(&job.scene, &job.view, &job.memory()).unwrap();
         let build = kernels::build(&job.scene, &job.view, &image, &isa::Isa::base(), &job.kernels).unwrap();
         let functions: BTreeSet<&str> = build.cores.regions.iter().map(|region| region.name.as_str()).collect();
         let absent = ["ray_tree", "reflects", "reflect", "refracts", "refract"];

@@ -1,21 +1,21 @@
 //! The catalogue of `lancer stress`, with as many trials as the command makes by default.
 
-use lancer::stress::{CASES, Size, Tally};
+use lancer::stress::{CASES, CatalogueSize, Tally};
 
 #[test]
 fn every_case_passes() {
     for case in CASES {
-        let tally = case.run(Size::Quick, 0..case.trials(Size::Quick));
-        assert_eq!(tally.trials, case.trials(Size::Quick), "{}", case.name);
+        let tally = case.run(CatalogueSize::Quick, 0..case.trials(CatalogueSize::Quick));
+        assert_eq!(tally.trials, case.trials(CatalogueSize::Quick), "{}", case.name);
         assert!(case.passes(&tally), "{}: {tally:?}", case.name);
     }
 }
 
 #[test]
 fn a_case_can_be_stopped_and_taken_up() {
-    for case in CASES.iter().filter(|case| case.trials(Size::Quick) >= 10_000) {
-        let parts = [0..10, 10..11, 11..100].map(|part| case.run(Size::Quick, part));
+    for case in CASES.iter().filter(|case| case.trials(CatalogueSize::Quick) >= 10_000) {
+        let parts = [0..10, 10..11, 11..100].map(|part| case.run(CatalogueSize::Quick, part));
         let together = parts.into_iter().fold(Tally::default(), Tally::plus);
-        assert_eq!(together, case.run(Size::Quick, 0..100), "{}", case.name);
+        assert_eq!(together, case.run(CatalogueSize::Quick, 0..100), "{}", case.name);
     }
 }

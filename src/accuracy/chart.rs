@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::Measured;
+use super::MeasuredVariant;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 380.0;
@@ -15,7 +15,7 @@ const BOTTOM: f64 = 48.0;
 const PERFECT: f64 = 200.0;
 
 /// The chart. Dominated variants are grey and name the one that beats them in their tooltip.
-pub fn svg(measured: &[Measured]) -> String {
+pub fn svg(measured: &[MeasuredVariant]) -> String {
     let mut scenes: Vec<&str> = Vec::new();
     for one in measured {
         if !scenes.contains(&one.scene.as_str()) {
@@ -28,7 +28,7 @@ pub fn svg(measured: &[Measured]) -> String {
          <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"white\"/>\n"
     );
     for (panel, scene) in scenes.into_iter().enumerate() {
-        let points: Vec<&Measured> = measured.iter().filter(|one| one.scene == scene).collect();
+        let points: Vec<&MeasuredVariant> = measured.iter().filter(|one| one.scene == scene).collect();
         let _ = writeln!(svg, "<g transform=\"translate(0 {})\">", HEIGHT * panel as f64);
         self::panel(&mut svg, scene, &points);
         svg.push_str("</g>\n");
@@ -36,7 +36,7 @@ pub fn svg(measured: &[Measured]) -> String {
     svg + "</svg>\n"
 }
 
-fn psnr(one: &Measured) -> f64 {
+fn psnr(one: &MeasuredVariant) -> f64 {
     one.error.psnr_db.unwrap_or(PERFECT).min(PERFECT)
 }
 
@@ -46,7 +46,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (least - room, most + room)
 }
 
-fn panel(svg: &mut String, scene: &str, points: &[&Measured]) {
+fn panel(svg: &mut String, scene: &str, points: &[&MeasuredVariant]) {
     let xs = range(points.iter().map(|one| one.clocks.max(1.0).log10()));
     let ys = range(points.iter().map(|one| psnr(one)));
     let at = |clocks: f64, decibels: f64| {

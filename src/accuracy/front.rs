@@ -1,10 +1,10 @@
 //! Which variants are worth their clocks: those that no other one beats in clocks and error both.
 
-use super::Measured;
+use super::MeasuredVariant;
 
 /// Says of each variant whether it is on the front of its scene, and if not, which one beats it: of clocks and error (the root of the mean
 /// square difference) neither is larger, and one is smaller. Of several the first is named that is itself on the front.
-pub fn rank(measured: &mut [Measured]) {
+pub fn rank(measured: &mut [MeasuredVariant]) {
     let costs: Vec<(String, f64, f64)> =
         measured.iter().map(|one| (one.scene.clone(), one.clocks, one.error.rmse)).collect();
     let beats = |other: usize, here: usize| {

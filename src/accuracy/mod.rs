@@ -125,7 +125,7 @@ impl Choice {
 
 /// A variant on a scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Measured {
+pub struct MeasuredVariant {
     /// Name of the scene.
     pub scene: String,
     /// The variant in words.
@@ -181,14 +181,13 @@ pub fn measure(
     reference: &Picture,
     variant: &Variant,
     has_times: bool,
-) -> Result<Measured, Failure> {
+) -> Result<MeasuredVariant, Failure> {
     let mut job = Job::new(scene.clone());
     job.view = View { bounces: variant.bounces, ..view.clone() };
     job.kernels.profile = variant.profile;
     job.kernels.weight_cutoff = variant.cutoff;
     job.kernels.interpolate = variant.interpolate;
-    job.memory.word = variant.word;
-    job.memory.layout = variant.layout;
+    job.layout = Some(variant.layout);
     job.machine.arithmetic.word = variant.word;
     job.machine.arithmetic.quantization = variant.rounding;
     job.detail = Detail::Totals;
@@ -203,7 +202,7 @@ pub fn measure(
     let result = Render::new(&job, &drawing);
     let pixels = f64::from(result.width) * f64::from(result.height);
     let each = |total: u64| total as f64 / pixels;
-    Ok(Measured {
+    Ok(MeasuredVariant {
         scene: result.scene.clone(),
         variant: variant.to_string(),
         profile: variant.profile.name(),

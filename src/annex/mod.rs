@@ -4,6 +4,7 @@
 pub mod figures;
 pub mod result;
 pub mod scene;
+#[cfg(feature = "cli")]
 pub mod text;
 
 use emu::machine::Config;
@@ -109,6 +110,7 @@ mod tests {
         let met = measured.iter().filter(|measurement| measurement.is_met());
         let sums: Vec<(&str, u64)> = met.map(|met| (met.row.id.as_str(), met.most.elementary())).collect();
         assert_eq!(sums, [("rt.sqrt", 292), ("rt.triangle", 61), ("rt.packet", 2561)]);
+        #[cfg(feature = "cli")]
         assert_eq!(text::demo(&measured).matches("equal").count(), 3);
     }
 

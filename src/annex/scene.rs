@@ -3,7 +3,6 @@
 use emu::profile::{Profile, RegionProfile};
 use kernels::KernelSet;
 use kernels::annex::rows;
-use scenes::image::MemoryOptions;
 
 use crate::drawing::Drawing;
 use crate::job::{Job, SHIFT, result_name};
@@ -34,7 +33,6 @@ pub fn job(scene: Scene, size: (u32, u32)) -> Job {
     job.view.size = size;
     job.view.shift = SHIFT;
     job.kernels.profile = KernelSet::Report;
-    job.memory = MemoryOptions { layout: KernelSet::Report.layout(), ..job.memory };
     job
 }
 

@@ -5,7 +5,8 @@ use kernels::annex as printed;
 
 use super::Measurement;
 use super::result::{Annexes, RowResult, SearchResult, Try};
-use crate::table::{grouped, row, table};
+use crate::numeral::grouped;
+use crate::table::{row, table};
 
 /// The classes that the annexes print, in the order of Annex II and then Annex I.
 const COLUMNS: [&str; 6] = ["add", "sub", "mul", "div", "cmp", "mem"];

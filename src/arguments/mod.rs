@@ -1,8 +1,8 @@
-//! Groups of options that several commands share, and how values such as `x,y,z` are read. What the values do is said in
-//! [`crate::job`].
+//! Groups of options that several commands share, and how values such as `x,y,z` are read.
 
 mod effort;
 mod extension;
+mod job;
 mod kernel;
 mod machine;
 mod numbers;
@@ -13,6 +13,7 @@ mod view;
 
 pub use effort::EffortArguments;
 pub use extension::{ExtensionArguments, extend};
+pub use job::JobArguments;
 pub use kernel::{KernelArguments, plain};
 pub use machine::{MachineArguments, engine, layout};
 pub use numbers::NumberArguments;

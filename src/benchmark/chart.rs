@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::{Measured, Runner};
+use super::{BenchResult, Runner};
 
 const WIDTH: u32 = 900;
 const HEIGHT: u32 = 420;
@@ -11,7 +11,7 @@ const HEIGHT: u32 = 420;
 ///
 /// # Errors
 /// None that numbers above 0 could cause.
-pub fn svg(measured: &[Measured]) -> Result<String, String> {
+pub fn svg(measured: &[BenchResult]) -> Result<String, String> {
     let mut scenes: Vec<String> = measured.iter().map(|one| format!("{} ({})", one.scene, one.profile)).collect();
     scenes.dedup();
     let least = measured.iter().map(|one| one.nanoseconds).fold(f64::INFINITY, f64::min).max(1.0);
@@ -23,7 +23,7 @@ pub fn svg(measured: &[Measured]) -> Result<String, String> {
 
 fn draw(
     text: &mut String,
-    measured: &[Measured],
+    measured: &[BenchResult],
     scenes: &[String],
     range: std::ops::Range<f64>,
 ) -> Result<(), Box<dyn std::error::Error>> {

@@ -1,5 +1,6 @@
 //! How fast pictures are computed on this host: the engines, and native code beside them. What is measured is not said to anyone here.
 
+#[cfg(feature = "cli")]
 mod chart;
 
 use std::time::{Duration, Instant};
@@ -17,6 +18,7 @@ use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+#[cfg(feature = "cli")]
 pub use chart::svg;
 
 use crate::failure::Failure;
@@ -58,7 +60,7 @@ impl Runner {
 
 /// A picture by one of them.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Measured {
+pub struct BenchResult {
     /// Name of the scene.
     pub scene: String,
     /// The kernel set.
@@ -84,7 +86,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// A scene that does not fit its formats, errors in the user's kernels, a machine that cannot be used, a frame without counts.
-pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<Measured>, Failure> {
+pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<BenchResult>, Failure> {
     let (load, mut image) = Load::picture(job)?;
     image.bytes = load.memory.octets().into_owned();
     let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
@@ -135,7 +137,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
         .map(|runner| {
             let (median, least) = of(runner);
             let is_native = matches!(runner, Runner::Twin | Runner::Reference);
-            Measured {
+            BenchResult {
                 scene: job.scene.name.clone(),
                 profile: job.kernels.profile.name(),
                 runner,

@@ -13,11 +13,12 @@ use scenes::model::View;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::accuracy::{self, Choice, Measured};
+use crate::accuracy::{self, Choice, MeasuredVariant};
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
 use crate::job::SHIFT;
-use crate::table::{row, short, table};
+use crate::numeral::short;
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, input, result};
 
@@ -123,7 +124,7 @@ pub(super) struct Results {
     /// Where in its pixel a ray passes, in pixels to the right of the middle and above it.
     shift: [f64; 2],
     /// What was measured, scene by scene.
-    variants: Vec<Measured>,
+    variants: Vec<MeasuredVariant>,
     /// Variants that a scene does not fit, and why.
     refused: Vec<Refused>,
 }
@@ -245,7 +246,7 @@ fn text(results: &Results) -> String {
     text
 }
 
-fn csv(measured: &[Measured]) -> String {
+fn csv(measured: &[MeasuredVariant]) -> String {
     let mut text = String::from(
         "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,ssim,stored_psnr_db,\
          stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",

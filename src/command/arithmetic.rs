@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::failure::{Exit, Failure};
-use crate::table::{count, grouped};
+use crate::numeral::{count, grouped};
 use crate::terminal::Terminal;
 use crate::{files, result};
 
@@ -43,7 +43,7 @@ pub struct ArithmeticArguments {
 
 #[derive(Subcommand, Clone, Debug)]
 enum ArithmeticCommand {
-    Check(CheckArguments),
+    Check(ArithmeticCheckArguments),
 }
 
 /// Computes the vectors of a file exactly and says which results differ.
@@ -52,7 +52,7 @@ enum ArithmeticCommand {
 /// quantized once; x / 0 saturates with the sign of x in every mode, 0 / 0 is 0, and both set the overflow flag.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
-struct CheckArguments {
+struct ArithmeticCheckArguments {
     /// Vectors as comma-separated values.
     #[arg(value_name = "FILE")]
     file: PathBuf,
@@ -111,7 +111,7 @@ pub(super) fn execute(arguments: &ArithmeticArguments, terminal: &mut Terminal) 
     }
 }
 
-fn check(arguments: &CheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let source = files::source(&arguments.file)?;
     let (vectors, report) = conformance::parse(&source);
     let outcomes = vectors.iter().map(|vector| (vector, vector.outcome()));

@@ -11,7 +11,7 @@ use messages::{Diagnostic, Report, Source};
 use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
 use crate::files::{self, program::ProgramFile};
-use crate::table::count;
+use crate::numeral::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\

@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::arguments::{self, Size};
-use crate::benchmark::{self, Measured, Runner};
+use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
 use crate::job::Job;
 use crate::table::{row, table};
@@ -79,7 +79,7 @@ pub(super) struct Benches {
     /// Vector instructions of the host that the fast engine uses: baseline or avx2.
     features: &'static str,
     /// What was measured, scene by scene.
-    measured: Vec<Measured>,
+    measured: Vec<BenchResult>,
 }
 
 /// Measures and prints.
@@ -98,7 +98,6 @@ pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Re
             let mut job = Job::new(loaded.scene.clone());
             job.view.size = arguments.size;
             job.kernels.profile = profile;
-            job.memory.layout = profile.layout();
             let rounds = u64::from(arguments.runs) * Runner::ALL.len() as u64;
             let bar = terminal.progress(&job.scene.name, rounds);
             measured.extend(benchmark::measure(&job, arguments.runs, || bar.inc(1))?);

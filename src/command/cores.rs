@@ -9,11 +9,12 @@ use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
 use scenes::layout::Layout;
 
+use crate::arguments::JobArguments;
 use crate::arguments::{self, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments};
+use crate::cores::{self, CoresResult};
 use crate::failure::{Exit, Failure};
-use crate::job::{Job, JobArguments, result_name};
+use crate::job::{Job, result_name};
 use crate::load::{ANNEX, Load};
-use crate::scaling::{self, Scaling};
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -122,12 +123,12 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         false => picture(arguments, terminal)?,
     };
     if let Some(path) = &arguments.csv {
-        files::write(path, scaling::csv(&scaling).as_bytes())?;
+        files::write(path, cores::csv(&scaling).as_bytes())?;
     }
     if let Some(path) = &arguments.svg {
-        files::write(path, scaling::svg(&scaling)?.as_bytes())?;
+        files::write(path, cores::svg(&scaling)?.as_bytes())?;
     }
-    terminal.print(&if arguments.json { result::json(&scaling) } else { scaling::text(&scaling) })?;
+    terminal.print(&if arguments.json { result::json(&scaling) } else { cores::text(&scaling) })?;
     Ok(Exit::Done)
 }
 
@@ -144,7 +145,7 @@ fn with_arbiters(arguments: &CoresArguments, name: &str, config: &Config) -> Vec
     arguments.arbiters.iter().map(with).collect()
 }
 
-fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, Failure> {
+fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<CoresResult, Failure> {
     let mut machines = Vec::new();
     for name in &arguments.machines {
         let (name, mut config) = machine::find(name)?;
@@ -154,13 +155,13 @@ fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, Fai
     measure(ANNEX, &Load::annex()?, &machines, arguments, terminal)
 }
 
-fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<Scaling, Failure> {
-    let jobs = arguments.machines.iter().map(|machine| Job::from_arguments(&job(arguments, machine)));
+fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<CoresResult, Failure> {
+    let jobs = arguments.machines.iter().map(|machine| job(arguments, machine).job());
     let jobs = jobs.collect::<Result<Vec<Job>, Failure>>()?;
     let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()].into_iter().flatten();
     files::check_spared(targets, jobs.iter().flat_map(|job| &job.files)).map_err(Failure::usage)?;
     terminal.show(&jobs[0].warnings);
-    let mut whole: Option<Scaling> = None;
+    let mut whole: Option<CoresResult> = None;
     // Machines with words of the same length share the picture in memory and the programs.
     for alike in jobs.chunk_by(|one, other| one.machine.arithmetic.word == other.machine.arithmetic.word) {
         let (load, _) = Load::picture(&alike[0])?;
@@ -189,9 +190,9 @@ fn measure(
     machines: &[(String, Config)],
     arguments: &CoresArguments,
     terminal: &Terminal,
-) -> Result<Scaling, Failure> {
+) -> Result<CoresResult, Failure> {
     let bar = terminal.progress("pixels", u64::from(load.build.crop.width) * u64::from(load.build.crop.height));
-    let scaling = scaling::measure(scene, load, machines, &arguments.cores.0, &mut |done| bar.set_position(done));
+    let scaling = cores::measure(scene, load, machines, &arguments.cores.0, &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     scaling
 }

@@ -16,13 +16,13 @@ Examples:
 /// Prints a machine as a TOML file with every key, its unit and what it means.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
-pub struct MachineArguments {
+pub struct PresetArguments {
     #[arg(value_name = "NAME|FILE", default_value = machine::DEFAULT, help = machine::named())]
     machine: String,
 }
 
 /// Prints the machine.
-pub(super) fn execute(arguments: &MachineArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(arguments: &PresetArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let (name, config) = machine::find(&arguments.machine)?;
     terminal.print(&machine::commented(&name, &config))?;
     Ok(Exit::Done)

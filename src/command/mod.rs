@@ -62,7 +62,7 @@ enum Command {
     Scene(scene::SceneArguments),
     Profiles(profiles::ProfilesArguments),
     Skips(Box<skips::SkipsArguments>),
-    Machine(machine::MachineArguments),
+    Machine(machine::PresetArguments),
     Cores(Box<cores::CoresArguments>),
     Trace(Box<trace::TraceArguments>),
     Accuracy(accuracy::AccuracyArguments),

@@ -4,8 +4,9 @@ use clap::Args;
 
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
+use crate::numeral::short;
 use crate::profiles::{self, Profiles, Ratio};
-use crate::table::{row, short, table};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{input, machine, result};
 

@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use clap::Args;
 
+use crate::arguments::JobArguments;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::{Exit, Failure};
 use crate::files::picture::Format;
 use crate::files::{self, map};
-use crate::job::{Job, JobArguments, result_name};
+use crate::job::{Job, result_name};
 use crate::result::{Host, Render, loss_table};
 use crate::summary;
 use crate::terminal::Terminal;
@@ -64,7 +65,7 @@ fn picture(text: &str) -> Result<PathBuf, String> {
 /// Draws, writes and prints.
 pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let start = Instant::now();
-    let mut job = Job::from_arguments(&arguments.job)?;
+    let mut job = arguments.job.job()?;
     job.flags = arguments.flags;
     let load = start.elapsed();
     terminal.show(&job.warnings);

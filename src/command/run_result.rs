@@ -14,9 +14,10 @@ use serde::{Serialize, Serializer};
 
 use super::run_arguments::Dump;
 use crate::failure::Failure;
+use crate::numeral::{count, grouped};
 use crate::result::{ByClass, Loss, Region, hexadecimal, loss_table, regions};
 use crate::summary;
-use crate::table::{count, grouped, row, table};
+use crate::table::{row, table};
 
 /// Version of [`RunResult`].
 pub const SCHEMA: &str = "lancer-run-1";

@@ -14,12 +14,12 @@ use super::run_result::{self, RunResult};
 use super::stress::{self, Catalogue};
 use crate::annex;
 use crate::annex::result::Annexes;
-use crate::extension::{self, Comparison};
+use crate::cores::{self, CoresResult};
+use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
 use crate::profiles::{self, Profiles};
 use crate::result::{self, Render};
-use crate::savings::{self, Savings};
-use crate::scaling::{self, Scaling};
+use crate::skips::{self, SkipsResult};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -49,13 +49,13 @@ const SCHEMAS: &[Known] = &[
     Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: schema_of::<Annexes> },
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
-    Known { name: scaling::SCHEMA, command: "lancer cores --json", make: schema_of::<Scaling> },
+    Known { name: cores::SCHEMA, command: "lancer cores --json", make: schema_of::<CoresResult> },
     Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: schema_of::<Profiles> },
-    Known { name: savings::SCHEMA, command: "lancer skips --json", make: schema_of::<Savings> },
+    Known { name: skips::SCHEMA, command: "lancer skips --json", make: schema_of::<SkipsResult> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
     Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
-    Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<Comparison> },
+    Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<ExtensionResult> },
     Known {
         name: extension::SUGGESTION_SCHEMA,
         command: "lancer extension suggest --json",

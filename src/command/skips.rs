@@ -3,11 +3,12 @@
 use clap::Args;
 use messages::Diagnostic;
 
+use crate::arguments::JobArguments;
 use crate::failure::{Exit, Failure};
-use crate::job::{Job, JobArguments};
+use crate::numeral::short;
 use crate::result;
-use crate::savings::{self, Saving, Savings};
-use crate::table::{row, short, table};
+use crate::skips::{self, SkipResult, SkipsResult};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -42,10 +43,10 @@ pub(super) fn execute(arguments: &SkipsArguments, terminal: &mut Terminal) -> Re
             Diagnostic::error("skips are switched one by one here").hint("leave out --no-skip"),
         ));
     }
-    let job = Job::from_arguments(&arguments.job)?;
+    let job = arguments.job.job()?;
     terminal.show(&job.warnings);
-    let bar = terminal.progress("pictures", savings::pictures(&job) as u64);
-    let savings = savings::measure(&job, &|| bar.inc(1));
+    let bar = terminal.progress("pictures", skips::pictures(&job) as u64);
+    let savings = skips::measure(&job, &|| bar.inc(1));
     bar.finish_and_clear();
     let savings = savings?;
     terminal.print(&if arguments.json { result::json(&savings) } else { text(&savings) })?;
@@ -53,7 +54,7 @@ pub(super) fn execute(arguments: &SkipsArguments, terminal: &mut Terminal) -> Re
     Ok(if is_kept { Exit::Done } else { Exit::Tolerance })
 }
 
-fn text(savings: &Savings) -> String {
+fn text(savings: &SkipsResult) -> String {
     let mut rows = vec![row(["skip", "operations", "saved", "octets", "saved", "clocks", "saved", "words", "picture"])];
     rows.extend(savings.rows.iter().map(|saving| {
         let share = |share: f64| format!("{:.1} %", 100.0 * share);
@@ -83,7 +84,7 @@ fn text(savings: &Savings) -> String {
     )
 }
 
-fn picture(saving: &Saving) -> String {
+fn picture(saving: &SkipResult) -> String {
     match saving.psnr_db {
         _ if saving.is_identical => "identical".to_owned(),
         Some(psnr) => format!("{} off, {psnr:.1} dB", saving.off_pixels),

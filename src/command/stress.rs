@@ -10,8 +10,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Exit, Failure};
-use crate::stress::{self, CASES, Case, Size, Tally};
-use crate::table::{grouped, row, table};
+use crate::numeral::grouped;
+use crate::stress::{self, CASES, Case, CatalogueSize, Tally};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, result};
 
@@ -47,8 +48,8 @@ pub struct StressArguments {
     #[arg(long = "case", value_name = "NAME", value_parser = case())]
     cases: Vec<&'static Case>,
     /// Number of trials: quick (seconds) or full (hours).
-    #[arg(long, value_name = "SIZE", value_parser = size(), default_value = Size::Quick.name(), conflicts_with = "full")]
-    size: Size,
+    #[arg(long, value_name = "SIZE", value_parser = size(), default_value = CatalogueSize::Quick.name(), conflicts_with = "full")]
+    size: CatalogueSize,
     /// The same as --size full.
     #[arg(long)]
     full: bool,
@@ -68,9 +69,11 @@ fn case() -> impl TypedValueParser<Value = &'static Case> {
     names.map(|name| stress::find(&name).expect("the parser lets only names pass"))
 }
 
-fn size() -> impl TypedValueParser<Value = Size> {
-    let names = PossibleValuesParser::new(Size::ALL.map(Size::name));
-    names.map(|name| Size::ALL.into_iter().find(|size| size.name() == name).expect("the parser lets only names pass"))
+fn size() -> impl TypedValueParser<Value = CatalogueSize> {
+    let names = PossibleValuesParser::new(CatalogueSize::ALL.map(CatalogueSize::name));
+    names.map(|name| {
+        CatalogueSize::ALL.into_iter().find(|size| size.name() == name).expect("the parser lets only names pass")
+    })
 }
 
 /// How far a run has come.
@@ -78,7 +81,7 @@ fn size() -> impl TypedValueParser<Value = Size> {
 #[serde(deny_unknown_fields)]
 struct State {
     schema: String,
-    size: Size,
+    size: CatalogueSize,
     cases: BTreeMap<String, Done>,
 }
 
@@ -140,7 +143,7 @@ pub(super) struct Catalogue {
 
 /// Tries the cases.
 pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let size = if arguments.full { Size::Full } else { arguments.size };
+    let size = if arguments.full { CatalogueSize::Full } else { arguments.size };
     let chosen: Vec<&Case> = match arguments.cases.is_empty() {
         true => CASES.iter().collect(),
         false => arguments.cases.clone(),
@@ -176,7 +179,7 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
 /// Makes the trials of a case that are still to be made.
 fn try_case(
     case: &Case,
-    size: Size,
+    size: CatalogueSize,
     state: &mut State,
     file: Option<&Path>,
     terminal: &Terminal,
@@ -202,7 +205,7 @@ fn try_case(
 }
 
 /// What a former run has left.
-fn read(path: &Path, size: Size) -> Result<State, Report> {
+fn read(path: &Path, size: CatalogueSize) -> Result<State, Report> {
     let shown = path.display();
     let source = files::source(path)?;
     let state: State = serde_json::from_str(&source.text)
@@ -254,7 +257,7 @@ fn text(verdict: &Verdict) -> String {
 fn list(cases: &[&Case]) -> String {
     let mut rows = vec![row(["case", "what is tried", "quick", "full"])];
     rows.extend(cases.iter().map(|case| {
-        let [quick, full] = Size::ALL.map(|size| grouped(case.trials(size)));
+        let [quick, full] = CatalogueSize::ALL.map(|size| grouped(case.trials(size)));
         vec![case.name.to_owned(), case.about.to_owned(), quick, full]
     }));
     table(rows)

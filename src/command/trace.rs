@@ -9,10 +9,12 @@ use emu::machine::{Config, Frame, Options};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 
+use crate::arguments::JobArguments;
 use crate::failure::{Exit, Failure};
-use crate::job::{Job, JobArguments, result_name};
+use crate::job::result_name;
 use crate::load::{ANNEX, Load};
-use crate::table::{grouped, percent, row, table};
+use crate::numeral::{grouped, percent};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::trace::{Scene, perfetto, wave};
 use crate::{files, machine as machines};
@@ -118,7 +120,7 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
         return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.machine)]));
     }
     job.view.pixel = None;
-    let job = Job::from_arguments(&job)?;
+    let job = job.job()?;
     terminal.show(&job.warnings);
     let (load, _) = Load::picture(&job)?;
     terminal.show(&load.build.warnings);

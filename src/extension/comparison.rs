@@ -1,23 +1,22 @@
 //! A scene drawn without an extension, with it, and with the bodies of its instructions in their place.
 
 use isa::table::Op;
-use isa::{Class, Isa, Program};
+use isa::{Isa, Program};
 use scenes::metrics::PictureError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::drawing::{self, Comparison as Measure, Drawing};
+use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::result::{ByClass, Formats, Render};
-use crate::table::{count, grouped, row, table};
 
-/// Version of [`Comparison`].
+/// Version of [`ExtensionResult`].
 pub const SCHEMA: &str = "lancer-extension-1";
 
 /// One way to draw the scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Variant {
+pub struct VariantResult {
     /// Instructions of all cores.
     pub instructions: u64,
     /// Operations of all cores, by class.
@@ -42,7 +41,7 @@ pub struct Variant {
 
 /// What an extension changes.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Comparison {
+pub struct ExtensionResult {
     /// Version of the result.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
@@ -61,21 +60,21 @@ pub struct Comparison {
     /// Size of the picture in pixels.
     pub size: [u32; 2],
     /// The profile's own kernels, without the extension.
-    pub without: Variant,
+    pub without: VariantResult,
     /// The replaced kernels with the extension.
-    pub with: Variant,
+    pub with: VariantResult,
     /// The same kernels, each instruction of the extension as if the instructions of its body stood in its place, on registers of
     /// their own.
-    pub expanded: Variant,
+    pub expanded: VariantResult,
     /// Whether all three pictures are the same, bit for bit.
     pub is_identical: bool,
 }
 
-impl Variant {
-    fn new(job: &Job, drawing: &Drawing, isa: &Isa) -> Variant {
+impl VariantResult {
+    fn new(job: &Job, drawing: &Drawing, isa: &Isa) -> VariantResult {
         let render = Render::new(job, drawing);
         let size = |program: &Program| -> u64 { program.words.iter().map(|&word| length(word, isa)).sum() };
-        Variant {
+        VariantResult {
             instructions: render.instructions,
             elementary: render.counts.0.elementary(),
             counts: render.counts,
@@ -112,11 +111,11 @@ pub fn compare(
     plain: &Job,
     extended: &Job,
     progress: &mut dyn FnMut(),
-) -> Result<Comparison, Failure> {
-    let mut draw = |job: &Job| -> Result<Variant, Failure> {
-        let drawing = drawing::draw(job, Measure::Reference, &mut |_| {})?;
+) -> Result<ExtensionResult, Failure> {
+    let mut draw = |job: &Job| -> Result<VariantResult, Failure> {
+        let drawing = drawing::draw(job, Comparison::Reference, &mut |_| {})?;
         progress();
-        Ok(Variant::new(job, &drawing, &job.isa))
+        Ok(VariantResult::new(job, &drawing, &job.isa))
     };
     let without = draw(plain)?;
     let with = draw(extended)?;
@@ -124,7 +123,7 @@ pub fn compare(
     expanded.isa = extended.isa.expanded(ops);
     let expanded = draw(&expanded)?;
     let hashes = [&without.image_hash, &with.image_hash, &expanded.image_hash];
-    Ok(Comparison {
+    Ok(ExtensionResult {
         schema: SCHEMA,
         file,
         instructions: ops.iter().map(|&op| extended.isa.definition(op).name.to_string()).collect(),
@@ -138,88 +137,4 @@ pub fn compare(
         with,
         expanded,
     })
-}
-
-/// A change in per cent.
-fn change(from: u64, to: u64) -> String {
-    match (from, to) {
-        (from, to) if from == to => "0.0 %".to_owned(),
-        (0, _) => "new".to_owned(),
-        (from, to) => format!("{:+.1} %", 100.0 * (to as f64 - from as f64) / from as f64),
-    }
-}
-
-impl Comparison {
-    /// Head and rows of the table.
-    fn rows(&self) -> Vec<Vec<String>> {
-        let variants = [&self.without, &self.with, &self.expanded];
-        let mut rows = vec![row(["", "without", "with", "change", "expanded", "change"])];
-        let mut add = |name: &str, value: &dyn Fn(&Variant) -> u64| {
-            let [without, with, expanded] = variants.map(value);
-            if [without, with, expanded] != [0; 3] {
-                rows.push(vec![
-                    name.to_owned(),
-                    grouped(without),
-                    grouped(with),
-                    change(without, with),
-                    grouped(expanded),
-                    change(without, expanded),
-                ]);
-            }
-        };
-        add("instructions", &|variant| variant.instructions);
-        add("elementary operations", &|variant| variant.elementary);
-        for &class in Class::ALL {
-            add(class.name(), &|variant| variant.counts.0[class]);
-        }
-        add("octets on the bus", &|variant| variant.octets);
-        add(&format!("clocks on {}", count(self.cores.into(), "core", "cores")), &|variant| variant.clocks);
-        add("code in words", &|variant| variant.words);
-        let psnr = |variant: &Variant| match variant.error.and_then(|error| error.psnr_db) {
-            Some(psnr) => format!("{psnr:.2}"),
-            None => "-".to_owned(),
-        };
-        let [without, with, expanded] = variants.map(psnr);
-        rows.push(vec!["PSNR in dB".to_owned(), without, with, String::new(), expanded, String::new()]);
-        rows
-    }
-
-    fn title(&self) -> String {
-        let names: Vec<String> = self.instructions.iter().map(|name| format!("`{name}`")).collect();
-        format!(
-            "{} of {}: {}, {} x {} pixels, kernels `{}` on machine `{}`\n",
-            names.join(", "),
-            self.file,
-            self.scene,
-            self.size[0],
-            self.size[1],
-            self.profile,
-            self.machine
-        )
-    }
-
-    fn verdict(&self) -> String {
-        match self.is_identical {
-            true => format!("The pictures are identical: {}\n", self.without.image_hash),
-            false => format!(
-                "The pictures differ: without {}, with {}\n",
-                &self.without.image_hash[..16],
-                &self.with.image_hash[..16]
-            ),
-        }
-    }
-
-    /// The table for people.
-    pub fn text(&self) -> String {
-        format!("{}\n{}\n{}", self.title(), table(self.rows()), self.verdict())
-    }
-
-    /// The same as Markdown.
-    pub fn markdown(&self) -> String {
-        let rows = self.rows();
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-        let rule = format!("|---|{}\n", "---:|".repeat(rows[0].len() - 1));
-        let body: String = rows[1..].iter().map(|cells| line(cells)).collect();
-        format!("{}\n{}{rule}{body}\n{}", self.title(), line(&rows[0]), self.verdict())
-    }
 }

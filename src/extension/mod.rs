@@ -3,7 +3,9 @@
 mod comparison;
 mod findings;
 mod suggestion;
+#[cfg(feature = "cli")]
+mod text;
 
-pub use comparison::{Comparison, SCHEMA, Variant, compare};
+pub use comparison::{ExtensionResult, SCHEMA, VariantResult, compare};
 pub use findings::findings;
 pub use suggestion::{SUGGESTION_SCHEMA, Suggestion, SuggestionResult, Suggestions, suggest};

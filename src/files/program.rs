@@ -10,7 +10,7 @@ use isa::Program;
 use messages::{Diagnostic, Place, Report, Source};
 
 use super::{read, text};
-use crate::table::grouped;
+use crate::numeral::grouped;
 
 /// A file format for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::{Bus, ByClass, Main, Processor, Region, Render, hexadecimal};
+use super::{BusResult, ByClass, Main, ProcessorResult, Region, Render, hexadecimal};
 
 /// SHA-256 over width and height (unsigned, 32 bits, little-endian) and the three raw words of each pixel (signed, 32
 /// bits, little-endian), row 0 first; in hexadecimal.
@@ -28,11 +28,11 @@ pub fn run_hash(result: &Render) -> String {
         counts: ByClass,
         octets: u64,
         clocks: u64,
-        cores: &'a [Processor],
+        cores: &'a [ProcessorResult],
         functions: &'a [Region],
         regions: &'a [Region],
         main: &'a Main,
-        bus: &'a Bus,
+        bus: &'a BusResult,
     }
     let run = Run {
         image_hash: &result.image_hash,

@@ -3,6 +3,8 @@
 
 mod hash;
 mod hexadecimal;
+#[cfg(feature = "cli")]
+mod loss_table;
 mod losses;
 
 use std::borrow::Cow;
@@ -24,7 +26,9 @@ use crate::drawing::Drawing;
 use crate::job::{Job, result_name};
 pub use hash::{image_hash, run_hash};
 pub use hexadecimal::hexadecimal;
-pub use losses::{Loss, loss_table, losses};
+#[cfg(feature = "cli")]
+pub use loss_table::loss_table;
+pub use losses::{Loss, losses};
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-render-1";
@@ -112,7 +116,7 @@ pub struct Render {
     /// Why a faster engine that was wanted did not execute it; `None` where it did.
     pub engine_because: Option<&'static str>,
     /// Where the clocks of each core went.
-    pub cores: Vec<Processor>,
+    pub cores: Vec<ProcessorResult>,
     /// Functions of the cores' program.
     pub functions: Vec<Region>,
     /// Regions inside functions of the cores' program; their exclusive counts are not in the function's.
@@ -120,7 +124,7 @@ pub struct Render {
     /// The main processor.
     pub main: Main,
     /// The bus.
-    pub bus: Bus,
+    pub bus: BusResult,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: Formats,
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
@@ -152,7 +156,7 @@ pub struct Rays {
 
 /// Where the clocks of a processor went; `busy + waiting + idle` are the clocks of the frame.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Processor {
+pub struct ProcessorResult {
     /// Clocks of instructions.
     pub busy: u64,
     /// Clocks from a bus request to the end of its transfer.
@@ -193,7 +197,7 @@ pub struct Main {
     pub counts: ByClass,
     /// Where its clocks went.
     #[serde(flatten)]
-    pub clocks: Processor,
+    pub clocks: ProcessorResult,
     /// Share of the frame in which it was not idle.
     pub load: f64,
     /// Functions of its program.
@@ -202,7 +206,7 @@ pub struct Main {
 
 /// The bus.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Bus {
+pub struct BusResult {
     /// Clocks in which a transfer held it.
     pub busy: u64,
     /// Octets that went over it.
@@ -222,12 +226,12 @@ pub struct Bus {
     /// Octets by kind of data; `messages` are the messages.
     pub kinds: Kinds,
     /// The cores' caches together.
-    pub cache: Cache,
+    pub cache: CacheResult,
 }
 
 /// Caches.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct Cache {
+pub struct CacheResult {
     /// Reads that took no time.
     pub hits: u64,
     /// Reads that had to get lines.
@@ -321,17 +325,17 @@ impl Render {
             stepped_because: frame.method.reason(),
             engine: drawing.engine.kind.name(),
             engine_because: drawing.engine.refusal,
-            cores: (0..).zip(cores).map(|(number, core)| Processor::new(core, frame.waits.get(number))).collect(),
+            cores: (0..).zip(cores).map(|(number, core)| ProcessorResult::new(core, frame.waits.get(number))).collect(),
             functions: regions(frame.profile.as_ref(), true),
             regions: regions(frame.profile.as_ref(), false),
             main: Main {
                 instructions: main.iter().map(|main| main.instructions).sum(),
                 counts: ByClass(main_counts),
-                clocks: Processor::new(&main_use, frame.waits.get(cores.len())),
+                clocks: ProcessorResult::new(&main_use, frame.waits.get(cores.len())),
                 load: (main_use.busy + main_use.waiting).0 as f64 / frame.clocks.0.max(1) as f64,
                 functions: regions(frame.main_profile.as_ref(), true),
             },
-            bus: Bus {
+            bus: BusResult {
                 busy: frame.bus.busy.0,
                 moved: frame.bus.moved.0,
                 asked: frame.asked.0,
@@ -341,7 +345,7 @@ impl Render {
                 bursts: frame.bus.bursts,
                 longest_wait: frame.bus.longest_wait.0,
                 kinds: Kinds(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
-                cache: Cache {
+                cache: CacheResult {
                     hits: frame.cache.hits,
                     misses: frame.cache.misses,
                     asked: frame.cache.asked.0,
@@ -386,12 +390,12 @@ impl Rays {
     }
 }
 
-impl Processor {
-    fn new(used: &ProcessorUse, waits: Option<&Waits>) -> Processor {
+impl ProcessorResult {
+    fn new(used: &ProcessorUse, waits: Option<&Waits>) -> ProcessorResult {
         let ProcessorUse { busy, waiting, idle, octets, longest_wait, items, .. } = *used;
         let waits = waits.map_or(&[][..], |waits| &waits.0);
         let columns = waits.iter().rposition(|&count| count != 0).map_or(0, |last| last + 1);
-        Processor {
+        ProcessorResult {
             busy: busy.0,
             waiting: waiting.0,
             idle: idle.0,

@@ -21,7 +21,7 @@ pub use tally::Tally;
 /// How many trials are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Size {
+pub enum CatalogueSize {
     /// Seconds: as many as the test suite makes.
     #[default]
     Quick,
@@ -29,15 +29,15 @@ pub enum Size {
     Full,
 }
 
-impl Size {
+impl CatalogueSize {
     /// Both sizes.
-    pub const ALL: [Size; 2] = [Size::Quick, Size::Full];
+    pub const ALL: [CatalogueSize; 2] = [CatalogueSize::Quick, CatalogueSize::Full];
 
     /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
-            Size::Quick => "quick",
-            Size::Full => "full",
+            CatalogueSize::Quick => "quick",
+            CatalogueSize::Full => "full",
         }
     }
 }
@@ -81,20 +81,20 @@ impl Case {
         Case { seed, ..self }
     }
 
-    fn work(&self, size: Size) -> Work {
+    fn work(&self, size: CatalogueSize) -> Work {
         match size {
-            Size::Quick => self.quick,
-            Size::Full => self.full,
+            CatalogueSize::Quick => self.quick,
+            CatalogueSize::Full => self.full,
         }
     }
 
     /// Number of trials.
-    pub fn trials(&self, size: Size) -> u64 {
+    pub fn trials(&self, size: CatalogueSize) -> u64 {
         self.work(size).0
     }
 
     /// Makes some trials.
-    pub fn run(&self, size: Size, trials: Range<u64>) -> Tally {
+    pub fn run(&self, size: CatalogueSize, trials: Range<u64>) -> Tally {
         self.work(size).1(self.seed, trials)
     }
 

@@ -7,7 +7,7 @@ use asm::extension::load;
 use emu::engine::EngineKind;
 use emu::machine::{Frame, Options};
 use kernels::{Function, KernelSet};
-use lancer::job::Job;
+use lancer::job::{Job, SHIFT};
 use lancer::load::Load;
 use messages::Source;
 use scenes::generate;
@@ -74,13 +74,12 @@ fn all_ways_to_run_an_example_agree() {
     for (folder, rows, kernels) in examples() {
         let scene = generate::scene("cornell", &generate::GenerateOptions { size: (8, 6), ..Default::default() });
         let mut job = Job::new(scene.unwrap());
-        job.view.shift = [0.137, 0.071];
+        job.view.shift = SHIFT;
         job.kernels.profile = profile(&kernels).unwrap();
         load(&mut job.isa, &Source::new("t.isa", rows), &|_, _| Err("nothing is included".into())).unwrap();
         for Kernel { function, text } in kernels {
             job.kernels.replaced.push((function, Source::new(format!("{function:?}.s"), text)));
         }
-        job.memory.layout = job.kernels.profile.layout();
         let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{}: {failure:?}", folder.display()));
         let run = |engine, steps: bool| -> Frame {
             let options = Options { engine, has_profile: true, has_items: true, ..Options::default() };

@@ -9,7 +9,7 @@ use messages::Report;
 use crate::arguments;
 use crate::extension::findings;
 use crate::failure::{Exit, Failure};
-use crate::table::count;
+use crate::numeral::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use isa::table::Op;
 
+use crate::arguments::JobArguments;
 use crate::arguments::{self, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments};
 use crate::extension::compare;
 use crate::failure::{Exit, Failure};
-use crate::job::{Job, JobArguments};
 use crate::result;
 use crate::terminal::Terminal;
 
@@ -64,7 +64,7 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
         numbers: arguments.numbers.clone(),
         effort: arguments.effort.clone(),
     };
-    let mut extended = Job::from_arguments(&job)?;
+    let mut extended = job.job()?;
     terminal.show(&extended.warnings);
     let mut plain = extended.clone();
     plain.kernels.replaced.clear();

@@ -7,14 +7,15 @@ use clap::Args;
 use isa::table::Op;
 use messages::{Diagnostic, Source};
 
+use crate::arguments::JobArguments;
 use crate::command::render;
 use crate::drawing::Comparison;
 use crate::extension::{SuggestionResult, Suggestions, compare, suggest};
 use crate::failure::{Exit, Failure};
 use crate::files;
-use crate::job::{Job, JobArguments};
+use crate::numeral::{grouped, percent};
 use crate::result;
-use crate::table::{grouped, percent, row, table};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -47,7 +48,7 @@ pub struct SuggestArguments {
 
 /// Draws, looks, writes and compares.
 pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let mut plain = Job::from_arguments(&arguments.job)?;
+    let mut plain = arguments.job.job()?;
     terminal.show(&plain.warnings);
     let file = arguments.output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     asm::check_outside_name(&file, &plain.isa).map_err(|why| Failure::usage(Diagnostic::error(why)))?;

@@ -41,7 +41,7 @@ pub struct ConvertArguments {
     mesh: Option<PathBuf>,
     /// Format of OUT [default: by its extension].
     #[arg(long, value_name = "FORMAT", ignore_case = true, value_parser = target())]
-    to: Option<Target>,
+    to: Option<ConversionTarget>,
     /// Writes a .dsc beside the mesh OUT too, with the size of the picture, all materials and the lights.
     #[arg(long)]
     dsc: bool,
@@ -49,23 +49,23 @@ pub struct ConvertArguments {
 
 /// What is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Target {
+enum ConversionTarget {
     /// A description with its mesh.
     Description,
     /// A mesh.
     Mesh(MeshFormat),
 }
 
-impl Target {
-    fn named(name: &str) -> Option<Target> {
+impl ConversionTarget {
+    fn named(name: &str) -> Option<ConversionTarget> {
         let mesh = MeshFormat::ALL.into_iter().find(|format| format.name() == name);
-        mesh.map(Target::Mesh).or((name == "dsc").then_some(Target::Description))
+        mesh.map(ConversionTarget::Mesh).or((name == "dsc").then_some(ConversionTarget::Description))
     }
 
     /// The format that a file's name asks for.
-    fn of(path: &Path) -> Result<Target, Report> {
+    fn of(path: &Path) -> Result<ConversionTarget, Report> {
         let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
-        extension.as_deref().and_then(Target::named).ok_or_else(|| {
+        extension.as_deref().and_then(ConversionTarget::named).ok_or_else(|| {
             let message = format!("{} does not end in .{}", path.display(), names().collect::<Vec<_>>().join(", ."));
             Diagnostic::error(message).hint("choose a format with `--to`").into()
         })
@@ -76,16 +76,16 @@ fn names() -> impl Iterator<Item = &'static str> {
     std::iter::once("dsc").chain(MeshFormat::ALL.iter().map(|format| format.name()))
 }
 
-fn target() -> impl TypedValueParser<Value = Target> {
+fn target() -> impl TypedValueParser<Value = ConversionTarget> {
     let names = PossibleValuesParser::new(names().map(PossibleValue::new));
-    names.map(|name| Target::named(&name.to_ascii_lowercase()).expect("the parser lets only names pass"))
+    names.map(|name| ConversionTarget::named(&name.to_ascii_lowercase()).expect("the parser lets only names pass"))
 }
 
 /// Reads, converts and writes.
 pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let output = &arguments.output;
-    let target = arguments.to.map_or_else(|| Target::of(output), Ok).map_err(Failure::usage)?;
-    let has_description = arguments.dsc || target == Target::Description;
+    let target = arguments.to.map_or_else(|| ConversionTarget::of(output), Ok).map_err(Failure::usage)?;
+    let has_description = arguments.dsc || target == ConversionTarget::Description;
     let paths = paths(output, target, has_description);
     files::check_distinct(paths.iter().map(PathBuf::as_path)).map_err(Failure::usage)?;
     for path in &paths {
@@ -99,9 +99,11 @@ pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> 
         .map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
     files::write_all(&paths.iter().zip(contents).collect::<Vec<_>>())?;
     match target {
-        Target::Mesh(format) if has_description => terminal.show(&write::losses_beside_description(scene, format)),
-        Target::Mesh(format) => terminal.show(&write::losses(scene, format)),
-        Target::Description => {}
+        ConversionTarget::Mesh(format) if has_description => {
+            terminal.show(&write::losses_beside_description(scene, format))
+        }
+        ConversionTarget::Mesh(format) => terminal.show(&write::losses(scene, format)),
+        ConversionTarget::Description => {}
     }
     let shown: Vec<String> = paths.iter().rev().map(|path| path.display().to_string()).collect();
     terminal.print(&format!("{}: {}\n", shown.join(" and "), parts(scene)))?;
@@ -109,31 +111,39 @@ pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> 
 }
 
 /// The files of a result, in the order in which they take their places: what names another one comes after it.
-fn paths(output: &Path, target: Target, has_description: bool) -> Vec<PathBuf> {
+fn paths(output: &Path, target: ConversionTarget, has_description: bool) -> Vec<PathBuf> {
     let companion = match target {
-        Target::Mesh(MeshFormat::Obj) => Some(output.with_extension("mtl")),
-        Target::Description => Some(output.with_extension("off")),
-        Target::Mesh(_) => None,
+        ConversionTarget::Mesh(MeshFormat::Obj) => Some(output.with_extension("mtl")),
+        ConversionTarget::Description => Some(output.with_extension("off")),
+        ConversionTarget::Mesh(_) => None,
     };
-    let description = (has_description && target != Target::Description).then(|| output.with_extension("dsc"));
+    let description =
+        (has_description && target != ConversionTarget::Description).then(|| output.with_extension("dsc"));
     companion.into_iter().chain([output.to_owned()]).chain(description).collect()
 }
 
 /// The octets of these files.
-fn contents(scene: &Scene, target: Target, has_description: bool, paths: &[PathBuf]) -> std::io::Result<Vec<Vec<u8>>> {
+fn contents(
+    scene: &Scene,
+    target: ConversionTarget,
+    has_description: bool,
+    paths: &[PathBuf],
+) -> std::io::Result<Vec<Vec<u8>>> {
     let mut description = Vec::new();
     if has_description {
         write::dsc(scene, &mut description)?;
     }
     let mut files = match target {
-        Target::Mesh(MeshFormat::Obj) => {
+        ConversionTarget::Mesh(MeshFormat::Obj) => {
             let (mut library, mut mesh) = (Vec::new(), Vec::new());
             write::mtl(scene, &mut library)?;
             write::obj(scene, &library_name(&paths[0])?, &mut mesh)?;
             vec![library, mesh]
         }
-        Target::Mesh(format) => write::mesh(scene, format, "")?.into_iter().map(|(_, octets)| octets).collect(),
-        Target::Description => {
+        ConversionTarget::Mesh(format) => {
+            write::mesh(scene, format, "")?.into_iter().map(|(_, octets)| octets).collect()
+        }
+        ConversionTarget::Description => {
             let mut mesh = Vec::new();
             write::off(scene, &mut mesh)?;
             vec![mesh]

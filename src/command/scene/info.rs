@@ -10,7 +10,8 @@ use scenes::layout::Layout;
 
 use crate::arguments::{TreeArguments, overrides};
 use crate::failure::{Exit, Failure};
-use crate::table::{count, grouped, row, table};
+use crate::numeral::{count, grouped};
+use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{input, result};
 

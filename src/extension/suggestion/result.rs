@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Suggestions;
-use crate::extension::Comparison;
+use crate::extension::ExtensionResult;
 use crate::job::{Job, result_name};
 
 /// Version of [`SuggestionResult`].
@@ -35,7 +35,7 @@ pub struct SuggestionResult {
     /// Files that were written: the extension, then the functions.
     pub files: Vec<String>,
     /// The picture without and with them; null when there are none.
-    pub comparison: Option<Comparison>,
+    pub comparison: Option<ExtensionResult>,
 }
 
 /// An instruction that would pay.
@@ -67,7 +67,7 @@ pub struct SuggestionEntry {
 
 impl SuggestionResult {
     /// What was suggested for a picture.
-    pub fn new(job: &Job, suggestions: &Suggestions, files: Vec<String>, comparison: Option<Comparison>) -> Self {
+    pub fn new(job: &Job, suggestions: &Suggestions, files: Vec<String>, comparison: Option<ExtensionResult>) -> Self {
         let entries = suggestions.found.iter().map(|found| SuggestionEntry {
             name: found.name.clone(),
             row: found.row.clone(),

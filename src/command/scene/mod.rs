@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 use scenes::model::Scene;
 
 use crate::failure::{Exit, Failure};
-use crate::table::count;
+use crate::numeral::count;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\

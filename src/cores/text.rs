@@ -1,15 +1,16 @@
 //! A scaling as a table for people, and as comma-separated values for other programs.
 
-use super::{Curve, Point, Scaling};
-use crate::table::{grouped, row, table};
+use super::{CoresResult, Curve, Point};
+use crate::numeral::grouped;
+use crate::table::{row, table};
 
 /// The tables of all machines.
-pub fn text(scaling: &Scaling) -> String {
+pub fn text(scaling: &CoresResult) -> String {
     let parts: Vec<String> = scaling.machines.iter().map(|curve| one(scaling, curve)).collect();
     parts.join("\n")
 }
 
-fn one(scaling: &Scaling, curve: &Curve) -> String {
+fn one(scaling: &CoresResult, curve: &Curve) -> String {
     let head = ["cores", "a pixel", "no waiting", "queueing", "speed-up", "bus", "waiting", "idle", "main", ""];
     let mut rows = vec![row(head)];
     let mut was_saturated = false;
@@ -50,7 +51,7 @@ fn milliseconds(seconds: f64) -> String {
 }
 
 /// What the curve says of the number of cores, beside what others say.
-fn verdict(scaling: &Scaling, curve: &Curve) -> String {
+fn verdict(scaling: &CoresResult, curve: &Curve) -> String {
     let clocks = |clocks: f64| grouped(clocks.round() as u64);
     let number = |cores: Option<f64>| cores.map_or("none".to_owned(), |cores| format!("{cores:.2}"));
     let measured = match curve.saturation {
@@ -107,7 +108,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// One line a point, with a head; the columns have the names of the JSON's keys.
-pub fn csv(scaling: &Scaling) -> String {
+pub fn csv(scaling: &CoresResult) -> String {
     let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
     for curve in &scaling.machines {
         for point in &curve.points {

@@ -4,7 +4,7 @@ use messages::{Diagnostic, Report};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Curve, Scaling};
+use super::{CoresResult, Curve};
 
 const SIZE: (u32, u32) = (840, 720);
 const COLOURS: [RGBColor; 6] = [
@@ -24,14 +24,14 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 ///
 /// # Errors
 /// None that a user could make: it is drawn in memory.
-pub fn svg(scaling: &Scaling) -> Result<String, Report> {
+pub fn svg(scaling: &CoresResult) -> Result<String, Report> {
     let mut text = String::new();
     let drawn = draw(scaling, SVGBackend::with_string(&mut text, SIZE).into_drawing_area());
     drawn.map_err(|error| Diagnostic::error(format!("no chart can be drawn: {error}")))?;
     Ok(text)
 }
 
-fn draw(scaling: &Scaling, root: Area) -> Outcome {
+fn draw(scaling: &CoresResult, root: Area) -> Outcome {
     root.fill(&WHITE)?;
     let (above, below) = root.split_vertically(SIZE.1 * 2 / 3);
     speed_up(scaling, &above)?;
@@ -40,13 +40,13 @@ fn draw(scaling: &Scaling, root: Area) -> Outcome {
     Ok(())
 }
 
-fn most_cores(scaling: &Scaling) -> f64 {
+fn most_cores(scaling: &CoresResult) -> f64 {
     let points = scaling.machines.iter().flat_map(|curve| &curve.points);
     points.map(|point| f64::from(point.cores)).fold(1.0, f64::max)
 }
 
 /// Measured speed-ups as lines with dots, the closed form dashed, the queueing estimate dotted, knees as vertical lines.
-fn speed_up(scaling: &Scaling, area: &Area) -> Outcome {
+fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
     let widest = most_cores(scaling) + 0.5;
     let points = scaling.machines.iter().flat_map(|curve| &curve.points);
     let highest = points.map(|point| point.speed_up).fold(scaling.report_quotient, f64::max) * 1.15;
@@ -105,7 +105,7 @@ fn name(curve: &Curve) -> String {
     format!("{}, {} (dashed: without waiting, dotted: queueing)", curve.machine, curve.arbiter)
 }
 
-fn utilisation(scaling: &Scaling, area: &Area) -> Outcome {
+fn utilisation(scaling: &CoresResult, area: &Area) -> Outcome {
     let mut chart = ChartBuilder::on(area)
         .caption("bus busy, per cent of the frame", ("sans-serif", 16))
         .margin(12)

@@ -18,12 +18,12 @@ pub const DIFFERENCE: f64 = 0.01;
 const NONE: &str = "none";
 const ALL: &str = "all";
 
-/// Version of [`Savings`].
+/// Version of [`SkipsResult`].
 pub const SCHEMA: &str = "lancer-skips-1";
 
 /// What the skips save on one scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Savings {
+pub struct SkipsResult {
     /// [`SCHEMA`].
     pub schema: &'static str,
     /// Name of the scene.
@@ -39,12 +39,12 @@ pub struct Savings {
     /// Bits of a word and fraction bits of each quantity.
     pub formats: Formats,
     /// First the picture without any skip, then each alone, then all together, then with interpolation, which changes the picture.
-    pub rows: Vec<Saving>,
+    pub rows: Vec<SkipResult>,
 }
 
 /// A picture with some skips, next to the one without any.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Saving {
+pub struct SkipResult {
     /// `none`, the name of a skip, `all`, or `interpolate`: all, and `--interpolate`.
     pub name: String,
     /// What is left out.
@@ -90,7 +90,7 @@ struct Way {
 ///
 /// # Errors
 /// What keeps any of them from being drawn.
-pub fn measure(job: &Job, done: &dyn Fn()) -> Result<Savings, Failure> {
+pub fn measure(job: &Job, done: &dyn Fn()) -> Result<SkipsResult, Failure> {
     compare(job, ways(job), done)
 }
 
@@ -98,13 +98,13 @@ pub fn measure(job: &Job, done: &dyn Fn()) -> Result<Savings, Failure> {
 ///
 /// # Errors
 /// What keeps it from being drawn.
-pub fn together(job: &Job) -> Result<Savings, Failure> {
+pub fn together(job: &Job) -> Result<SkipsResult, Failure> {
     let ways = ways(job).into_iter().filter(|way| [NONE, ALL].contains(&way.name.as_str())).collect();
     compare(job, ways, &|| {})
 }
 
 /// The first of the ways is what the others are compared with.
-fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<Savings, Failure> {
+fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<SkipsResult, Failure> {
     let drawings: Vec<(Way, Drawing)> = ways
         .into_iter()
         .map(|way| {
@@ -114,15 +114,15 @@ fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<Savings, Failur
         })
         .collect::<Result<_, Failure>>()?;
     let (_, plain) = &drawings[0];
-    Ok(Savings {
+    Ok(SkipsResult {
         schema: SCHEMA,
         scene: result_name(&job.scene),
         profile: job.kernels.profile.name(),
-        layout: job.memory.layout.name(),
+        layout: job.layout().name(),
         width: plain.crop.width,
         height: plain.crop.height,
         formats: (&plain.image.formats).into(),
-        rows: drawings.iter().map(|(way, drawing)| Saving::new(way, drawing, plain)).collect(),
+        rows: drawings.iter().map(|(way, drawing)| SkipResult::new(way, drawing, plain)).collect(),
     })
 }
 
@@ -149,13 +149,13 @@ fn ways(job: &Job) -> Vec<Way> {
     ways
 }
 
-impl Saving {
-    fn new(way: &Way, drawing: &Drawing, plain: &Drawing) -> Saving {
+impl SkipResult {
+    fn new(way: &Way, drawing: &Drawing, plain: &Drawing) -> SkipResult {
         let size = (drawing.crop.width, drawing.crop.height);
         let counts = counts(drawing);
         let share = |part: u64, whole: u64| if whole == 0 { 0.0 } else { 1.0 - part as f64 / whole as f64 };
         let error = metrics::compare(&drawing.picture, &plain.picture);
-        Saving {
+        SkipResult {
             name: way.name.clone(),
             description: way.description.clone(),
             counts: ByClass(counts),

@@ -1,28 +1,32 @@
 //! How a load's time falls with the number of cores, measured on several machines, beside what theory expects. What is
 //! printed or drawn of it is said in the files below.
 
+#[cfg(feature = "cli")]
 mod chart;
 mod demand;
+#[cfg(feature = "cli")]
 mod text;
 
 use emu::machine::{self, Config, Frame, Options};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+#[cfg(feature = "cli")]
 pub use chart::svg;
 pub use demand::Demand;
+#[cfg(feature = "cli")]
 pub use text::{csv, text};
 
 use crate::failure::Failure;
 use crate::load::Load;
 use crate::result::Formats;
 
-/// Version of [`Scaling`]: a key that goes away or changes its meaning changes it, a new key does not.
+/// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
 
 /// A load on several machines, each with several numbers of cores.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Scaling {
+pub struct CoresResult {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
@@ -118,7 +122,7 @@ pub fn measure(
     machines: &[(String, Config)],
     cores: &[u32],
     progress: &mut dyn FnMut(u64),
-) -> Result<Scaling, Failure> {
+) -> Result<CoresResult, Failure> {
     let mut cores: Vec<u32> = std::iter::once(1).chain(cores.iter().copied()).collect();
     cores.sort_unstable();
     cores.dedup();
@@ -132,7 +136,7 @@ pub fn measure(
         let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();
         Curve { formats: load.formats.as_ref().map(Formats::from), ..curve(name, config, &points) }
     });
-    Ok(Scaling {
+    Ok(CoresResult {
         schema: SCHEMA,
         scene: scene.to_owned(),
         pixels: frames[0].item_count,

@@ -18,14 +18,12 @@
 //! `machine: key = value` sets a key of the machine, a line `memory: 64` the octets of global memory. All other lines of
 //! comments are prose.
 
-mod case;
-
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use case::observation::{ENGINES, observe};
-use case::verdict::differences;
-use case::{Case, bless};
+use crate::case::observation::{ENGINES, observe};
+use crate::case::verdict::differences;
+use crate::case::{self, Case, bless};
 use isa::INSTRUCTIONS;
 
 /// Set to rewrite the claims of the cases that fail, so that they say what happens now.
@@ -52,7 +50,7 @@ fn every_case_does_what_it_says_on_every_engine() {
     }
     assert!(
         failures.is_empty(),
-        "{failures}\nIf this is how it should be: {BLESS}=1 cargo test --test cases, and read the diff."
+        "{failures}\nIf this is how it should be: {BLESS}=1 cargo test -p lancer cases, and read the diff."
     );
 }
 

@@ -1,5 +1,5 @@
 //! Everything that a user types or a script reads by key, held to the list in `tests/contract.txt`: an entry that goes or changes is a
-//! change of the interface, an entry that comes is written by `LANCER_BLESS=1 cargo test --test contract`. The list is put together from
+//! change of the interface, an entry that comes is written by `LANCER_BLESS=1 cargo test -p lancer contract`. The list is put together from
 //! the tables that the product itself reads.
 
 use std::collections::BTreeSet;
@@ -265,7 +265,7 @@ fn what_users_type_and_scripts_read_is_what_it_was() {
     let new: Vec<&str> = after.difference(&before).copied().collect();
     assert!(
         gone.is_empty() && new.is_empty(),
-        "gone, which breaks who relies on it:\n{}\nnew, to be written by {BLESS}=1 cargo test --test contract:\n{}",
+        "gone, which breaks who relies on it:\n{}\nnew, to be written by {BLESS}=1 cargo test -p lancer contract:\n{}",
         gone.join("\n"),
         new.join("\n")
     );

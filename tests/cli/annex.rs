@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::session::Session;
+use super::session::Session;
 
 fn annexes(session: &Session, arguments: &str) -> Value {
     serde_json::from_str(&session.succeed(&format!("annex {arguments} --json"))).expect("--json prints JSON")

@@ -1,6 +1,6 @@
 //! `lancer bench`.
 
-use crate::session::Session;
+use super::session::Session;
 
 #[test]
 fn every_runner_is_measured_on_every_scene_and_profile() {

@@ -1,6 +1,6 @@
 //! `lancer scene convert`: what is written, what is said to be lost, and what stays as it was.
 
-use crate::session::Session;
+use super::session::Session;
 
 /// Two triangles in two materials, one of them a mirror; a light of its own.
 const DESCRIPTION: &str = "DSC\n8 6\n2 1\n1 0.5 0 0 0.9 0\n0 0 1 0.5 0.5 0\n1 2 3 1 1 1\n2\n0 1\n";

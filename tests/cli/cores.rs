@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::session::Session;
+use super::session::Session;
 
 fn points(machine: &Value) -> &[Value] {
     machine["points"].as_array().unwrap()

@@ -1,6 +1,6 @@
 //! `lancer` alone.
 
-use crate::session::Session;
+use super::session::Session;
 
 #[test]
 fn the_demo_writes_its_pictures_and_shows_everything() {

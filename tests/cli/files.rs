@@ -1,6 +1,6 @@
 //! Files: whole or not at all, and where they cannot be, a message before any work.
 
-use crate::session::Session;
+use super::session::Session;
 
 const TINY: &str = "render triangle --size 6x4";
 

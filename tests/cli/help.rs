@@ -1,6 +1,6 @@
-//! Help texts, messages and the examples of `docs/machine.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test --test cli` renews them.
+//! Help texts, messages and the examples of `docs/machine.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test -p lancer help` renews them.
 
-use crate::session::Session;
+use super::session::Session;
 
 #[test]
 fn help_and_messages_say_what_they_said() {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::session::Session;
+use super::session::Session;
 
 const HEADER: &str = "op,sa,wa,ia,a,sb,wb,ib,b,sc,wc,ic,c,sr,wr,ir,q,o,n,r,qf,of\n";
 

@@ -1,6 +1,6 @@
 //! `lancer assemble`, `disassemble` and `run`.
 
-use crate::session::Session;
+use super::session::Session;
 
 /// Sums 10 + 9 + ... + 1 and squares the sum.
 const SUM: &str = "\

@@ -3,7 +3,7 @@
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::session::Session;
+use super::session::Session;
 
 const TINY: &str = "render cornell --size 12x9 --shift 0.137,0.071";
 

@@ -1,6 +1,6 @@
 //! `lancer scene`: scenes as files and as figures.
 
-use crate::session::Session;
+use super::session::Session;
 
 #[test]
 fn a_generated_scene_is_the_same_from_its_files() {

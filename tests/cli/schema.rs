@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::help::commands;
-use crate::session::Session;
+use super::help::commands;
+use super::session::Session;
 
 /// Set to write the schemas to `docs/schemas` as they are now.
 const BLESS: &str = "LANCER_BLESS";
@@ -214,7 +214,7 @@ fn each_key_is_described_and_the_documents_are_not_stale() {
             std::fs::write(&path, &text).unwrap();
         }
         let written = std::fs::read_to_string(&path).unwrap_or_default();
-        assert!(written == text, "{} is stale: {BLESS}=1 cargo test --test cli schema", path.display());
+        assert!(written == text, "{} is stale: {BLESS}=1 cargo test -p lancer schema", path.display());
         assert!(overview.contains(&format!("](schemas/{name}.json)")), "docs/schemas.md does not name {name}");
     }
     let files = std::fs::read_dir(folder.join("schemas")).unwrap().count();

@@ -2,7 +2,7 @@
 
 use std::process::Stdio;
 
-use crate::session::Session;
+use super::session::Session;
 
 #[test]
 fn results_and_messages_have_no_colours_where_no_terminal_shows_them() {

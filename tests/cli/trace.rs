@@ -6,7 +6,7 @@ use std::io::Cursor;
 use fst_reader::{FstFilter, FstHierarchyEntry, FstReader, FstSignalValue};
 use serde_json::Value;
 
-use crate::session::Session;
+use super::session::Session;
 
 /// What signals of a wave are at each clock of a window, by their names.
 struct Wave {

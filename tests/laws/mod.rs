@@ -1,10 +1,8 @@
 //! What holds for every row of the table, read off the table: how it is written as a word and as text, and that it
 //! costs what it is made of. Nothing here names a row.
 
-mod laws {
-    pub mod composite;
-    pub mod drawing;
-    pub mod encoding;
-    pub mod random;
-    pub mod text;
-}
+mod composite;
+mod drawing;
+mod encoding;
+mod random;
+mod text;

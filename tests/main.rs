@@ -1,0 +1,17 @@
+//! All tests of the package in one program, which is linked once. `cargo test -p lancer NAME` runs those of a module or with a word in their
+//! names. `tests/memory.rs` alone is a program of its own, because it counts what its process allocates.
+
+mod accuracy;
+mod architecture;
+mod case;
+mod cases;
+mod cli;
+mod contract;
+mod extension;
+mod laws;
+mod profiles;
+mod readme;
+mod report;
+mod skips;
+mod stress;
+mod twin;

@@ -1,5 +1,6 @@
 //! The results of a picture as tables for people. Exact numbers of everything are in the JSON.
 
+use fixed::types::I32F32;
 use isa::Class;
 use scenes::metrics::PictureError;
 
@@ -202,15 +203,20 @@ pub fn hashes(result: &Render) -> String {
     format!("image hash {}\nrun hash   {}\n", result.image_hash, result.run_hash)
 }
 
+/// A raw word with `fraction` bits behind the point (at most 32) as a decimal number: nine digits, rounded once from the exact value.
+fn real(word: i32, fraction: u32) -> String {
+    format!("{:.9}", I32F32::from_bits(i64::from(word) << (32 - fraction)))
+}
+
 /// The colour of a single pixel, raw and as numbers, beside the reference's.
 pub fn pixel(drawing: &Drawing) -> String {
     let shown = |colour: [f64; 3]| colour.map(|component| format!("{component:.9}")).join(" ");
-    let (words, picture) = (&drawing.words[0], &drawing.picture.pixels[0]);
+    let words = &drawing.words[0];
     let mut text = format!(
         "pixel {},{}: {} (raw {} with {} fraction bits)\n",
         drawing.crop.column,
         drawing.crop.row,
-        shown(*picture),
+        words.map(|word| real(word, drawing.image.formats.colour)).join(" "),
         words.map(|word| word.to_string()).join(" "),
         drawing.image.formats.colour
     );
@@ -227,4 +233,19 @@ pub fn spread(operations: &[u64]) -> String {
     let last = sorted.len().saturating_sub(1);
     let at = |place: usize| grouped(sorted.get(place).copied().unwrap_or(0));
     format!("least {}, median {}, largest {}", at(0), at(last / 2), at(last))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn real_values_are_those_of_double_precision() {
+        let ends = [i32::MIN, i32::MIN + 1, -1, 0, 1, 3, 5, i32::MAX];
+        let words = ends.into_iter().chain((0..1 << 16).map(|n| n << 15 | 1 << 9));
+        for (word, fraction) in words.flat_map(|word| (0..=32).map(move |fraction| (word, fraction))) {
+            let exact = f64::from(word) * (-f64::from(fraction)).exp2();
+            assert_eq!(real(word, fraction), format!("{exact:.9}"), "{word} with {fraction} bits");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::LazyLock;
 
+use fixed::types::I2F30;
 use isa::number::ray::Ray;
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
@@ -18,8 +19,11 @@ use super::random::Random;
 use super::tally::{Tally, tally};
 use super::target::Target;
 
-/// Fraction bits of directions.
-const BITS: u32 = 30;
+/// A component of a direction, in the format that directions have in a word of 32 bits.
+type Component = I2F30;
+
+/// Steps of a component between 0 and 1.
+const ONE: f64 = (1u32 << Component::FRAC_NBITS) as f64;
 
 /// Secondary rays of each hit.
 const SPAWNS: u64 = 1000;
@@ -28,7 +32,7 @@ static BALL: LazyLock<Target> =
     LazyLock::new(|| Target::new(&Mesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, KernelSet::Ray));
 
 fn rounded(direction: [f64; 3]) -> Vector {
-    direction.map(|x| (x * f64::from(1 << BITS)).round() as i32)
+    direction.map(|x| Component::from_num(x).to_bits())
 }
 
 /// Rays that start on a convex body: those that leave it hit nothing, those that enter it hit it once more.
@@ -79,9 +83,9 @@ pub fn normalising(seed: u64, trials: Range<u64>) -> Tally {
         if exact == 0.0 {
             return Ok(0.0);
         }
-        let found = unit(&Nearest32, BITS, Nearest32.normalized(vector.map(|x| x as i64)));
-        let one = f64::from(1 << BITS);
-        Ok((0..3).map(|k| (f64::from(found[k]) - vector[k] / exact * one).abs()).fold(0.0, f64::max))
+        let found = unit(&Nearest32, Component::FRAC_NBITS, Nearest32.normalized(vector.map(|x| x as i64)));
+        let off = |k: usize| (Component::from_bits(found[k]).to_num::<f64>() - vector[k] / exact).abs() * ONE;
+        Ok((0..3).map(off).fold(0.0, f64::max))
     })
 }
 
@@ -120,15 +124,15 @@ pub fn critical_angle(seed: u64, trials: Range<u64>) -> Tally {
             index: eta as i32,
             inverse_index: 0,
         };
-        let rounded_cosine = -Nearest32.dot(facing, incident, BITS);
+        let rounded_cosine = -Nearest32.dot(facing, incident, Component::FRAC_NBITS);
         let surface = Surface { point: [0; 3], behind: [0; 3], facing, incident, cosine: rounded_cosine, material };
-        let one = f64::from(1u32 << BITS);
-        let exact = -(0..3).map(|k| f64::from(facing[k]) / one * (f64::from(incident[k]) / one)).sum::<f64>();
+        let value = |raw: i32| Component::from_bits(raw).to_num::<f64>();
+        let exact = -(0..3).map(|k| value(facing[k]) * value(incident[k])).sum::<f64>();
         let k = 1.0 - ratio * ratio * (1.0 - exact * exact);
         let is_total = matches!(
             refracts(&Nearest32, constants, &surface, 1 << constants.formats.weight, true),
             Refraction::Total(_)
         );
-        Ok(if is_total == (k < 0.0) { 0.0 } else { k.abs() * one })
+        Ok(if is_total == (k < 0.0) { 0.0 } else { k.abs() * ONE })
     })
 }

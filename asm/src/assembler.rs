@@ -28,7 +28,7 @@ use crate::structure::Structure;
 use crate::symbol::{Name, Names, SymbolValue};
 use crate::{Attempt, Options};
 
-/// Where statements go.
+/// The part of the program that statements go to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Section {
     /// Instruction words.
@@ -37,7 +37,7 @@ pub(crate) enum Section {
     Buffer,
 }
 
-/// What is put in when all names are known.
+/// A word or datum that is put in when all names are known.
 #[derive(Debug)]
 pub(crate) enum Fixup {
     Instruction { op: Op, arguments: Vec<Argument>, pc: usize },

@@ -6,7 +6,7 @@ use crate::explain;
 use crate::macros::arguments;
 use crate::message::{At, Parsed, Problem};
 
-/// What an open `.if` does with the lines that follow.
+/// State of an open `.if`: what happens to the lines that follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
     /// Reads them.
@@ -32,7 +32,7 @@ impl Condition {
     }
 }
 
-/// How a condition is written.
+/// The form of a condition.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Test {
     /// `.if expression`.
@@ -62,7 +62,7 @@ fn two_texts(cursor: &mut Cursor) -> Parsed<[String; 2]> {
 }
 
 impl Assembler<'_> {
-    /// Whether the lines here are skipped.
+    /// The lines here are skipped.
     pub(crate) fn is_skipping(&self) -> bool {
         let conditions = self.frames.last().map(|frame| &frame.conditions);
         conditions.and_then(|open| open.last()).is_some_and(|condition| condition.state != State::Taking)

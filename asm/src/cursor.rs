@@ -29,7 +29,7 @@ impl<'t> Cursor<'t> {
         self.peek().map(|token| token.kind)
     }
 
-    /// Whether this punctuation is here.
+    /// This punctuation is here.
     pub fn is_mark(&self, mark: &str) -> bool {
         matches!(self.kind(), Some(Kind::Mark(here)) if here == mark)
     }
@@ -46,7 +46,7 @@ impl<'t> Cursor<'t> {
         is_here
     }
 
-    /// Whether all tokens were taken.
+    /// All tokens were taken.
     pub fn is_at_end(&self) -> bool {
         self.position >= self.tokens.len()
     }

@@ -105,7 +105,7 @@ mod tests {
         }
     }
 
-    /// The same bit by bit: twice the rest, and a one where that reaches the denominator.
+    /// A second way to [`Decimal::to_fixed`], bit by bit: twice the rest, and a one where that reaches the denominator.
     fn bit_by_bit(number: Decimal, bits: u32) -> Option<i64> {
         let one = 10u128.pow(number.places);
         let (mut raw, mut rest) = (i128::from(number.integer), number.fraction);

@@ -241,7 +241,7 @@ impl Assembler<'_> {
         self.aliases.iter().rev().find_map(|scope| scope.get(text))
     }
 
-    /// Whether a name stands for anything here.
+    /// A name stands for something here.
     pub(crate) fn is_defined(&self, text: &str) -> bool {
         self.names.is_defined(text) || self.macros.contains_key(text) || self.alias(text).is_some()
     }
@@ -259,7 +259,7 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    /// Where execution starts.
+    /// The word at which execution starts.
     pub(crate) fn resolve_entry(&mut self) {
         let words = self.program.words.len() as i64;
         let Some(expression) = self.entry.take() else {

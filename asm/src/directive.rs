@@ -49,7 +49,7 @@ enum Action {
 }
 
 impl Action {
-    /// Whether a body of an extension instruction may have it: it places no data, words or functions.
+    /// A body of an extension instruction may have the directive: it places no data, words or functions.
     fn suits_body(self) -> bool {
         !matches!(
             self,
@@ -71,20 +71,20 @@ impl Action {
 /// A directive.
 #[derive(Clone, Copy, Debug)]
 pub struct Directive {
-    /// Its name, with the point.
+    /// The directive's name, with the point.
     pub name: &'static str,
     /// Other names of the same.
     pub also: &'static [&'static str],
-    /// What follows the name.
+    /// The operands behind the name.
     pub operands: &'static str,
-    /// What it does, in a sentence.
+    /// The directive's effect, in a sentence.
     pub doc: &'static str,
     action: Action,
 }
 
 macro_rules! directives {
     ($($name:literal $([$($also:literal),*])? $operands:literal $action:expr, $doc:literal;)*) => {
-        /// All directives.
+        /// Every directive, in the order of the manual.
         pub const DIRECTIVES: &[Directive] = &[$(Directive {
             name: $name, also: &[$($($also),*)?], operands: $operands, doc: $doc, action: $action,
         }),*];

@@ -1,4 +1,4 @@
-//! What expressions are worth. All arithmetic is on 64 bits with the sign; what does not fit is an error.
+//! Values of expressions. All arithmetic is on 64 bits with the sign; what does not fit is an error.
 
 use std::collections::HashSet;
 use std::rc::Rc;
@@ -11,7 +11,7 @@ use crate::message::{Among, At, Parsed, Problem};
 use crate::operator::{Checked, OVERFLOW};
 use crate::symbol::{Name, SymbolValue};
 
-/// Why an expression has no value.
+/// The reason for which an expression has no value.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// A name that may be defined further on.

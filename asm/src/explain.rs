@@ -5,9 +5,9 @@
 pub struct Code {
     /// `E001` and so on; warnings begin with `W`. A code keeps its meaning for ever.
     pub code: &'static str,
-    /// What it is about, in a few words.
+    /// The subject, in a few words.
     pub title: &'static str,
-    /// What the assembler means and what to do, with an example.
+    /// The explanation: what the assembler means and what to do, with an example.
     pub text: &'static str,
 }
 

@@ -49,7 +49,7 @@ impl Expression {
         }
     }
 
-    /// Whether a fixed-point literal is part of it: such a number has a sign, and is never meant as an unsigned one.
+    /// A fixed-point literal is part of the expression: such a number has a sign, and is never meant as an unsigned one.
     pub fn is_fixed(&self) -> bool {
         has_fixed(&self.steps)
     }
@@ -62,7 +62,7 @@ impl Expression {
     }
 }
 
-/// Whether a fixed-point literal is among the steps.
+/// A fixed-point literal is among the steps.
 pub(crate) fn has_fixed(steps: &[(Step, At)]) -> bool {
     steps.iter().any(|(step, _)| matches!(step, Step::Fixed(..)))
 }

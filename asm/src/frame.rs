@@ -1,4 +1,4 @@
-//! Where lines come from: files, macro calls and repetitions, each inside another.
+//! Sources of lines: files, macro calls and repetitions, each inside another.
 
 use std::borrow::Cow;
 use std::rc::Rc;
@@ -12,7 +12,7 @@ use crate::message::{At, Call, Problem, Via};
 use crate::symbol::{Name, SymbolValue};
 use crate::token::{continues_name, starts_comment, starts_name};
 
-/// What a frame repeats.
+/// A frame's repetitions.
 #[derive(Debug)]
 pub(crate) enum Repeat {
     /// `.rept`: passes that follow, the counter and its number.
@@ -21,7 +21,7 @@ pub(crate) enum Repeat {
     Texts { parameter: Rc<str>, remaining: Vec<Rc<str>>, at: At },
 }
 
-/// What kind of text a frame reads.
+/// The kind of text that a frame reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// A file, by its index.

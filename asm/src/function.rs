@@ -14,7 +14,7 @@ pub(crate) enum Function {
     High,
 }
 
-/// What a function takes.
+/// The arguments of a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parameters {
     /// So many numbers.
@@ -30,18 +30,18 @@ pub(crate) enum Parameters {
 /// A function.
 #[derive(Clone, Copy, Debug)]
 pub struct Described {
-    /// Its name, which nothing else may have.
+    /// The function's name, which nothing else may have.
     pub name: &'static str,
-    /// How it is written.
+    /// The call as it is written.
     pub usage: &'static str,
-    /// Its value, in a sentence.
+    /// The function's value, in a sentence.
     pub doc: &'static str,
     pub(crate) argument: Parameters,
 }
 
 macro_rules! functions {
     ($($name:literal $usage:literal $argument:expr, $doc:literal;)*) => {
-        /// All functions.
+        /// Every function, in the order of the manual.
         pub const FUNCTIONS: &[Described] =
             &[$(Described { name: $name, usage: $usage, doc: $doc, argument: $argument }),*];
     };
@@ -59,13 +59,13 @@ functions! {
     "high" "high(a)" Parameters::Numbers(Function::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
 }
 
-/// Whether the text is a function's name.
+/// The text is a function's name.
 pub(crate) fn is_function(text: &str) -> bool {
     FUNCTIONS.iter().any(|function| function.name == text)
 }
 
 impl Function {
-    /// Its value; `b` is 0 where it takes one number.
+    /// The function's value; `b` is 0 where it takes one number.
     pub fn apply(self, a: i64, b: i64) -> Checked {
         let word = |half: i64| {
             let fits = (-(1 << 31)..1 << 32).contains(&a);

@@ -26,7 +26,7 @@ pub(crate) enum Value {
     Expression(Expression),
 }
 
-/// What an operand of a kind is, for messages and manuals.
+/// The description of a kind of operand, for messages and manuals.
 pub(crate) fn describe(kind: Kind) -> &'static str {
     match kind {
         Kind::S => "a scalar register",

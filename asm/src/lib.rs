@@ -52,7 +52,7 @@ pub const LANGUAGE: &str = include_str!("language.md");
 /// Reads what `.include "name"` asks for; the second argument is the name of the including source.
 pub type Loader<'a> = &'a dyn Fn(&str, &str) -> Result<Arc<Source>, String>;
 
-/// What a source cannot say for itself.
+/// Settings that a source cannot make for itself.
 pub struct Options<'a> {
     /// Reads included files; an error is the reason without a full stop.
     pub include: Loader<'a>,
@@ -74,16 +74,16 @@ impl Default for Options<'_> {
 pub struct Assembled {
     /// Words, buffer, symbols, lines and regions.
     pub program: Program,
-    /// What is likely a mistake although the program is complete.
+    /// Warnings: likely mistakes, although the program is complete.
     pub warnings: Report,
     /// All names, in the order in which they were first seen.
     pub symbols: Vec<MapEntry>,
 }
 
-/// How far a source went, for listings; the program is whole when the report has no errors.
+/// An assembly that may have failed, for listings; the program is whole when the report has no errors.
 #[derive(Clone, Debug)]
 pub struct Attempt {
-    /// What was assembled; a statement that is wrong counts as words of zeros.
+    /// The words that were assembled; a statement that is wrong counts as words of zeros.
     pub program: Program,
     /// All errors and warnings.
     pub report: Report,
@@ -106,7 +106,7 @@ impl Attempt {
     }
 }
 
-/// Whether a name may be defined from outside, as a constant or a format.
+/// A name may be defined from outside, as a constant or a format.
 ///
 /// # Errors
 /// Why not, in one line: no name of the language, or the name of something else.

@@ -1,4 +1,4 @@
-//! How much one source may ask for. A limit is an error with a place, never a long wait or a lack of memory.
+//! Limits of what one source may ask for. Beyond one there is an error with a place, never a long wait or a lack of memory.
 
 /// Words of a program.
 pub const WORDS: usize = 1 << 20;

@@ -63,7 +63,7 @@ impl Line {
         self.at(start, self.text.trim_end().len().max(start))
     }
 
-    /// Whether macro arguments were put in.
+    /// Macro arguments were put in.
     pub fn is_substituted(&self) -> bool {
         self.segments.is_some()
     }
@@ -158,7 +158,7 @@ fn name_length(text: &str) -> usize {
     text.bytes().position(|octet| !continues_name(octet.into())).unwrap_or(text.len())
 }
 
-/// What replaces what in the lines of one expansion.
+/// Replacements in the lines of one expansion: names and their texts.
 #[derive(Debug, Default)]
 pub(crate) struct Substitution {
     /// Arguments by parameter.
@@ -170,7 +170,7 @@ pub(crate) struct Substitution {
 }
 
 impl Substitution {
-    /// What replaces a backslash and the first octets of `rest`, and how many octets of `rest`.
+    /// The replacement of a backslash and the first octets of `rest`, and the number of those octets.
     fn backslash(&self, rest: &str) -> Option<(Rc<str>, usize)> {
         if let (true, Some(number)) = (rest.starts_with('@'), self.number) {
             return Some((number.to_string().into(), 1));

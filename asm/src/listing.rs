@@ -13,7 +13,7 @@ use crate::assembler::Section;
 pub(crate) struct Record {
     pub source: u16,
     pub line: u32,
-    /// How many macro calls and repetitions the line stands in.
+    /// Number of macro calls and repetitions around the line.
     pub depth: u8,
     pub section: Section,
     /// Words or octets that it made.

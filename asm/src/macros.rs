@@ -50,7 +50,7 @@ fn argument_of(cursor: &Cursor, from: usize, to: usize) -> Rc<str> {
     }
 }
 
-/// Whether a blank between two tokens separates arguments: between two operands, which no expression has side by side.
+/// A blank between two tokens separates arguments: it stands between two operands, which no expression has side by side.
 fn is_separated(before: Token, after: Token) -> bool {
     let is_word = |kind| !matches!(kind, Kind::Mark(_));
     before.end < after.start && is_word(after.kind) && (is_word(before.kind) || before.kind == Kind::Mark(")"))
@@ -87,7 +87,7 @@ pub(crate) fn arguments(cursor: &Cursor) -> Vec<Rc<str>> {
     split(cursor).into_iter().map(|(start, end)| argument_of(cursor, start, end)).collect()
 }
 
-/// What may stand behind a parameter's name: `:req` or `:vararg`, also written `...`.
+/// The suffix of a parameter's name: `:req` or `:vararg`, also written `...`.
 fn qualifier(parameter: &mut Parameter, cursor: &mut Cursor) -> Parsed<()> {
     if !cursor.accept(":") {
         parameter.takes_rest = cursor.accept("...");
@@ -110,7 +110,7 @@ fn qualifier(parameter: &mut Parameter, cursor: &mut Cursor) -> Parsed<()> {
     }
 }
 
-/// What the names of directives begin with that `.endr` closes.
+/// Beginnings of the names of directives that `.endr` closes.
 pub(crate) const REPETITIONS: [&str; 2] = [".rep", ".irp"];
 
 fn no_parameter(definition: &Macro, text: &str, at: At) -> Box<Problem> {

@@ -10,7 +10,7 @@ use crate::Assembled;
 use crate::assembler::Assembler;
 use crate::symbol::SymbolValue;
 
-/// What a name stands for.
+/// The kind of thing that a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NameKind {
     /// A word address in the code.
@@ -26,11 +26,11 @@ pub enum NameKind {
 pub struct MapEntry {
     /// The name.
     pub name: String,
-    /// What it stands for.
+    /// The kind of thing.
     pub kind: NameKind,
-    /// Its value.
+    /// The value: an address or a number.
     pub value: i64,
-    /// Where it is defined; `None` for names from outside.
+    /// Place of the definition; `None` for names from outside.
     pub place: Option<Line>,
 }
 

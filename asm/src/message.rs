@@ -33,13 +33,13 @@ impl At {
 /// A macro call, or a pass of a repetition.
 #[derive(Clone, Debug)]
 pub(crate) struct Call {
-    /// Where the call stands; its context is the call around it.
+    /// Place of the call; its context is the call around it.
     pub at: At,
-    /// What is called.
+    /// The macro or repetition that is called.
     pub via: Via,
 }
 
-/// What leads to lines that are read again.
+/// The cause of lines that are read again.
 #[derive(Clone, Debug)]
 pub(crate) enum Via {
     /// A macro of that name.
@@ -57,7 +57,7 @@ impl Via {
     }
 }
 
-/// What kind of name was meant, for suggestions.
+/// The kind of name that was meant, for suggestions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Among {
     Instructions,

@@ -38,7 +38,7 @@ pub const VERSION: u16 = 1;
 
 const NONE: u16 = u16::MAX;
 
-/// Why octets are no object file.
+/// The reason for which octets are no object file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ObjectError {
     /// The first octets are others.

@@ -10,7 +10,7 @@ use crate::token::Kind;
 /// A register: its file's letter and its number.
 pub(crate) type Register = (char, u8);
 
-/// What was written.
+/// An operand as written.
 #[derive(Clone, Debug)]
 pub(crate) enum Written {
     /// `s5`, or an alias of it.
@@ -41,7 +41,7 @@ impl Operand {
         Operand::made(Written::Number(Expression { steps: vec![(Step::Number(value), at)], at }), at)
     }
 
-    /// What it is, for messages.
+    /// The operand's description, for messages.
     pub fn describe(&self) -> &'static str {
         match self.written {
             Written::Register(('s', _)) => "a scalar register",
@@ -53,7 +53,7 @@ impl Operand {
     }
 }
 
-/// What a register file is called.
+/// The name of a register file.
 pub(crate) fn file_name(file: char) -> (&'static str, u8) {
     match file {
         's' => ("scalar registers are s0 to s31", 31),
@@ -62,7 +62,7 @@ pub(crate) fn file_name(file: char) -> (&'static str, u8) {
     }
 }
 
-/// Whether a name looks like a register's: nothing else may be called so.
+/// A name looks like a register's: nothing else may be called so.
 pub(crate) fn looks_like_register(text: &str) -> bool {
     let rest = text.strip_prefix(['s', 'v', 'w']).unwrap_or("");
     !rest.is_empty() && rest.bytes().all(|c| c.is_ascii_digit())

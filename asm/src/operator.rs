@@ -24,7 +24,7 @@ pub(crate) enum Binary {
 }
 
 impl Binary {
-    /// All operators.
+    /// Every operator, in the order of the manual.
     pub const ALL: [Binary; 16] = {
         use Binary::*;
         [
@@ -47,7 +47,7 @@ impl Binary {
         ]
     };
 
-    /// How it is written.
+    /// The operator as it is written.
     pub fn mark(self) -> &'static str {
         const MARKS: [&str; 16] =
             ["|", "^", "&", "==", "!=", "<", "<=", ">", ">=", "<<", ">>", "+", "-", "*", "/", "%"];
@@ -59,7 +59,7 @@ impl Binary {
         Binary::ALL.into_iter().find(|operator| operator.mark() == mark)
     }
 
-    /// How closely it binds; `||` has level 1, `&&` 2.
+    /// Precedence: `||` has level 1, `&&` 2, and so on upwards.
     pub fn level(self) -> u8 {
         match self {
             Binary::Or => 3,
@@ -73,7 +73,7 @@ impl Binary {
         }
     }
 
-    /// Its value; division is towards zero.
+    /// The operator's value; division is towards zero.
     pub fn apply(self, a: i64, b: i64) -> Checked {
         let shift =
             || u32::try_from(b).ok().filter(|&count| count < 64).ok_or((explain::SHIFT, "shifts go from 0 to 63"));
@@ -107,5 +107,5 @@ impl Binary {
 /// Result of a checked operation; the error is its code and the sentence about it.
 pub(crate) type Checked = Result<i64, (&'static str, &'static str)>;
 
-/// What does not fit.
+/// The error for a value that does not fit.
 pub(crate) const OVERFLOW: (&str, &str) = (explain::OVERFLOW, "the result does not fit 64 bits");

@@ -11,7 +11,7 @@ use crate::message::{At, Problem};
 use crate::operand::{Operand, Written};
 use isa::definition::Kind;
 
-/// What an operand of a pseudo-instruction is.
+/// The kind of operand that a pseudo-instruction takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// A register or label, as rows take it.
@@ -20,10 +20,10 @@ pub enum Part {
     Number,
 }
 
-/// When a form is chosen. A number that is not known where the line stands is known to no condition.
+/// The condition of a form. A number that is not known where the line stands is known to no condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// Where no form before it was chosen.
+    /// No form before this one was chosen.
     Otherwise,
     /// The number of this letter is known and has 16 bits with its sign.
     IsShort(char),
@@ -33,12 +33,12 @@ pub enum When {
     AreEqual,
 }
 
-/// One expansion.
+/// One expansion of a pseudo-instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct Form {
-    /// Its condition.
+    /// The condition under which it is chosen.
     pub when: When,
-    /// Its instructions; letters stand for the operands.
+    /// The instructions; letters stand for the operands.
     pub lines: &'static [&'static str],
 }
 
@@ -51,7 +51,7 @@ pub struct Pseudo {
     pub operands: &'static [(char, Part)],
     /// Expansions; the first whose condition holds is taken.
     pub forms: &'static [Form],
-    /// What it does, in a sentence.
+    /// The effect, in a sentence.
     pub doc: &'static str,
 }
 
@@ -80,7 +80,7 @@ const VECTOR: &[Form] = &[
 
 macro_rules! pseudos {
     ($($name:literal ($($letter:literal: $part:expr),*) $forms:expr, $doc:literal;)*) => {
-        /// All pseudo-instructions.
+        /// Every pseudo-instruction, in the order of the manual.
         pub const PSEUDOS: &[Pseudo] =
             &[$(Pseudo { name: $name, operands: &[$(($letter, $part)),*], forms: $forms, doc: $doc }),*];
     };
@@ -115,7 +115,7 @@ pub fn find(name: &str) -> Option<&'static Pseudo> {
 }
 
 impl Pseudo {
-    /// How it is written, such as `li d, i`.
+    /// The pseudo-instruction as it is written, such as `li d, i`.
     pub fn usage(&self) -> String {
         let letters: Vec<String> = self.operands.iter().map(|(letter, _)| letter.to_string()).collect();
         format!("{} {}", self.name, letters.join(", ")).trim_end().to_string()

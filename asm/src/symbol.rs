@@ -10,7 +10,7 @@ use crate::message::At;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Name(u32);
 
-/// What a name stands for.
+/// The value of a symbol, and its kind.
 #[derive(Clone, Debug)]
 pub(crate) enum SymbolValue {
     /// Word address of code.
@@ -98,7 +98,7 @@ impl Names {
         self.sizes.insert(name, octets);
     }
 
-    /// Whether the text is a symbol, a format or a structure.
+    /// The text is a symbol, a format or a structure.
     pub fn is_defined(&self, text: &str) -> bool {
         self.by_text.get(text).is_some_and(|&name| {
             self.get(name).is_some() || self.formats.contains_key(&name) || self.sizes.contains_key(&name)

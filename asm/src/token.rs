@@ -9,7 +9,7 @@ use nom::{IResult, Parser};
 
 use crate::explain;
 
-/// What a token is.
+/// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// `name` or `structure.field`.
@@ -38,7 +38,7 @@ pub(crate) struct Token {
     pub end: u32,
 }
 
-/// Why the rest of a line cannot be read.
+/// The reason for which the rest of a line cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Unreadable {
     pub code: &'static str,
@@ -53,12 +53,12 @@ const MARKS: [&str; 26] = [
     "&", "|", "^", "~", "!",
 ];
 
-/// Whether a name may start so.
+/// A name may start with this character.
 pub(crate) fn starts_name(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// Whether a name may go on so.
+/// A name may go on with this character.
 pub(crate) fn continues_name(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_' || c == '$'
 }
@@ -120,7 +120,7 @@ fn mark(input: &str) -> IResult<&str, Kind> {
     map(char('.'), |_| Kind::Mark(".")).parse(input)
 }
 
-/// Whether a comment starts here.
+/// A comment starts here.
 pub(crate) fn starts_comment(rest: &str) -> bool {
     rest.starts_with(';') || rest.starts_with('#') || rest.starts_with("//")
 }

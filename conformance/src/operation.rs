@@ -11,7 +11,7 @@ use isa::number::{Overflow, Quantization};
 /// A format: value = raw 2^(integer - word).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// Whether numbers are two's complement; else they have no sign.
+    /// Numbers are two's complement; else they have no sign.
     pub is_signed: bool,
     /// Bits, 1 to 64.
     pub word: u32,
@@ -35,13 +35,13 @@ impl Format {
 /// A number in its format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Number {
-    /// Where its point is.
+    /// The format, which says where the point is.
     pub format: Format,
     /// In units of its last place, within the format's range.
     pub raw: i128,
 }
 
-/// What is done with the operands.
+/// An operation on one to three numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// a in another format.
@@ -61,7 +61,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// All operations.
+    /// Every operation.
     pub const ALL: [Operation; 7] = [
         Operation::Cvt,
         Operation::Neg,
@@ -72,7 +72,7 @@ impl Operation {
         Operation::Mac,
     ];
 
-    /// Its name in vectors.
+    /// The operation's name in vectors.
     pub const fn name(self) -> &'static str {
         match self {
             Operation::Cvt => "cvt",
@@ -95,14 +95,14 @@ impl Operation {
     }
 }
 
-/// What an operation gives.
+/// The result of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
     /// In units of the result's last place.
     pub raw: i128,
-    /// Whether bits below the last place were lost.
+    /// Bits below the last place were lost.
     pub is_quantized: bool,
-    /// Whether the quantized number did not fit; a quotient by zero never does.
+    /// The quantized number did not fit; a quotient by zero never does.
     pub has_overflowed: bool,
 }
 
@@ -240,7 +240,7 @@ fn fit<I: Exact>(value: &I, format: Format, mode: Overflow) -> (i128, bool) {
     }
 }
 
-/// What becomes of a number below or above the range, whose nearest number is `end`.
+/// The result for a number below or above the range, whose nearest number is `end`.
 fn overflowed<I: Exact>(value: &I, is_below: bool, format: Format, mode: Overflow, end: i128) -> i128 {
     let word = format.word;
     // The low bits as a number without a sign, and a single bit.

@@ -22,33 +22,33 @@ const MOST_ERRORS: usize = 20;
 /// An operation and the result that somebody expects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vector {
-    /// Its line in the file, from 1.
+    /// The vector's line in the file, from 1.
     pub line: usize,
-    /// What is done.
+    /// The operation.
     pub operation: Operation,
     /// With what.
     pub operands: Vec<Number>,
     /// In which format the result is.
     pub format: Format,
-    /// How it is rounded.
+    /// The rounding mode.
     pub quantization: Quantization,
-    /// What becomes of one that does not fit.
+    /// The overflow mode.
     pub overflow: Overflow,
     /// The result that is expected, raw.
     pub raw: i128,
-    /// Whether bits are expected to be lost; `None` when the vector does not say.
+    /// Bits are expected to be lost; `None` when the vector does not say.
     pub is_quantized: Option<bool>,
-    /// Whether the result is expected not to fit; `None` when the vector does not say.
+    /// The result is expected not to fit; `None` when the vector does not say.
     pub has_overflowed: Option<bool>,
 }
 
 impl Vector {
-    /// What the operation gives.
+    /// The model's result of the operation.
     pub fn outcome(&self) -> Outcome {
         operate(self.operation, &self.operands, self.format, self.quantization, self.overflow)
     }
 
-    /// Whether an outcome is the one that is expected.
+    /// An outcome is the one that is expected.
     pub fn expects(&self, outcome: &Outcome) -> bool {
         self.raw == outcome.raw
             && self.is_quantized.is_none_or(|flag| flag == outcome.is_quantized)

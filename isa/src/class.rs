@@ -67,7 +67,7 @@ impl Class {
         None
     }
 
-    /// Whether the class is one of the five elementary operations that Annex II adds up.
+    /// The class is one of the five elementary operations that Annex II adds up.
     pub const fn is_elementary(self) -> bool {
         matches!(self, Class::Add | Class::Sub | Class::Mul | Class::Div | Class::Cmp)
     }

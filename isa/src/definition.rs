@@ -1,4 +1,4 @@
-//! What a row of the instruction table says: operands, pattern, outcomes and their costs. Built-in rows are constants,
+//! Definitions of instructions, a row of the table each: operands, pattern, outcomes and their costs. Built-in ones are constants,
 //! rows of extensions are owned values of the same type.
 
 use std::borrow::Cow;
@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use crate::class::Counts;
 use crate::pattern::BitPattern;
 
-/// What an operand is, and what its field's number means.
+/// Kind of an operand, which says what the number in its field means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Scalar register `s0` to `s31`; `s0` reads zero and ignores writes.
@@ -40,7 +40,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All kinds.
+    /// Every kind of operand.
     pub const ALL: [Kind; 14] = [
         Kind::S,
         Kind::V,
@@ -93,7 +93,7 @@ impl Kind {
         }
     }
 
-    /// How many consecutive registers the operand names; 0 for immediates.
+    /// Number of consecutive registers that the operand names; 0 for immediates.
     pub const fn registers(self) -> u8 {
         match self {
             Kind::S | Kind::A | Kind::V | Kind::W => 1,
@@ -115,7 +115,7 @@ impl Kind {
         }
     }
 
-    /// Whether the field is a two's complement number.
+    /// The field is a two's complement number.
     pub const fn is_signed(self) -> bool {
         matches!(self, Kind::Im | Kind::Off | Kind::Rel)
     }
@@ -139,17 +139,17 @@ impl Kind {
 pub struct Operand {
     /// `d e` written, `x y` read and written, `a b c` read, `i j` immediate.
     pub letter: u8,
-    /// What it is.
+    /// The operand's kind.
     pub kind: Kind,
 }
 
 impl Operand {
-    /// Whether the instruction reads the register.
+    /// The instruction reads the register.
     pub const fn is_read(&self) -> bool {
         matches!(self.letter, b'x' | b'y' | b'a' | b'b' | b'c')
     }
 
-    /// Whether the instruction writes the register.
+    /// The instruction writes the register.
     pub const fn is_written(&self) -> bool {
         matches!(self.letter, b'd' | b'e' | b'x' | b'y')
     }
@@ -164,7 +164,7 @@ pub struct OutcomeDef {
     pub cost: Counts,
     /// Cost of each unit that the semantics report (an octet of a block transfer).
     pub each: Counts,
-    /// Whether it costs what the steps of the body cost on the way to it, and nothing else: extensions only.
+    /// The outcome costs what the steps of the body cost on the way to it, and nothing else: extensions only.
     pub is_body: bool,
 }
 
@@ -173,16 +173,16 @@ pub struct OutcomeDef {
 pub struct Room {
     /// Name, as in file names.
     pub name: &'static str,
-    /// What the rows of the room have in common.
+    /// Description of the rows of the room.
     pub doc: &'static str,
 }
 
-/// One instruction.
+/// Definition of one instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InstructionDef {
     /// Mnemonic.
     pub name: Cow<'static, str>,
-    /// What is true of it; the first sentence is the one that manuals quote.
+    /// Description of the instruction; the first sentence is the one that manuals quote.
     pub doc: Cow<'static, str>,
     /// Name of its room.
     pub room: Cow<'static, str>,
@@ -196,7 +196,7 @@ pub struct InstructionDef {
     pub outcomes: Cow<'static, [OutcomeDef]>,
 }
 
-/// Why a row is not well formed.
+/// The reason for which a definition is not well formed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DefinitionError {
     /// The operand of this letter has no field, or not as wide as its kind needs.
@@ -212,7 +212,7 @@ pub enum DefinitionError {
 }
 
 impl InstructionDef {
-    /// Whether operands, pattern and outcomes fit together.
+    /// Checks that operands, pattern and outcomes fit together.
     pub const fn check(operands: &[Operand], pattern: &BitPattern, outcomes: usize) -> Result<(), DefinitionError> {
         let mut at = 0;
         while at < operands.len() {

@@ -59,11 +59,11 @@ impl Fields {
 pub struct Instruction {
     /// Which row.
     pub op: Op,
-    /// Its operands.
+    /// The operands, as numbers of their fields.
     pub fields: Fields,
 }
 
-/// Why an instruction cannot be encoded.
+/// The reason for which an instruction cannot be encoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EncodeError {
     /// Operand number `operand` must lie in `least..=most`.
@@ -79,7 +79,7 @@ pub enum EncodeError {
     },
     /// The row has `expected` operands.
     Operands {
-        /// How many the row has.
+        /// Number of operands of the definition.
         expected: usize,
     },
 }
@@ -157,7 +157,7 @@ impl Isa {
         }
     }
 
-    /// Whether an instruction is executed by the steps of its body: where it has no other semantics, or where its steps are counted.
+    /// An instruction is executed by the steps of its body: it has no other semantics, or its steps are counted.
     pub fn runs_body(&self, op: Op) -> bool {
         self.body(op).is_some() && (self.semantics(op).is_none() || self.is_expanded(op))
     }
@@ -170,7 +170,7 @@ impl Isa {
         }
     }
 
-    /// The same set, where the steps of these instructions count as instructions of the program, as if they stood in it.
+    /// A copy of the set in which the steps of these instructions count as instructions of the program, as if they stood in it.
     pub fn expanded(&self, ops: &[Op]) -> Isa {
         let mut isa = self.clone();
         for op in ops {
@@ -181,7 +181,7 @@ impl Isa {
         isa
     }
 
-    /// Whether the steps of an instruction's body count as instructions.
+    /// The steps of an instruction's body count as instructions.
     pub fn is_expanded(&self, op: Op) -> bool {
         match op {
             Op::Ext(n) => self.extensions[n as usize].is_expanded,

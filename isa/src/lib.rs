@@ -1,4 +1,4 @@
-//! What an instruction is, and its arithmetic.
+//! The instruction set of lancer: definitions, encoding, arithmetic.
 
 pub mod class;
 pub mod definition;

@@ -9,7 +9,7 @@ pub const MAX_FIELDS: usize = 6;
 /// Letters that may name an operand: written, read and written, read, immediate.
 pub const LETTERS: &[u8] = b"dexyabcij";
 
-/// Where an operand stands in the word.
+/// Place of an operand in the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
     /// The operand's letter.
@@ -31,7 +31,7 @@ pub struct BitPattern {
     count: u8,
 }
 
-/// Why a pattern cannot be read.
+/// The reason for which a pattern cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PatternError {
     /// Not 32 bits but this many.
@@ -137,17 +137,17 @@ impl BitPattern {
         self.count as usize
     }
 
-    /// Whether some word matches both patterns.
+    /// Some word matches both patterns.
     pub const fn overlaps(&self, other: &BitPattern) -> bool {
         (self.value ^ other.value) & self.mask & other.mask == 0
     }
 
-    /// Whether `word` has the fixed bits of this pattern.
+    /// The `word` has the fixed bits of this pattern.
     pub const fn matches(&self, word: u32) -> bool {
         word & self.mask == self.value
     }
 
-    /// Whether the six major bits are one of the four opcodes kept for extensions.
+    /// The six major bits are one of the four opcodes kept for extensions.
     pub const fn is_custom(&self) -> bool {
         self.mask >> 26 == 0x3f && self.value >> 28 == 0xf
     }

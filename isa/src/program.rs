@@ -1,4 +1,4 @@
-//! What an assembler makes and a machine runs: words, the initial buffer, and what ties them to source lines,
+//! Assembled programs, which machines run: words, the initial buffer, and what ties them to source lines,
 //! functions and regions.
 
 use std::collections::BTreeMap;
@@ -18,9 +18,9 @@ pub struct Line {
 /// A stretch of code that counts are reported for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Region {
-    /// Its name.
+    /// The region's name.
     pub name: String,
-    /// Whether it is a function (`.func`), entered by calls, or a region (`.region`), entered by running into it.
+    /// The region is a function (`.func`), entered by calls; else it is a region (`.region`), entered by running into it.
     pub is_function: bool,
     /// The region around it, an index into [`Program::regions`].
     pub parent: Option<u16>,
@@ -31,9 +31,9 @@ pub struct Region {
 pub struct Program {
     /// Instruction words; a program counter is an index into them.
     pub words: Vec<u32>,
-    /// What the local buffer holds at the start of a work item, from address 0.
+    /// Contents of the local buffer at the start of a work item, from address 0.
     pub buffer: Vec<u8>,
-    /// Where execution starts, in words.
+    /// The word at which execution starts.
     pub entry: u32,
     /// Labels and constants by name: labels of code in words, of data in octets.
     pub symbols: BTreeMap<String, i64>,

@@ -8,7 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer};
 use crate::Place;
 use crate::snippet::with_snippet;
 
-/// How much a message weighs.
+/// Weight of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
     /// The input cannot be used.
@@ -31,11 +31,11 @@ pub struct Diagnostic {
     pub code: Option<&'static str>,
     /// One sentence without a full stop: what is wrong.
     pub message: String,
-    /// Where, and what the carets say.
+    /// Place of the mistake, and the text beside the carets.
     pub place: Option<(Place, String)>,
     /// Further places (a first definition, a macro's call), each with its label.
     pub others: Vec<(Place, String)>,
-    /// What to try.
+    /// Advice on what to try.
     pub hint: Option<String>,
 }
 
@@ -62,7 +62,7 @@ impl Diagnostic {
         Diagnostic { severity: Severity::Note { errors }, ..Diagnostic::error(message) }
     }
 
-    /// How many errors it stands for.
+    /// Number of errors that the message stands for.
     pub fn errors(&self) -> usize {
         match self.severity {
             Severity::Error => 1,
@@ -71,25 +71,25 @@ impl Diagnostic {
         }
     }
 
-    /// The same with a stable code.
+    /// Adds a stable code.
     pub fn code(mut self, code: &'static str) -> Diagnostic {
         self.code = Some(code);
         self
     }
 
-    /// The same with a place and the text beside its carets.
+    /// Sets the place, with the text beside its carets.
     pub fn at(mut self, place: Place, label: impl Into<String>) -> Diagnostic {
         self.place = Some((place, label.into()));
         self
     }
 
-    /// The same with one more place.
+    /// Adds one more place.
     pub fn also(mut self, place: Place, label: impl Into<String>) -> Diagnostic {
         self.others.push((place, label.into()));
         self
     }
 
-    /// The same with a hint.
+    /// Adds a hint.
     pub fn hint(mut self, hint: impl Into<String>) -> Diagnostic {
         self.hint = Some(hint.into());
         self

@@ -1,4 +1,4 @@
-//! What a reader of a file has to say to a person: place, source line, carets, hint. All readers of the
+//! Messages of a reader of a file to a person: place, source line, carets, hint. All readers of the
 //! project (assembly, extensions, scenes, machines) report through these types; no reader prints by itself.
 
 mod diagnostic;

@@ -9,7 +9,7 @@ use crate::Diagnostic;
 pub struct Report(pub Vec<Diagnostic>);
 
 impl Report {
-    /// Whether any message is an error.
+    /// Some message is an error.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|message| message.errors() > 0)
     }

@@ -8,7 +8,7 @@ use crate::source::floor_boundary;
 /// Longest part of a source line that a message shows, in octets; longer lines are cut around the place.
 const SHOWN: usize = 160;
 
-/// What stands where a line was cut.
+/// A stand-in where a line was cut.
 const CUT: &str = "...";
 
 /// Marks the name of a file whose line was cut; nobody's text has this character of the private area.

@@ -1,4 +1,4 @@
-//! What a file of extensions consists of: its name, what its bodies share, and its instructions one after the other.
+//! A file of extensions: its name, what its bodies share, and its instructions one after the other.
 
 use std::rc::Rc;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ struct Block {
     start: usize,
     doc: String,
     lines: Vec<Line>,
-    /// Whether its meaning is in Rust; the lines may be a body beside it.
+    /// The semantics are in Rust; the lines may be a body beside them.
     is_rust: bool,
 }
 
@@ -212,7 +212,7 @@ fn is_rust(source: &Arc<Source>, place: &Place) -> Result<(), Box<Diagnostic>> {
     }
 }
 
-/// What outcomes may cost depends on who executes the instruction.
+/// Checks that outcomes cost what whoever executes the instruction can count.
 fn check_costs(
     row: &InstructionDef,
     is_rust: bool,

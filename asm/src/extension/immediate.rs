@@ -35,7 +35,7 @@ impl Assembler<'_> {
         operand.map_or((0, 0), |(operand, field)| operand.kind.range(field.width))
     }
 
-    /// Whether an expression is an immediate of the row that fits 16 bits with its sign.
+    /// An expression is an immediate of the row that fits 16 bits with its sign.
     pub(crate) fn is_short_immediate(&self, expression: &Expression) -> bool {
         let [(_, letter)] = self.letters(expression)[..] else { return false };
         let (least, most) = self.letter_range(letter);

@@ -22,17 +22,17 @@ use crate::explain;
 /// An instruction that was added.
 #[derive(Clone, Debug)]
 pub struct Loaded {
-    /// Its number.
+    /// The instruction's number.
     pub op: Op,
     /// Name of the extension.
     pub extension: String,
-    /// What its body may do.
+    /// The reach of its body: steps, outcomes, accesses.
     pub summary: Summary,
-    /// Its row in the file.
+    /// The row in the file.
     pub row: Place,
-    /// Where its outcomes stand in the file.
+    /// Places of the outcomes in the file.
     pub outcomes: Vec<Place>,
-    /// Whether the file says that its meaning is in Rust; it may have a body beside that.
+    /// The file says that the semantics are in Rust; there may be a body beside them.
     pub is_rust: bool,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct Drawn {
     pub name_at: Range<usize>,
     pub pattern_at: Range<usize>,
     pub outcomes_at: Vec<Range<usize>>,
-    /// Where a cost for each unit stands, if one does.
+    /// Place of a cost for each unit, if there is one.
     pub each_at: Option<Range<usize>>,
     pub start: usize,
     pub end: usize,
@@ -26,7 +26,7 @@ pub(super) struct Drawn {
 
 type Read<T> = Result<T, Box<Diagnostic>>;
 
-/// How a row is written, for hints.
+/// The form of a row, for hints.
 const WRITTEN: &str = "a row is written: name (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]";
 
 struct Scanner<'a> {
@@ -308,7 +308,7 @@ fn outcomes(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(
     }
 }
 
-/// What stands in the parentheses of an outcome, the closing one included; `each_at` gets the place of a cost for each unit.
+/// The contents of an outcome's parentheses, the closing one included; `each_at` gets the place of a cost for each unit.
 fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> Read<OutcomeDef> {
     let mut outcome =
         OutcomeDef { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };

@@ -1,4 +1,4 @@
-//! How the assembler works inside a body: operands and temporaries are registers, instructions become steps.
+//! The assembler inside a body: operands and temporaries are registers, instructions become steps.
 
 use isa::definition::{InstructionDef, Kind};
 use isa::extension::{Act, Immediate, Step, registers};
@@ -24,9 +24,9 @@ pub(crate) struct Template {
     /// Line of the row, for steps that come from other files.
     pub row_line: u32,
     pub steps: Vec<Step>,
-    /// Where the steps come from.
+    /// Source of the steps.
     pub places: Vec<At>,
-    /// Whether what all bodies of the file share is read.
+    /// The lines that all bodies of the file share are being read.
     pub is_shared: bool,
 }
 
@@ -51,7 +51,7 @@ impl Template {
         self.row.operand(letter)
     }
 
-    /// What the body may name, for hints.
+    /// The names that a body may use, for hints.
     fn owns(&self) -> String {
         let letters: Vec<String> = (self.row.operands.iter())
             .filter(|operand| operand.kind.register_file().is_some())
@@ -129,7 +129,7 @@ impl Template {
         }
     }
 
-    /// What to say about data in a body.
+    /// The error for data in a body.
     pub fn place_of_data(&self) -> &'static str {
         "a body has instructions, labels and macros; data belong to the program, which hands over their address"
     }
@@ -171,7 +171,7 @@ impl Assembler<'_> {
         }
     }
 
-    /// What only bodies have, and what they must not have.
+    /// Statements that only bodies have, and those that they must not have.
     pub(crate) fn special_step(&mut self, name: &str, at: At, cursor: &mut Cursor) -> bool {
         if name == "exit" {
             if let Err(problem) = self.exit_step(cursor) {
@@ -301,7 +301,7 @@ impl Assembler<'_> {
 }
 
 impl Template {
-    /// Whether a step may have a register where it has it.
+    /// A step may have a register where it has it.
     fn check_register(
         &self,
         row: &InstructionDef,

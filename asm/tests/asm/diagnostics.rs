@@ -1,4 +1,4 @@
-//! What people see when a source is wrong: every file of `errors/` and its messages as a snapshot.
+//! Messages about wrong sources: every file of `errors/` with its messages as a snapshot.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What an assembled program is written as: listing, map, object file.
+//! Outputs of an assembled program: listing, map, object file.
 
 use std::collections::HashMap;
 use std::sync::Arc;

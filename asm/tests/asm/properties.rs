@@ -1,4 +1,4 @@
-//! What holds for all sources: instructions round trip, expressions agree with a model of their own, and no text at all
+//! Properties of all sources: instructions round trip, expressions agree with a model of their own, and no text at all
 //! brings the assembler down.
 
 use asm::{Options, assemble, disassemble};

@@ -14,38 +14,38 @@ pub enum Immediate {
     Letter {
         /// `i` or `j`.
         letter: u8,
-        /// What the immediate is multiplied with.
+        /// The factor of the immediate.
         factor: i32,
-        /// What is added.
+        /// The number that is added.
         offset: i32,
     },
 }
 
-/// What a step does.
+/// The act of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
     /// An instruction on template registers; a branch distance counts steps.
     Execute {
         /// The instruction. Its registers are numbered as [`super::registers`] says.
         instruction: Instruction,
-        /// Its immediates `i` and `j`.
+        /// The immediates `i` and `j`.
         immediates: [Immediate; 2],
     },
     /// The end, by an outcome of the row.
     End {
         /// Number of the outcome.
         outcome: u8,
-        /// Whether the program goes on where the row's distance leads, instead of behind the instruction.
+        /// The program goes on where the row's distance leads, instead of behind the instruction.
         jumps: bool,
     },
 }
 
-/// One step.
+/// One step of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// What it does.
+    /// The step's act.
     pub act: Act,
-    /// Its line in the source of the body, from 1.
+    /// The step's line in the source of the body, from 1.
     pub line: u32,
 }
 

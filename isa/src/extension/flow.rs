@@ -1,4 +1,4 @@
-//! What can be known of a body without running it: which steps and outcomes are reached, whether it may go on for ever, and that no step
+//! Facts about a body that are known without running it: which steps and outcomes are reached, whether it may go on for ever, and that no step
 //! reads a register that nothing has written.
 
 use super::body::{Act, Body};
@@ -7,7 +7,7 @@ use crate::definition::{InstructionDef, Kind, Operand};
 use crate::isa::Isa;
 use crate::table::Op;
 
-/// What makes a body unusable.
+/// A defect that makes a body unusable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
     /// The step reads a register that is not written on every way to it.
@@ -16,7 +16,7 @@ pub enum Defect {
         step: usize,
         /// File of the register.
         file: char,
-        /// Its number in the body.
+        /// The register's number in the body.
         number: u8,
     },
     /// An outcome is reached on a way on which a destination is not written.
@@ -32,10 +32,10 @@ pub enum Defect {
     Endless,
 }
 
-/// What a body may do.
+/// Summary of a body: everything that it may do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// Whether each step can be reached.
+    /// Steps that can be reached, one flag a step.
     pub reached: Vec<bool>,
     /// The outcomes that can be reached, by number.
     pub outcomes: Vec<bool>,
@@ -93,7 +93,7 @@ impl Body {
         found.collect()
     }
 
-    /// What the body of a row may do.
+    /// Summary of the body of a row.
     ///
     /// # Errors
     /// Why it cannot be executed, by the lowest step.
@@ -228,7 +228,7 @@ impl Body {
         late.map(|(written, read)| (written.letter, read.letter)).collect()
     }
 
-    /// Whether a step after one that writes some of these registers may read some of those; numbers are those of the body, a bit each.
+    /// A step after one that writes some of these registers may read some of those; numbers are those of the body, a bit each.
     pub fn reads_after_writing(&self, isa: &Isa, file: char, written: u128, read: u128) -> bool {
         let touches = |step: usize, is_written: bool, wanted: u128| {
             self.operands(step, isa, is_written)

@@ -12,19 +12,19 @@ pub use flow::{Defect, Summary};
 
 use crate::definition::InstructionDef;
 
-/// What an engine keeps with an instruction: semantics in its own terms, of which nothing is known here.
+/// Semantics that an engine keeps with an instruction, in its own terms, of which nothing is known here.
 pub type Semantics = Arc<dyn Any + Send + Sync>;
 
 /// An instruction of an extension.
 #[derive(Clone, Debug)]
 pub struct Extension {
-    /// Its row.
+    /// The definition, as a row of a file.
     pub definition: InstructionDef,
-    /// What it does, in assembly. Without that and without semantics, a word of it can be written and shown but not executed.
+    /// The body, in assembly. Without that and without semantics, a word of it can be written and shown but not executed.
     pub body: Option<Arc<Body>>,
-    /// What it does, as an engine has it: executed in the place of the body.
+    /// The semantics, as an engine has them: executed in the place of the body.
     pub semantics: Option<Semantics>,
-    /// Whether the steps of the body count as instructions, as if they stood in the program.
+    /// The steps of the body count as instructions, as if they stood in the program.
     pub is_expanded: bool,
 }
 

@@ -12,7 +12,7 @@ macro_rules! modes {
         pub enum $type { $($(#[doc = $doc])* $variant,)* }
 
         impl $type {
-            /// All modes.
+            /// Every mode.
             pub const ALL: &[$type] = &[$($type::$variant),*];
 
             /// The name in IEEE 1666, without its `SC_`.
@@ -29,7 +29,7 @@ macro_rules! modes {
 }
 
 modes! {
-    /// What becomes of the bits below the last place.
+    /// Rounding: the treatment of the bits below the last place.
     Quantization {
         /// To nearest, ties towards plus infinity.
         Rnd "RND",
@@ -48,7 +48,7 @@ modes! {
     }
 }
 
-/// What becomes of a number that does not fit.
+/// Overflow: the treatment of a number that does not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Overflow {
     /// The nearest number that fits.
@@ -205,7 +205,7 @@ impl Overflow {
     }
 }
 
-/// What became of an exact number on its way into a word: the flags of IEEE 1666.
+/// Losses of an exact number on its way into a word: the flags of IEEE 1666.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
     /// Bits were lost below the last place.
@@ -221,13 +221,13 @@ impl Modes {
         Flags { is_quantized, has_overflowed: !(least..=largest).contains(&quantized) }
     }
 
-    /// What [`Arithmetic::quantize`] does to a number.
+    /// Flags of [`Arithmetic::quantize`] for a number.
     pub fn flags_of(&self, value: i128, shift: u32, bits: u32) -> Flags {
         let is_quantized = value & ((1 << shift) - 1) != 0;
         self.flags(is_quantized, self.quantization.shift(value, shift), bits)
     }
 
-    /// What [`Arithmetic::quotient`] does; dividing by zero overflows.
+    /// Flags of [`Arithmetic::quotient`]; dividing by zero overflows.
     pub fn flags_of_quotient(&self, dividend: i128, divisor: i128) -> Flags {
         match divisor {
             0 => Flags { is_quantized: false, has_overflowed: true },

@@ -41,7 +41,7 @@ pub struct Done;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Each(pub u32);
 
-/// What an engine reads off the outcome that the semantics return.
+/// An outcome as an engine reads it off what the semantics return.
 pub trait AnyOutcome: Copy {
     /// Outcomes of the row.
     const OUTCOMES: usize;

@@ -21,7 +21,7 @@ macro_rules! ray_instructions {
                 Behind(add 8, sub 17, mul 24, cmp 9; each sub 9, mul 6),
                 Hit(add 8, sub 17, mul 24, div 3, cmp 9; each sub 9, mul 6)
             ];
-            /// Where ray `a` crosses the box of corners `b`: `d` = the plane by which it enters, or the start when it starts inside; `e` = the
+            /// Crossings of ray `a` and the box of corners `b`: `d` = the plane by which it enters, or the start when it starts inside; `e` = the
             /// plane by which it leaves. Both have all bits set for a ray that misses the box.
             rbox (d: W, e: W, a: V2, b: V2)   "010011 dddee eaaaa abbbb b---- ---010"  [
                 Beside(cmp 4), Inside(sub 3, mul 4, cmp 10), Missed(sub 6, mul 10, cmp 14), Entered(sub 6, mul 10, cmp 14)

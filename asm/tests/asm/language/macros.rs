@@ -1,4 +1,4 @@
-//! What is written once and read often: repetitions and macros.
+//! Repetitions and macros: written once and read often.
 
 use asm::{Options, assemble};
 use isa::Isa;

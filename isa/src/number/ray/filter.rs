@@ -1,4 +1,4 @@
-//! The same test of a triangle in double precision first: most triangles are rejected by signs that no rounding error can have turned.
+//! A test of a triangle in double precision, before the exact one: most triangles are rejected by signs that no rounding error can have turned.
 //! What is near zero, and every hit, is left to the exact integers.
 
 use super::triangle::{Meeting, TriangleEnd, exact_triangle};
@@ -13,7 +13,7 @@ use crate::number::Vector;
 /// e^2 is below 29 e; the bound is 32 e, and the error of computing it, 3 e of itself, is far below the rest.
 const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The same for det - u - v, in units of the sum of the three products: 29 e from its terms and 6 e from each difference.
+/// Bound on the error of det - u - v, in units of the sum of the three products: 29 e from its terms and 6 e from each difference.
 const DIFFERENCE: f64 = 2.0 * DETERMINANT;
 
 /// Ray against triangle: equal to [`exact_triangle`] for all operands, and faster.

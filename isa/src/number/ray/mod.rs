@@ -21,9 +21,9 @@ pub use triangle::{Meeting, TriangleEnd, exact_triangle};
 /// A ray P(t) = origin + t direction, t > 0, on raw integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The origin of the ray.
     pub origin: Vector,
-    /// Where it goes; any length.
+    /// The direction, of any length.
     pub direction: Vector,
 }
 

@@ -13,7 +13,7 @@ const TIME: usize = 3;
 pub struct Plane {
     /// 0, 1, 2; 3 for the moment t = `at` (in raw coordinates over raw directions), which is no plane in space.
     pub axis: usize,
-    /// Where it cuts its axis, raw.
+    /// The coordinate at which it cuts its axis, raw.
     pub at: i32,
 }
 
@@ -21,7 +21,7 @@ impl Plane {
     /// The start of a ray, t = 0.
     pub const START: Plane = Plane { axis: TIME, at: 0 };
 
-    /// What stands for no plane at all: the pattern with all bits set.
+    /// A stand-in for no plane at all: the pattern with all bits set.
     pub const NOWHERE: Plane = Plane { axis: TIME, at: -1 };
 
     /// The plane in a pattern of 64 bits: the axis in the two lowest bits of the high half, the coordinate in the low half.
@@ -39,7 +39,7 @@ impl Plane {
         }
     }
 
-    /// Whether the ray meets the plane after its start. A plane through the origin is met at t = 0: it has been crossed.
+    /// The ray meets the plane after its start. A plane through the origin is met at t = 0: it has been crossed.
     #[inline]
     fn is_ahead(self, ray: &Ray) -> bool {
         let origin = if self.axis == TIME { 0 } else { ray.origin[self.axis] };
@@ -55,7 +55,7 @@ impl Plane {
         }
     }
 
-    /// Whether the ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
+    /// The ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
     ///
     /// Of planes of axes j < k that the ray itself meets at the same t > 0, that of j comes first exactly when D_j >= 0: its t changes by
     /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Runs stay below 2^32, so products fit 64 bits.
@@ -76,7 +76,7 @@ impl Plane {
     }
 }
 
-/// Whether the ray goes towards smaller coordinates; a direction of 0 counts as positive.
+/// The ray goes towards smaller coordinates; a direction of 0 counts as positive.
 #[inline]
 fn is_backwards(ray: &Ray, axis: usize) -> bool {
     axis != TIME && ray.direction[axis] < 0
@@ -101,20 +101,20 @@ pub fn exit_face(ray: &Ray, low: Vector, high: Vector) -> Plane {
     first_to_leave(ray, &faces(ray, low, high))
 }
 
-/// How a ray and a box lie.
+/// Position of a ray towards a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxEnd {
     /// The origin is beyond a plane by which the ray would leave.
     Beside,
     /// The ray starts in the box.
     Inside,
-    /// It leaves the slab between two faces before it enters another one.
+    /// The ray leaves the slab between two faces before it enters another one.
     Missed,
-    /// It enters the box ahead.
+    /// The ray enters the box ahead.
     Entered,
 }
 
-/// Where a ray enters a box and where it leaves it: [`Plane::START`] for a ray that starts inside, [`Plane::NOWHERE`] twice for one that
+/// Planes by which a ray enters and leaves a box: [`Plane::START`] for a ray that starts inside, [`Plane::NOWHERE`] twice for one that
 /// misses the box.
 pub fn across_box(ray: &Ray, low: Vector, high: Vector) -> (Plane, Plane, BoxEnd) {
     let faces = faces(ray, low, high);
@@ -148,7 +148,7 @@ pub enum SplitEnd {
     Both,
 }
 
-/// How a ray that is between `entry` and `exit` meets a split.
+/// Decides how a ray that is between `entry` and `exit` meets a split.
 #[inline]
 pub fn step(ray: &Ray, split: Plane, entry: Plane, exit: Plane) -> SplitEnd {
     if split.axis == TIME {
@@ -165,7 +165,7 @@ pub fn step(ray: &Ray, split: Plane, entry: Plane, exit: Plane) -> SplitEnd {
 }
 
 impl SplitEnd {
-    /// Whether the first side to visit is the one of larger coordinates; of a leaf it is none.
+    /// The first side to visit is the one of larger coordinates; of a leaf it is none.
     #[inline]
     pub fn is_right_first(self, ray: &Ray, axis: usize) -> bool {
         match self {
@@ -176,7 +176,7 @@ impl SplitEnd {
     }
 }
 
-/// Whether the point at t is nearer than a plane even if t is one unit too small: (t + 1) slope < run 2^shift, with run and slope counted in
+/// The point at t is nearer than a plane even if t is one unit too small: (t + 1) slope < run 2^shift, with run and slope counted in
 /// the ray's direction. Of a hit for which this holds no other one behind the plane can be nearer.
 #[inline]
 pub fn is_surely_before(ray: &Ray, plane: Plane, t: i32, shift: u32) -> bool {

@@ -6,7 +6,7 @@
 use super::{Difference, Ray, difference};
 use crate::number::Vector;
 
-/// How the test of a triangle ends; tests are made in this order.
+/// End of the test of a triangle; tests are made in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriangleEnd {
     /// The determinant is 0: the ray is parallel to the plane, or the triangle has no area.
@@ -23,10 +23,10 @@ pub enum TriangleEnd {
     Hit,
 }
 
-/// What is known of a ray and a triangle.
+/// Result of the test of a ray and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Meeting {
-    /// How the test ended.
+    /// The end of the test.
     pub end: TriangleEnd,
     /// Edges that the ray met exactly and that had to be decided by the sign of their normals.
     pub ties: u32,
@@ -56,7 +56,7 @@ fn dot(a: [i128; 3], b: Difference) -> i128 {
     (0..3).map(|k| a[k] * i128::from(b[k])).sum()
 }
 
-/// Whether an edge function has the sign of the determinant.
+/// An edge function has the sign of the determinant.
 ///
 /// One that is 0 gets the sign by which it would change if the direction moved by (e, e^2, e^3): that of the first component other than 0 of its
 /// gradient, the normal of the plane through the origin and the edge. Both triangles of an edge see the same normal with opposite signs. A

@@ -1,4 +1,8 @@
-//! What holds for the project as a whole, read off its manifests and its files.
+//! The project as a whole, read off its manifests and its files.
+
+mod documents;
+mod first_lines;
+mod type_names;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -108,11 +112,12 @@ fn files() -> Vec<(String, String)> {
         for entry in std::fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             let name = path.strip_prefix(&root).unwrap().to_string_lossy().replace('\\', "/");
+            // What git and cargo keep, and what commands write.
+            if [".git", "target", "out"].contains(&&*name) {
+                continue;
+            }
             if path.is_dir() {
-                // What git and cargo keep, and what commands write.
-                if ![".git", "target", "out"].contains(&&*name) {
-                    folders.push(path);
-                }
+                folders.push(path);
             } else if let Ok(octets) = std::fs::read(&path) {
                 found.push((name, String::from_utf8_lossy(&octets).into_owned()));
             }

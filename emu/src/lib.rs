@@ -1,21 +1,21 @@
 //! Machine of lancer: words to effects, time and counts. It knows no assembly text, no scene and no picture.
 
+//!
+//! Its wings, each of which uses only those before it: [`code`] (programs decoded, and the state that they work on), [`semantics`] (what
+//! instructions do), [`extension`] (the same in Rust, for instructions of extensions), [`profile`], [`engine`] (whatever executes programs),
+//! [`machine`] (cores and the bus on their clocks), [`replay`] (work items run once and put on the clock afterwards), [`run()`] (the front
+//! door) and [`conformance`] (trials of extensions in Rust).
+
 pub mod code;
+pub mod conformance;
 pub mod engine;
-pub mod exec;
+pub mod extension;
 pub mod machine;
-pub mod meaning;
-pub mod octets;
-mod order;
 pub mod profile;
-pub mod quantity;
-pub mod registers;
 pub mod replay;
 mod run;
-mod splice;
-pub mod tally;
-pub mod timing;
-pub mod trap;
+pub mod semantics;
 
+pub use code::{octets, quantity, registers, tally, timing, trap};
 pub use replay::count;
 pub use run::{run, run_all, step};

@@ -1,12 +1,12 @@
 //! The front door: runs frames on machines, by replay where that can be done, else by stepping.
 
+use crate::code::octets::Memory;
 use crate::engine::Task;
-use crate::exec::Watch;
 use crate::machine::schedule;
 use crate::machine::{Config, Failure, Frame, Setup, check, on_arithmetic};
-use crate::octets::Memory;
 use crate::profile::RunObserver;
 use crate::replay;
+use crate::semantics::Watch;
 
 /// Runs a frame on a memory image: until the main processor has halted and no core has anything more to do. `progress`
 /// is called with the number of work items finished, each time one is.

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use asm::extension;
-use emu::meaning::conformance::{self, Trial};
-use emu::meaning::{Call, Ending, Meaning, attach};
+use emu::conformance::{self, Trial};
+use emu::extension::{Call, Ending, Meaning, attach};
 use emu::trap::Fault;
 use isa::Isa;
 use isa::number::Arithmetic;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use emu::exec::RayRoom;
+use emu::semantics::RayRoom;
 use isa::number::ray::Ray;
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;

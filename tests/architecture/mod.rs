@@ -186,3 +186,78 @@ fn sources_stay_short() {
         found.join("\n")
     );
 }
+
+/// Wings of the emulator, each of which uses only itself and those before it.
+const WINGS: [&str; 9] =
+    ["code", "semantics", "extension", "profile", "engine", "machine", "replay", "run", "conformance"];
+
+/// A source without its comments.
+fn without_comments(text: &str) -> String {
+    text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
+}
+
+/// First names of the paths that begin at the crate, also those in braces, and those that climb out of their wing: `crate::code::Slot`,
+/// `crate::{code, engine::Plan}`, `super::super::engine::Plan`.
+fn roots(text: &str) -> Vec<String> {
+    let name = |text: &str| text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("crate::").filter(|(at, _)| !text[..*at].ends_with('$')) {
+        let rest = &text[at + "crate::".len()..];
+        match rest.strip_prefix('{') {
+            // A name stands behind the brace and behind each comma that is in no other braces.
+            Some(list) => {
+                let mut depth = 0;
+                found.push(name(list));
+                for (at, c) in list.char_indices() {
+                    match c {
+                        '{' => depth += 1,
+                        '}' if depth == 0 => break,
+                        '}' => depth -= 1,
+                        ',' if depth == 0 => found.push(name(&list[at + 1..])),
+                        _ => {}
+                    }
+                }
+            }
+            None => found.push(name(rest)),
+        }
+    }
+    for (at, _) in text.match_indices("super::") {
+        let rest = &text[at + "super::".len()..];
+        let next: String = name(rest);
+        if WINGS.contains(&&*next) && rest[next.len()..].starts_with("::") {
+            found.push(next);
+        }
+    }
+    found.retain(|name| !name.is_empty());
+    found
+}
+
+#[test]
+fn wings_of_the_emulator_use_those_before_them() {
+    const SOURCES: &str = "emu/src/";
+    let (files, mut seen) = (files(), BTreeSet::new());
+    for (name, text) in files.iter().filter(|(name, _)| name.starts_with(SOURCES) && name.ends_with(".rs")) {
+        let place = &name[SOURCES.len()..];
+        let wing = place.split('/').next().unwrap_or_default().trim_end_matches(".rs");
+        if wing == "lib" {
+            continue;
+        }
+        let own =
+            WINGS.iter().position(|other| *other == wing).unwrap_or_else(|| panic!("{name}: a wing without a place"));
+        seen.insert(wing);
+        for used in roots(&without_comments(text)) {
+            let other = WINGS.iter().position(|other| *other == used);
+            let other =
+                other.unwrap_or_else(|| panic!("{name}: `crate::{used}` is no wing; name the wing that it is in"));
+            assert!(other <= own, "{name}: `{wing}` stands before `{used}` and must not use it");
+        }
+    }
+    assert_eq!(seen.len(), WINGS.len(), "wings without a file");
+}
+
+#[test]
+fn imports_are_found_wherever_they_stand() {
+    let text = "use crate::code::Slot;\nuse crate::{engine::{Plan, fast}, run};\nlet a = crate::machine::Bus; // crate::comment\n\
+                use super::super::replay::Feed; $crate::semantics";
+    assert_eq!(roots(&without_comments(text)), ["code", "engine", "run", "machine", "replay"]);
+}

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use emu::code::Code;
+use emu::conformance::{self, Trial};
+use emu::extension::{Call, Ending, Meaning, Operands, attach};
 use emu::machine::{self, Config, Setup};
-use emu::meaning::conformance::{self, Trial};
-use emu::meaning::{Call, Ending, Meaning, Operands, attach};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use emu::trap::Fault;

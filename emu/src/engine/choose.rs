@@ -6,9 +6,9 @@ use super::state::{CoreId, Pause, State};
 use super::taint::Origin;
 use super::{Engine, Refusal, Stopped, Timeless, Wire, interpreter};
 use crate::code::Code;
-use crate::exec::{Link, Watch};
+use crate::code::tally::Tally;
 use crate::profile::RunObserver;
-use crate::tally::Tally;
+use crate::semantics::{Link, Watch};
 
 /// A program to execute, and what has to be known of it.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 
 use isa::number::Nearest32;
 
-use crate::exec::{Watch, Watching};
 use crate::profile::{Profiler, RunObserver, Unobserved};
+use crate::semantics::{Watch, Watching};
 
 /// Work that is the same on every arithmetic and for every observer, but compiled for each of them.
 pub trait Task {

@@ -6,14 +6,14 @@ use isa::table::AnyOutcome;
 
 use super::state::{CoreId, Pause, State};
 use crate::code::Code;
-use crate::exec::{
+use crate::code::registers::{read, write};
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Stop};
+use crate::profile::Observer;
+use crate::semantics::{
     BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom,
     Watch, WideRoom, split_operands,
 };
-use crate::profile::Observer;
-use crate::registers::{read, write};
-use crate::tally::Tally;
-use crate::trap::{Fault, Stop};
 
 /// What becomes of a program after an instruction.
 #[derive(Clone, Copy)]

@@ -18,11 +18,11 @@ pub use plan::Plan;
 pub use state::{CoreId, Pause, State};
 pub(crate) use taint::{Independence, Origin};
 
-use crate::exec::{Link, Message, methods};
-use crate::octets::Buffer;
+use crate::code::octets::Buffer;
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Stop};
 use crate::profile::RunObserver;
-use crate::tally::Tally;
-use crate::trap::{Fault, Stop};
+use crate::semantics::{Link, Message, methods};
 
 /// Why an engine does not run a program, as the end of a sentence.
 pub type Refusal = &'static str;

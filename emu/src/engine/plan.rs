@@ -6,10 +6,10 @@ use std::ops::Range;
 use isa::{Fields, InstructionDef, Kind, Op};
 
 use super::cost::{FLAG, Toll};
+use crate::code::layout::{Order, Stage};
+use crate::code::registers::Registers;
 use crate::code::{Code, ExitCost, Slot};
 use crate::engine::taint::Mark;
-use crate::order::{Order, Stage};
-use crate::registers::Registers;
 
 /// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
 #[derive(Clone, Copy, Debug)]

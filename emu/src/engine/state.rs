@@ -1,10 +1,10 @@
 //! State of one core as its program sees it, who the core is, and why an engine pauses.
 
 use crate::code::Code;
-use crate::meaning::Units;
-use crate::octets::Buffer;
-use crate::registers::Registers;
-use crate::trap::Fault;
+use crate::code::octets::Buffer;
+use crate::code::registers::Registers;
+use crate::code::trap::Fault;
+use crate::extension::Units;
 
 /// Everything about one core that its program can see or change by itself, and how far it has come.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,9 +4,9 @@
 use isa::{Kind, Op};
 
 use crate::code::Code;
-use crate::exec::Motion;
+use crate::code::tally::Tally;
 use crate::profile::{Observer, Profile};
-use crate::tally::Tally;
+use crate::semantics::Motion;
 
 /// What an instruction does with scalar registers, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use super::arbiter::{Arbiter, Claims, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
 use super::waits::Waits;
-use crate::quantity::{Clocks, Octets};
+use crate::code::quantity::{Clocks, Octets};
 
 /// What happened on the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::config::CacheConfig;
-use crate::quantity::Octets;
+use crate::code::quantity::Octets;
 
 /// What a cache did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

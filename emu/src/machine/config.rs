@@ -9,9 +9,9 @@ use isa::{Class, Counts};
 use serde::{Deserialize, Serialize};
 
 use super::arbiter::ArbiterKind;
-use crate::exec::Watching;
-use crate::quantity::{Clocks, Octets};
-use crate::timing::Timing;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::timing::Timing;
+use crate::semantics::Watching;
 
 /// Most cores that a machine may have.
 pub const MOST_CORES: u32 = 256;

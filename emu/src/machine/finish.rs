@@ -9,10 +9,10 @@ use super::processor::Standing;
 use super::schedule::Machine;
 use super::trace::Spans;
 use super::worker::Worker;
+use crate::code::quantity::Octets;
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Trap};
 use crate::profile::Profile;
-use crate::quantity::Octets;
-use crate::tally::Tally;
-use crate::trap::{Fault, Trap};
 
 impl<W: Worker> Machine<'_, W> {
     /// The trap of a processor that stopped.

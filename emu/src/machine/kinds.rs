@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::outcome::KindUse;
 use super::request::Request;
-use crate::quantity::Octets;
+use crate::code::quantity::Octets;
 
 /// Instructions whose ranges are remembered.
 const RECENT: usize = 32;

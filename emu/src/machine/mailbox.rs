@@ -1,7 +1,7 @@
 //! Messages on their way: one place for each pair of sender and receiver.
 
-use crate::exec::Message;
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
+use crate::semantics::Message;
 
 #[derive(Clone, Copy, Debug)]
 struct Letter {

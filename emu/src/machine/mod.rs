@@ -31,9 +31,9 @@ pub use outcome::{Frame, Item, KindUse, Method, ProcessorUse};
 
 use trace::Window;
 
+use crate::code::trap::Trap;
 use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
-use crate::trap::Trap;
 
 /// What a machine runs.
 #[derive(Clone)]
@@ -75,7 +75,7 @@ pub struct Options {
     pub has_profile: bool,
     /// Each work item.
     pub has_items: bool,
-    /// What the results of each instruction lose: [`crate::tally::Losses`]. Costs time.
+    /// What the results of each instruction lose: [`crate::code::tally::Losses`]. Costs time.
     pub has_losses: bool,
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,

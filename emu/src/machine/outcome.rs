@@ -6,10 +6,10 @@ use super::bus::BusUse;
 use super::cache::CacheUse;
 use super::trace::Trace;
 use super::waits::Waits;
-use crate::octets::Memory;
+use crate::code::octets::Memory;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::tally::Tally;
 use crate::profile::Profile;
-use crate::quantity::{Clocks, Octets};
-use crate::tally::Tally;
 
 /// Where one processor's clocks went; `busy + waiting + idle` is the length of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::mailbox::Mailboxes;
 use super::request::{Access, Request};
-use crate::exec::{Link, Message};
-use crate::octets::{Buffer, Memory};
-use crate::quantity::{Clocks, Octets};
-use crate::trap::{Fault, Stop};
+use crate::code::octets::{Buffer, Memory};
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::trap::{Fault, Stop};
+use crate::semantics::{Link, Message};
 
 /// What all processors share.
 #[derive(Debug)]

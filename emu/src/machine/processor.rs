@@ -10,9 +10,9 @@ use super::request::Request;
 use super::trace::{Doing, Spans};
 use super::worker::{Advance, Played, Worker};
 use crate::code::Code;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
-use crate::quantity::{Clocks, Octets};
-use crate::trap::Fault;
 
 /// What a processor does without the bus, at its own clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! Requests of a processor to the machine.
 
-use crate::quantity::Octets;
+use crate::code::quantity::Octets;
 
 /// What a transfer does with global memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

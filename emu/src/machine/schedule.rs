@@ -15,12 +15,12 @@ use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, Progress, Worker};
 use super::{Failure, Setup};
 use crate::code::Code;
+use crate::code::octets::Memory;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::trap::Fault;
 use crate::engine::{CoreId, Demand, Pause, Runner, Wish, choose};
-use crate::exec::Watch;
-use crate::octets::Memory;
 use crate::profile::RunObserver;
-use crate::quantity::{Clocks, Octets};
-use crate::trap::Fault;
+use crate::semantics::Watch;
 
 /// Runs a frame by stepping, on one arithmetic and with one kind of observer.
 ///

@@ -9,15 +9,15 @@ use super::port::Shared;
 use super::processor::Processor;
 use super::request::Request;
 use super::worker::Executor;
+use crate::code::octets::Memory;
+use crate::code::quantity::Clocks;
+use crate::code::registers::Registers;
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Trap};
 use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, Pause, State, Task, Wish, choose, dispatch};
-use crate::exec::Watch;
-use crate::octets::Memory;
 use crate::profile::{Profile, RunObserver};
-use crate::quantity::Clocks;
-use crate::registers::Registers;
-use crate::tally::Tally;
-use crate::trap::{Fault, Trap};
+use crate::semantics::Watch;
 
 /// What is run.
 pub struct Single<'a> {
@@ -33,7 +33,7 @@ pub struct Single<'a> {
     pub step_limit: u64,
     /// Whether calls are measured.
     pub has_profile: bool,
-    /// Whether it is counted what results lose: [`crate::tally::Losses`].
+    /// Whether it is counted what results lose: [`crate::code::tally::Losses`].
     pub has_losses: bool,
 }
 

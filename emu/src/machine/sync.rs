@@ -3,7 +3,7 @@
 use super::processor::{Act, Processor, Standing};
 use super::schedule::Machine;
 use super::worker::Worker;
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 impl<W: Worker> Machine<'_, W> {
     /// Sets when a listening processor takes its next message, when there is one.

@@ -3,7 +3,7 @@
 
 use super::bus::Grant;
 use super::request::{Access, Request};
-use crate::quantity::{Clocks, Octets};
+use crate::code::quantity::{Clocks, Octets};
 
 /// A part of the frame: from `start` on, `end` no longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Number of waits by length: column 0 holds those of 0 clocks, column n those of 2^(n-1) to 2^n - 1, the last one all
 /// that are longer.

@@ -6,12 +6,12 @@ use super::bus::{Lengths, NextTransfer};
 use super::port::{CorePort, Shared};
 use super::request::Request;
 use crate::code::Code;
+use crate::code::octets::Buffer;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::tally::Tally;
 use crate::engine::{Choice, CoreId, Pause, Runner, State, interpreter};
-use crate::exec::{Message, Watch};
-use crate::octets::Buffer;
 use crate::profile::{Profile, RunObserver, Unobserved};
-use crate::quantity::{Clocks, Octets};
-use crate::tally::Tally;
+use crate::semantics::{Message, Watch};
 
 /// One advance of a worker: what it did, and what it waits for now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,8 +9,8 @@ use isa::Counts;
 pub use profiler::Profiler;
 
 use crate::code::Code;
-use crate::exec::Motion;
-use crate::tally::Tally;
+use crate::code::tally::Tally;
+use crate::semantics::Motion;
 
 /// Someone who is told of each executed instruction.
 pub trait Observer {

@@ -7,9 +7,9 @@ use isa::Counts;
 
 use super::{Observer, Profile, RegionProfile, RunObserver};
 use crate::code::Code;
-use crate::exec::Motion;
-use crate::order::{Order, Stage};
-use crate::tally::Tally;
+use crate::code::layout::{Order, Stage};
+use crate::code::tally::Tally;
+use crate::semantics::Motion;
 
 /// Most regions and calls that are open at once; what deeper calls cost counts for what is open already.
 const DEEPEST: usize = 1 << 16;

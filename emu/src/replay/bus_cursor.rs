@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::recording::{Recording, Segment};
+use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
 use crate::machine::worker::Played;
-use crate::quantity::{Clocks, Octets};
 
 /// Recorded work item that a master of the bus goes through by itself; none at first.
 #[derive(Debug)]
@@ -142,11 +142,11 @@ mod tests {
 
     use super::*;
     use crate::engine::Pause;
-    use crate::exec::Message;
     use crate::machine::arbiter::ArbiterKind;
     use crate::machine::bus::Bus;
     use crate::machine::config::BusConfig;
     use crate::machine::request::{Access, Request};
+    use crate::semantics::Message;
 
     /// A work item that reads what these segments say: clocks of computing, octets.
     fn recording(segments: &[(u64, u64)]) -> Arc<Recording> {

@@ -3,13 +3,13 @@
 use super::item::Keeping;
 use super::prerun;
 use super::recording::Reason;
+use crate::code::octets::Memory;
+use crate::code::tally::Tally;
 use crate::engine::{Pause, Task};
-use crate::exec::Watch;
 use crate::machine::kinds::Kinds;
 use crate::machine::{Failure, Setup, check, on_arithmetic};
-use crate::octets::Memory;
 use crate::profile::{Profile, RunObserver};
-use crate::tally::Tally;
+use crate::semantics::Watch;
 
 /// What a frame computes and counts, whatever the time it takes.
 #[derive(Clone, Debug)]

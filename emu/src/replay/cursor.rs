@@ -8,16 +8,16 @@ use super::bus_cursor::{BusCursor, overlap};
 use super::feed::Feed;
 use super::recording::{Recording, Segment};
 use crate::code::Code;
+use crate::code::quantity::{Clocks, Octets};
+use crate::code::tally::Tally;
+use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
-use crate::exec::Watch;
 use crate::machine::bus::Lengths;
 use crate::machine::port::Shared;
 use crate::machine::request::{Access, Request};
 use crate::machine::worker::{Advance, Executor, Played, Progress, Worker};
 use crate::profile::{Profile, RunObserver};
-use crate::quantity::{Clocks, Octets};
-use crate::tally::Tally;
-use crate::trap::Fault;
+use crate::semantics::Watch;
 
 /// A core's place in the work item that it replays.
 pub struct Cursor<'a> {
@@ -43,7 +43,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Does what the core waits for, and yields the message that it took with its sender.
-    fn act(&mut self, shared: &mut Shared, at: Clocks) -> Option<(crate::exec::Message, u32)> {
+    fn act(&mut self, shared: &mut Shared, at: Clocks) -> Option<(crate::semantics::Message, u32)> {
         let own = self.core.core;
         let Some(segment) = self.asked() else {
             let (_, sender) = shared.mailboxes.next(own)?;

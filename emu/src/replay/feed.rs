@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 
 use super::record::Prefix;
 use super::recording::{Reason, Recording};
-use crate::exec::Message;
+use crate::semantics::Message;
 
 /// Recordings, or why there are no more.
 pub type Batch = Result<Vec<Arc<Recording>>, Reason>;

@@ -2,13 +2,13 @@
 
 use super::budget::Room;
 use super::recording::Segment;
+use crate::code::octets::{Buffer, Memory};
+use crate::code::quantity::Octets;
+use crate::code::trap::Stop;
 use crate::engine::{Moment, Wire};
-use crate::exec::{Link, Message};
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
-use crate::octets::{Buffer, Memory};
-use crate::quantity::Octets;
-use crate::trap::Stop;
+use crate::semantics::{Link, Message};
 
 /// What is kept of work items beside their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -23,13 +23,14 @@ pub use recorded::Recorded;
 pub use recording::Reason;
 
 use crate::code::Code;
-use crate::exec::Watch;
+use crate::code::octets::Memory;
+use crate::code::quantity::Octets;
+use crate::extension;
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
 use crate::machine::{Failure, Frame, Setup};
-use crate::octets::Memory;
 use crate::profile::{RunObserver, Unobserved};
-use crate::quantity::Octets;
+use crate::semantics::Watch;
 use cursor::{Cursor, Replayer};
 use feed::{Batch, Feed};
 use item::Keeping;
@@ -69,7 +70,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
 /// What every work item does before its message comes.
 pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) -> Result<Prefix, Reason> {
     let code = Code::new(setup.core, setup.isa, setup.config.timing());
-    if code.keeps_state() {
+    if extension::keeps_state(&code) {
         return Err("an instruction keeps its state from one work item to the next");
     }
     Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), Keeping::Segments).prefix()

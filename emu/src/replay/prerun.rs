@@ -11,14 +11,14 @@ use super::item::Keeping;
 use super::record::Recorder;
 use super::recording::{Reason, Recording};
 use crate::code::Code;
+use crate::code::octets::{Buffer, Memory};
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Stop};
 use crate::engine::{CoreId, Demand, Pause, State, Wish, choose};
-use crate::exec::{Link, Message, Watch};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
-use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, Profile, RunObserver, Unobserved};
-use crate::tally::Tally;
-use crate::trap::{Fault, Stop};
+use crate::semantics::{Link, Message, Watch};
 
 /// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
 /// were hardly faster than one, because a thread takes its time to begin.

@@ -4,18 +4,18 @@ use super::budget::Room;
 use super::item::{Keeping, Strand, StrandLink};
 use super::recording::{Reason, Recording, Segment, reads};
 use crate::code::Code;
+use crate::code::octets::{Buffer, Memory};
+use crate::code::quantity::Octets;
+use crate::code::tally::Tally;
+use crate::code::trap::{Fault, Stop};
 use crate::engine::{
     self, CoreId, Demand, Independence, Moment, Pause, Runner, State, Stopped, Wish, choose, interpreter,
 };
-use crate::exec::{Link, Message, Watch};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
-use crate::octets::{Buffer, Memory};
 use crate::profile::{Observer, RunObserver, Unobserved};
-use crate::quantity::Octets;
-use crate::tally::Tally;
-use crate::trap::{Fault, Stop};
+use crate::semantics::{Link, Message, Watch};
 
 /// The link of a work item that is recorded: it says what it asks for, then gets it at once.
 struct Wire<'a> {

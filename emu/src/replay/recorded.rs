@@ -9,11 +9,11 @@ use super::item::Keeping;
 use super::prerun::{self, Survey};
 use super::record::Prefix;
 use super::recording::Reason;
+use crate::code::octets::Memory;
 use crate::engine::Task;
-use crate::exec::Watch;
 use crate::machine::{Failure, Frame, Setup, check, on_arithmetic};
-use crate::octets::Memory;
 use crate::profile::RunObserver;
+use crate::semantics::Watch;
 
 /// All work items of a frame.
 pub struct Recorded {

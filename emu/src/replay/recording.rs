@@ -3,10 +3,10 @@
 
 use std::ops::Range;
 
+use crate::code::quantity::Octets;
 use crate::engine::Pause;
-use crate::exec::Message;
 use crate::machine::request::{Access, Request};
-use crate::quantity::Octets;
+use crate::semantics::Message;
 
 /// Why a program's work items cannot be replayed and have to be stepped.
 pub type Reason = &'static str;

@@ -1,6 +1,6 @@
 //! Meanings against an independent model: exact integers, one rounding to nearest with ties up, saturation.
 
-use emu::exec::{IntegerRoom, ScalarRoom, VectorRoom, WideRoom};
+use emu::semantics::{IntegerRoom, ScalarRoom, VectorRoom, WideRoom};
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use isa::table::Done;
 use proptest::prelude::*;

@@ -1,10 +1,10 @@
 //! Messages, barriers and the atomic counter between processors, and who waits for whom.
 
-use emu::exec::Message;
 use emu::machine::mailbox::Mailboxes;
 use emu::machine::{Config, Failure, Frame, Options, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
+use emu::semantics::Message;
 use emu::trap::{Fault, Trap};
 use isa::{Isa, Op, Program};
 

@@ -1,6 +1,6 @@
 //! What the rows of the ray unit hand back: rounded quotients, planes as patterns, addresses of children.
 
-use emu::exec::RayRoom;
+use emu::semantics::RayRoom;
 use isa::number::ray::Plane;
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use isa::table::outcome::{rbox, rstep, rtri};

@@ -4,11 +4,11 @@
 use emu::code::Code;
 use emu::engine::interpreter::run;
 use emu::engine::{CoreId, Pause, State};
-use emu::exec::{Link, Message, Motion};
 use emu::machine::Config;
 use emu::machine::single::{self, Single};
 use emu::octets::{Buffer, Memory};
 use emu::profile::{Observer, Profile};
+use emu::semantics::{Link, Message, Motion};
 use emu::tally::Tally;
 use emu::trap::Stop;
 use isa::number::Nearest32;

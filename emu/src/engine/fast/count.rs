@@ -1,8 +1,8 @@
 //! How often exits were taken and runs begun where nothing else says so: what is counted while a program runs, and how it folds into passes.
 
+use crate::code::tally::Tally;
 use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Origin;
-use crate::tally::Tally;
 
 /// What is counted of a place beside its exits.
 #[derive(Clone, Copy, Debug, Default)]

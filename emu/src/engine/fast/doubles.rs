@@ -8,8 +8,8 @@ use isa::number::{Nearest32, Vector};
 use isa::table::outcome::rtri::{Outcome, Way};
 
 use super::operands::set_vector;
-use crate::exec::RayRoom;
-use crate::registers::Registers;
+use crate::code::registers::Registers;
+use crate::semantics::RayRoom;
 
 /// Bound on the error of a determinant, in units of the product of the largest lanes of its three vectors.
 const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;

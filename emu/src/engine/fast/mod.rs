@@ -22,9 +22,9 @@ use super::plan::Plan;
 use super::state::{CoreId, State};
 use super::taint::Origin;
 use super::{Demand, Engine, Refusal, Stopped, Wire};
+use crate::code::registers::Registers;
+use crate::code::tally::Tally;
 use crate::profile::RunObserver;
-use crate::registers::Registers;
-use crate::tally::Tally;
 
 /// The fast engine of one program.
 #[derive(Clone, Debug)]

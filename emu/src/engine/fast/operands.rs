@@ -1,9 +1,9 @@
-//! Where a row's results go: as in [`crate::registers`], but a vector in one piece, because what is written in pieces is read late by a host that reads
+//! Where a row's results go: as in [`crate::code::registers`], but a vector in one piece, because what is written in pieces is read late by a host that reads
 //! it at once.
 
 use isa::number::Vector;
 
-use crate::registers::Registers;
+use crate::code::registers::Registers;
 
 /// Sets a vector.
 #[inline(always)]

@@ -3,7 +3,7 @@
 use isa::Fields;
 use isa::table::outcome::rstep::Outcome;
 
-use crate::registers::Registers;
+use crate::code::registers::Registers;
 
 /// The number that stands for time among the axes.
 const TIME: usize = 3;

@@ -4,8 +4,8 @@
 use isa::Op;
 
 use super::walk::{Place, Walk};
+use crate::code::registers::Registers;
 use crate::engine::plan::Step;
-use crate::registers::Registers;
 
 /// A row: it does what the step says, goes on with the rows behind it unless it [goes back](goes_back), and yields where that led to.
 /// The last number is that of [`Place::sums`].
@@ -236,7 +236,7 @@ macro_rules! stamp {
             use crate::engine::Wire;
             use super::super::walk::{Place, Walk};
             use crate::profile::RunObserver;
-            use crate::registers::Registers;
+            use crate::code::registers::Registers;
 
             #[allow(non_snake_case, reason = "a row's function is spelt as its mnemonic")]
             mod rows {
@@ -250,15 +250,15 @@ macro_rules! stamp {
                 use crate::engine::{Stopped, Wire};
                 use super::super::{RowFunction, goes_back, is_read};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
-                use crate::exec::RayRoom;
-                use crate::exec::{
+                use crate::semantics::RayRoom;
+                use crate::semantics::{
                     BusRoom, ControlRoom, End, Flow, Glance, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
                     split_operands,
                 };
                 use crate::engine::plan::{Step, padded};
                 use crate::profile::RunObserver;
-                use crate::registers::{Registers, read, write};
-                use crate::trap::Stop;
+                use crate::code::registers::{Registers, read, write};
+                use crate::code::trap::Stop;
 
                 const IS_WIDE: bool = $is_wide;
 

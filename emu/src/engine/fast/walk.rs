@@ -4,17 +4,17 @@ use isa::table::AnyOutcome;
 
 use super::count::Count;
 use super::fuse::Fuse;
+use crate::code::octets::Buffer;
+use crate::code::registers::Registers;
+use crate::code::trap::{Fault, Stop};
 use crate::engine::CoreId;
 use crate::engine::Moment;
 use crate::engine::cost::FLAG;
 use crate::engine::plan::{Plan, Step};
 use crate::engine::{Stopped, Wire};
-use crate::exec::{Flow, Motion};
-use crate::meaning::{Numbers, Units};
-use crate::octets::Buffer;
+use crate::extension::{Numbers, Units};
 use crate::profile::RunObserver;
-use crate::registers::Registers;
-use crate::trap::{Fault, Stop};
+use crate::semantics::{Flow, Motion};
 
 /// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuse was looked at.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! By number: the lowest master first, so the main processor last. A busy low master can make others wait for ever.
 
 use super::{Arbiter, Claims, Ranking, Verdict, grant};
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Fixed priority.
 #[derive(Clone, Copy, Debug)]

@@ -16,7 +16,7 @@ pub use weighted::Weighted;
 
 use super::bus::Burst;
 use super::config::BusConfig;
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! By age: who has asked for its burst longest comes first, at equal age the lowest master.
 
 use super::{Arbiter, Claims, Ranking, Verdict, grant};
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Oldest first.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 //! other master.
 
 use super::{Arbiter, Claims, Ranking, Verdict, grant};
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Round-robin; the first turn is master 0's.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,7 +1,7 @@
 //! By the clock: each master has its slot of a frame, whether it uses it or not. What the others do cannot be felt.
 
 use super::{Arbiter, Claims, Verdict};
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Time division: slot n of each frame is master n's. A burst begins where it ends within a slot of its own, so a
 /// master that asks gets the bus in less than a frame.

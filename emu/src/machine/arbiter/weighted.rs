@@ -2,7 +2,7 @@
 //! the other.
 
 use super::{Arbiter, Claims, Verdict};
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Weighted round-robin; the first turn is master 0's. With equal weights of 1 it is round-robin.
 #[derive(Clone, Debug)]

@@ -134,7 +134,7 @@ mod tests {
     use isa::number::Quantization;
 
     use super::*;
-    use crate::quantity::{Clocks, Octets};
+    use crate::code::quantity::{Clocks, Octets};
 
     fn parse(text: &str) -> Result<Config, String> {
         Config::parse(&Source::new("m.toml", text)).map_err(|report| report.render(false))

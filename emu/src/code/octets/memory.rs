@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::words_of;
-use crate::trap::Fault;
+use crate::code::trap::Fault;
 
 /// Octets that are copied together where a copy is written to.
 const PAGE: usize = 4096;

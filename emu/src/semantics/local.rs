@@ -4,8 +4,8 @@ use isa::number::Vector;
 use isa::table::Done;
 
 use super::LocalRoom;
-use crate::octets::Buffer;
-use crate::trap::Fault;
+use crate::code::octets::Buffer;
+use crate::code::trap::Fault;
 
 impl LocalRoom for Buffer {
     #[inline]

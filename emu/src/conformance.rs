@@ -9,10 +9,10 @@ use messages::Diagnostic;
 use random::SplitMix64;
 
 use crate::code::Code;
+use crate::code::octets::Memory;
+use crate::code::registers::{Registers, SCALARS, VECTORS, WIDES};
 use crate::machine::Config;
 use crate::machine::single::{Single, SingleRun, run};
-use crate::octets::Memory;
-use crate::registers::{Registers, SCALARS, VECTORS, WIDES};
 
 /// Octets of the buffer and of global memory, filled at random, that the instruction may reach.
 const OCTETS: usize = 4096;
@@ -107,7 +107,7 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
             }
             (None, None) => case.differences(isa, op, [&body, &meaning], trial.tolerance, &mut agreement.largest),
             traps => {
-                let text = |trap: &Option<crate::trap::Trap>| match trap {
+                let text = |trap: &Option<crate::code::trap::Trap>| match trap {
                     Some(trap) => format!("a trap ({})", trap.kind),
                     None => "no trap".to_owned(),
                 };

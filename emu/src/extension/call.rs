@@ -5,8 +5,8 @@ use isa::{Fields, Kind};
 
 use super::Numbers;
 use super::units::{Results, Shape};
-use crate::octets::Buffer;
-use crate::registers::Registers;
+use crate::code::octets::Buffer;
+use crate::code::registers::Registers;
 
 /// Letters of operands that are written.
 pub(super) const WRITTEN: [u8; 4] = *b"dexy";

@@ -8,9 +8,9 @@ use isa::{Fields, InstructionDef, Isa, Kind};
 
 use super::call::{Call, Operands, WRITTEN, place};
 use super::{Ending, MOST_OCTETS, Meaning, Numbers, attached};
-use crate::octets::Buffer;
-use crate::registers::Registers;
-use crate::trap::{Fault, Stop};
+use crate::code::octets::Buffer;
+use crate::code::registers::Registers;
+use crate::code::trap::{Fault, Stop};
 
 /// Results by the letters that are written.
 #[derive(Clone, Debug, Default)]

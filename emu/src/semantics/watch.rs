@@ -5,8 +5,8 @@ use std::cell::Cell;
 
 use isa::number::{Arithmetic, Flags, Modes, Nearest32, square_root};
 
-use crate::meaning::Numbers;
-use crate::tally::Losses;
+use super::Numbers;
+use crate::code::tally::Losses;
 
 /// Arithmetic that an engine can run on: it says whether the last instruction is to trap for a division by zero.
 pub trait Watch: Arithmetic {

@@ -6,19 +6,19 @@
 macro_rules! split_operands {
     ($then:ident $state:tt $read:tt $written:tt ()) => { $then! { $state $read $written } };
     ($then:ident $state:tt $read:tt [$($written:tt)*] (d: $kind:ident $(, $($rest:tt)*)?)) => {
-        $crate::exec::split_operands! { $then $state $read [$($written)* (d $kind)] ($($($rest)*)?) }
+        $crate::semantics::split_operands! { $then $state $read [$($written)* (d $kind)] ($($($rest)*)?) }
     };
     ($then:ident $state:tt $read:tt [$($written:tt)*] (e: $kind:ident $(, $($rest:tt)*)?)) => {
-        $crate::exec::split_operands! { $then $state $read [$($written)* (e $kind)] ($($($rest)*)?) }
+        $crate::semantics::split_operands! { $then $state $read [$($written)* (e $kind)] ($($($rest)*)?) }
     };
     ($then:ident $state:tt [$($read:tt)*] [$($written:tt)*] (x: $kind:ident $(, $($rest:tt)*)?)) => {
-        $crate::exec::split_operands! { $then $state [$($read)* (x $kind)] [$($written)* (x $kind)] ($($($rest)*)?) }
+        $crate::semantics::split_operands! { $then $state [$($read)* (x $kind)] [$($written)* (x $kind)] ($($($rest)*)?) }
     };
     ($then:ident $state:tt [$($read:tt)*] [$($written:tt)*] (y: $kind:ident $(, $($rest:tt)*)?)) => {
-        $crate::exec::split_operands! { $then $state [$($read)* (y $kind)] [$($written)* (y $kind)] ($($($rest)*)?) }
+        $crate::semantics::split_operands! { $then $state [$($read)* (y $kind)] [$($written)* (y $kind)] ($($($rest)*)?) }
     };
     ($then:ident $state:tt [$($read:tt)*] $written:tt ($letter:ident: $kind:ident $(, $($rest:tt)*)?)) => {
-        $crate::exec::split_operands! { $then $state [$($read)* ($letter $kind)] $written ($($($rest)*)?) }
+        $crate::semantics::split_operands! { $then $state [$($read)* ($letter $kind)] $written ($($($rest)*)?) }
     };
 }
 

@@ -6,7 +6,7 @@ use isa::number::Vector;
 
 pub use memory::Memory;
 
-use crate::trap::Fault;
+use crate::code::trap::Fault;
 
 /// What a work item finds where nobody has written: a pattern that stands out in a dump.
 pub const POISON: u8 = 0xa5;

@@ -5,6 +5,7 @@ mod bus;
 mod control;
 mod integer;
 mod local;
+mod numbers;
 mod ray;
 mod scalar;
 mod split;
@@ -20,11 +21,12 @@ use isa::table::outcome;
 pub(crate) use bus::{Glance, hand_on, methods, refuse};
 pub use bus::{Link, Message, Port};
 pub use control::{End, Flow, Motion};
+pub use numbers::Numbers;
 pub use watch::{Watch, Watching};
 
 pub(crate) use split::split_operands;
 
-use crate::trap::{Fault, Stop};
+use crate::code::trap::{Fault, Stop};
 
 /// The type of an operand's value: registers by kind, every immediate an `i32`.
 macro_rules! value {

@@ -2,7 +2,7 @@
 
 use isa::number::{Arithmetic, Nearest32};
 
-/// Word length and modes of the machine. The meanings of the table's rows are there too: [`crate::exec::VectorRoom`] and its kind.
+/// Word length and modes of the machine. The meanings of the table's rows are there too: [`crate::semantics::VectorRoom`] and its kind.
 #[derive(Clone, Copy)]
 pub enum Numbers<'a> {
     /// Words of 32 bits, to nearest, saturating: the default.

@@ -1,8 +1,8 @@
 //! Meanings of extension instructions in Rust: for what assembly cannot say, such as state, noise, or a model that the host has. How
-//! bodies in assembly are executed is not said here; [`conformance`] holds a meaning against the body beside it.
+//! bodies in assembly are executed is not said here; [`crate::conformance`] holds a meaning against the body beside it.
 //!
 //! ```
-//! use emu::meaning::{Call, Ending, Meaning, attach};
+//! use emu::extension::{Call, Ending, Meaning, attach};
 //! use emu::trap::Fault;
 //!
 //! /// Random bits: a shift register with feedback, the same sequence in each work item.
@@ -19,8 +19,6 @@
 //! ```
 
 mod call;
-pub mod conformance;
-mod numbers;
 mod units;
 
 use std::sync::Arc;
@@ -32,11 +30,13 @@ use isa::table::Op;
 use messages::{Diagnostic, did_you_mean};
 
 pub use call::{Call, Operands};
-pub use numbers::Numbers;
 use units::Runner;
 pub(crate) use units::{Unit, Units};
 
-use crate::trap::Fault;
+pub use crate::semantics::Numbers;
+
+use crate::code::Code;
+use crate::code::trap::Fault;
 
 /// What an extension instruction does.
 ///
@@ -158,4 +158,10 @@ pub fn of(isa: &Isa, op: Op) -> Option<&dyn Meaning> {
 /// What executes an instruction, as it is after reset.
 fn attached(isa: &Isa, op: Op) -> Option<&Attached> {
     isa.semantics(op)?.downcast_ref()
+}
+
+/// Whether some instruction of a program has a meaning that keeps its state from one work item to the next.
+pub(crate) fn keeps_state(code: &Code) -> bool {
+    let kept = |op| of(code.isa, op).is_some_and(Meaning::keeps_state);
+    code.slots().iter().any(|slot| matches!(slot.op, Some(op @ Op::Ext(_)) if kept(op)))
 }

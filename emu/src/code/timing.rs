@@ -2,7 +2,7 @@
 
 use isa::{Class, Counts};
 
-use crate::quantity::Clocks;
+use crate::code::quantity::Clocks;
 
 /// Clocks and units by class of operations: an exit takes, for each class, ceil(cost / units) times the class's clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

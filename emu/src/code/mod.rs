@@ -5,16 +5,24 @@
 //! [`Slot::next`] comes after a slot, that registers go up to 63 (wide ones to 15), that some passes are no instructions, and that only
 //! bodies lead behind the words: see [`Code::is_outside`].
 
+pub(crate) mod layout;
+pub mod octets;
+pub mod quantity;
+pub mod registers;
+mod splice;
+pub mod tally;
+pub mod timing;
+pub mod trap;
+
 use std::fmt;
 use std::ops::Range;
 
 use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, Program};
 use messages::{Diagnostic, Place};
 
-use crate::meaning::{self, Meaning};
-use crate::quantity::Clocks;
-use crate::splice::{Passing, Way, splice};
-use crate::timing::Timing;
+use quantity::Clocks;
+use splice::{Passing, Way, splice};
+use timing::Timing;
 
 /// Most slots of all bodies of a program.
 pub const MOST_BODY_SLOTS: usize = 1 << 18;
@@ -263,12 +271,6 @@ impl<'a> Code<'a> {
     /// Whether a body stands in the place of a word.
     fn has_body(&self, word: u32) -> bool {
         self.extended.binary_search_by_key(&word, |&(word, _)| word).is_ok()
-    }
-
-    /// Whether some instruction of the program has a meaning that keeps its state from one work item to the next.
-    pub fn keeps_state(&self) -> bool {
-        let kept = |op| meaning::of(self.isa, op).is_some_and(Meaning::keeps_state);
-        self.slots.iter().any(|slot| matches!(slot.op, Some(op @ Op::Ext(_)) if kept(op)))
     }
 
     /// Where the distance of a word's row leads: the word behind it where it has none, the program's end where it leads out.

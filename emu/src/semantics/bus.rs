@@ -5,8 +5,8 @@ use isa::number::Vector;
 use isa::table::{Done, Each};
 
 use super::BusRoom;
-use crate::octets::{Buffer, words_of};
-use crate::trap::{Fault, Stop};
+use crate::code::octets::{Buffer, words_of};
+use crate::code::trap::{Fault, Stop};
 
 /// Most vectors that a message carries.
 const LONGEST: usize = 5;
@@ -122,7 +122,7 @@ pub trait Link {
 /// Hands the methods that every link has to a macro, behind what is for it.
 macro_rules! methods {
     ($macro:ident! $($arguments:tt)*) => {
-        $crate::exec::$macro! { $($arguments)*
+        $crate::semantics::$macro! { $($arguments)*
             load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
             store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
             read(address: u32, words: &mut [i32]) -> ();

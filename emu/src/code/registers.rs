@@ -175,8 +175,30 @@ macro_rules! read {
     ($registers:expr, $fields:expr, $letter:ident W3) => {
         $registers.wides::<3>($fields.$letter)
     };
-    ($registers:expr, $fields:expr, $letter:ident $immediate:ident) => {
+    ($registers:expr, $fields:expr, $letter:ident Sh) => {
         $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident Im) => {
+        $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident Un) => {
+        $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident Off) => {
+        $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident Rel) => {
+        $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident Lane) => {
+        $fields.$letter
+    };
+    ($registers:expr, $fields:expr, $letter:ident $kind:ident) => {
+        compile_error!(concat!(
+            "operands of kind `",
+            stringify!($kind),
+            "` are not read: say in `read!` (emu/src/registers.rs) from where"
+        ))
     };
 }
 
@@ -205,6 +227,13 @@ macro_rules! write {
     };
     ($registers:expr, $fields:expr, $letter:ident W3) => {
         $registers.set_wides::<3>($fields.$letter, $letter)
+    };
+    ($registers:expr, $fields:expr, $letter:ident $kind:ident) => {
+        compile_error!(concat!(
+            "operands of kind `",
+            stringify!($kind),
+            "` are not written: say in `write!` (emu/src/registers.rs) where to"
+        ))
     };
 }
 

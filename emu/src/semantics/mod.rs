@@ -54,8 +54,30 @@ macro_rules! value {
     (W3) => {
         [i64; 3]
     };
-    ($immediate:ident) => {
+    (Sh) => {
         i32
+    };
+    (Im) => {
+        i32
+    };
+    (Un) => {
+        i32
+    };
+    (Off) => {
+        i32
+    };
+    (Rel) => {
+        i32
+    };
+    (Lane) => {
+        i32
+    };
+    ($kind:ident) => {
+        compile_error!(concat!(
+            "operands of kind `",
+            stringify!($kind),
+            "` have no type: say in `value!` (emu/src/exec/mod.rs) what semantics take"
+        ))
     };
 }
 
@@ -88,6 +110,9 @@ macro_rules! method {
         /// # Errors
         /// A fault, or that the machine is not ready: then nothing has happened and the instruction is tried again.
         fn $name(&mut self, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Stop>;
+    };
+    ({ $style:ident $name:ident $docs:tt } $read:tt $written:tt) => {
+        compile_error!(concat!("`", stringify!($name), "` is of style `", stringify!($style), "`, which is none of pure, local, bus, control"));
     };
 }
 

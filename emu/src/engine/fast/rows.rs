@@ -85,6 +85,22 @@ macro_rules! finish {
     }};
 }
 
+/// Refuses a row with several outcomes where none is counted.
+macro_rules! one_outcome {
+    ($name:ident) => {
+        const {
+            assert!(
+                outcome::$name::Outcome::OUTCOMES == 1,
+                concat!(
+                    "`",
+                    stringify!($name),
+                    "` has several outcomes: the fast engine counts them for rows of `ray` and `control` alone; let `row!` (emu/src/engine/fast/rows.rs) count it with `walk.pass`"
+                )
+            );
+        }
+    };
+}
+
 /// The function of a row, and the names of what it has.
 macro_rules! function {
     ($features:tt $name:ident
@@ -122,7 +138,7 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
+            one_outcome!($name);
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
             let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
             let next = walk.go_on(Place { step, sums });
@@ -134,7 +150,7 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
+            one_outcome!($name);
             match $trait::$name(&mut *walk.buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
@@ -147,7 +163,7 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(outcome::$name::Outcome::OUTCOMES == 1) };
+            one_outcome!($name);
             walk.note(Place { step, sums }, now);
             if is_read(Op::$name) {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Glance(&mut *walk.link) };
@@ -175,7 +191,12 @@ macro_rules! row {
     };
     ({ $features:tt $ray:ident control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
-            const { assert!(outcome::$name::Outcome::OUTCOMES <= 2) };
+            const {
+                assert!(
+                    outcome::$name::Outcome::OUTCOMES <= 2,
+                    concat!("`", stringify!($name), "` has more than two outcomes: a control row is taken or falls through (emu/src/engine/fast/rows.rs)")
+                );
+            }
             let mut flow = Flow::new(now.slot, now.slot + 1, walk.seat.core, walk.seat.cores);
             let result = $trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*);
             let has_target = const { false $(|| is_relative!($kind))* };

@@ -97,3 +97,36 @@ fn constants_that_are_named_are_there() {
     }
     assert!(missing.is_empty(), "constants that are not there:\n{}", missing.join("\n"));
 }
+
+#[test]
+fn messages_of_a_forgotten_step_are_what_the_sources_say() {
+    let files = files();
+    let text_of = |folder: &str| -> String {
+        let sources = files.iter().filter(|(name, _)| name.starts_with(folder) && name.ends_with(".rs"));
+        sources.map(|(_, text)| text.as_str()).collect()
+    };
+    let sources = text_of("isa/src/") + &text_of("emu/src/");
+    let (_, page) = files.iter().find(|(name, _)| name == "CONTRIBUTING.md").expect("the page is there");
+    let section = page
+        .split("\n## ")
+        .find(|section| section.starts_with("What a forgotten step says"))
+        .expect("it has the table");
+    let mut pieces = 0;
+    for message in section.lines().filter(|line| line.starts_with('|')).filter_map(|line| line.split('|').nth(2)) {
+        // Messages of rustc itself have a number.
+        for piece in message
+            .split("error[E")
+            .next()
+            .unwrap_or_default()
+            .split('`')
+            .map(|piece| piece.trim_matches([' ', ',', '.']))
+        {
+            let own = piece.trim_start_matches("evaluation panicked:").trim_start_matches("error:").trim();
+            if own.len() > 12 && !message.contains("the test that") {
+                assert!(sources.contains(own), "no source says `{own}`");
+                pieces += 1;
+            }
+        }
+    }
+    assert!(pieces > 8, "{pieces} pieces of messages");
+}

@@ -76,7 +76,7 @@ macro_rules! value {
         compile_error!(concat!(
             "operands of kind `",
             stringify!($kind),
-            "` have no type: say in `value!` (emu/src/exec/mod.rs) what semantics take"
+            "` have no type: say in `value!` (emu/src/semantics/mod.rs) what semantics take"
         ))
     };
 }

@@ -197,7 +197,7 @@ macro_rules! read {
         compile_error!(concat!(
             "operands of kind `",
             stringify!($kind),
-            "` are not read: say in `read!` (emu/src/registers.rs) from where"
+            "` are not read: say in `read!` (emu/src/code/registers.rs) from where"
         ))
     };
 }
@@ -232,7 +232,7 @@ macro_rules! write {
         compile_error!(concat!(
             "operands of kind `",
             stringify!($kind),
-            "` are not written: say in `write!` (emu/src/registers.rs) where to"
+            "` are not written: say in `write!` (emu/src/code/registers.rs) where to"
         ))
     };
 }

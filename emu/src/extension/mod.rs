@@ -160,7 +160,7 @@ fn attached(isa: &Isa, op: Op) -> Option<&Attached> {
     isa.semantics(op)?.downcast_ref()
 }
 
-/// Whether some instruction of a program has a meaning that keeps its state from one work item to the next.
+/// Some instruction of a program has a meaning that keeps its state from one work item to the next.
 pub(crate) fn keeps_state(code: &Code) -> bool {
     let kept = |op| of(code.isa, op).is_some_and(Meaning::keeps_state);
     code.slots().iter().any(|slot| matches!(slot.op, Some(op @ Op::Ext(_)) if kept(op)))

@@ -75,7 +75,7 @@ pub struct Options {
     pub has_profile: bool,
     /// Each work item.
     pub has_items: bool,
-    /// What the results of each instruction lose: [`crate::code::tally::Losses`]. Costs time.
+    /// Losses in the results of each instruction: [`crate::code::tally::Losses`]. Costs time.
     pub has_losses: bool,
     /// What every processor and the bus do in this window of clocks.
     pub window: Option<Window>,

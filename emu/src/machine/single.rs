@@ -33,7 +33,7 @@ pub struct Single<'a> {
     pub step_limit: u64,
     /// Whether calls are measured.
     pub has_profile: bool,
-    /// Whether it is counted what results lose: [`crate::code::tally::Losses`].
+    /// Losses of results are counted: [`crate::code::tally::Losses`].
     pub has_losses: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Where a row's results go: as in [`crate::code::registers`], but a vector in one piece, because what is written in pieces is read late by a host that reads
+//! Places for a row's results: as in [`crate::code::registers`], but a vector in one piece, because what is written in pieces is read late by a host that reads
 //! it at once.
 
 use isa::number::Vector;

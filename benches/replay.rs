@@ -1,4 +1,4 @@
-//! How many recorded transfers a second a machine replays on one host thread: `cargo bench --bench replay`. The time is
+//! Recorded transfers that a machine replays on one host thread in a second: `cargo bench --bench replay`. The time is
 //! the least of many runs, so that other work on the host disturbs it little. Words behind `--` choose: `cornell report`.
 
 use std::time::{Duration, Instant};

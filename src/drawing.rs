@@ -21,16 +21,16 @@ use crate::job::{Detail, Job};
 use crate::load::Load;
 use crate::result::{self, Loss};
 
-/// Whether a picture is measured against double precision.
+/// Use of the double-precision reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comparison {
-    /// It is.
+    /// The picture is measured against it.
     Reference,
-    /// It is not, which saves the time of the reference.
+    /// No reference is computed, which saves its time.
     None,
 }
 
-/// How long the host took.
+/// Times that the host took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
     /// For tree, memory image and programs.
@@ -48,7 +48,7 @@ pub struct Drawing {
     pub image: MemoryImage,
     /// The programs.
     pub build: Build,
-    /// What the machine did.
+    /// Outcome of the run on the machine.
     pub frame: Frame,
     /// The part that was drawn; pictures have its size.
     pub crop: Crop,
@@ -56,15 +56,15 @@ pub struct Drawing {
     pub words: Vec<[i32; 3]>,
     /// The colours, linear.
     pub picture: Picture,
-    /// The same part in double precision.
+    /// The drawn part in double precision.
     pub reference: Option<Picture>,
-    /// What executed the cores' program, and why nothing faster did.
+    /// Engine that executed the cores' program, and why nothing faster did.
     pub engine: Choice,
-    /// How far they are apart.
+    /// Difference from double precision.
     pub error: Option<PictureError>,
-    /// What results lost, where that was counted.
+    /// Losses of results, where they were counted.
     pub flags: Option<Vec<Loss>>,
-    /// What is likely a mistake in the user's kernels.
+    /// Likely mistakes in the user's kernels.
     pub warnings: Report,
     /// Host times.
     pub times: Times,

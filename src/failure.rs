@@ -1,4 +1,4 @@
-//! How a command ends: its exit code, and what it says when it could not do its work.
+//! The end of a command: its exit code, and its message when it could not do its work.
 
 use messages::{Diagnostic, Report};
 
@@ -20,14 +20,14 @@ pub enum Exit {
     StepLimit = 5,
 }
 
-/// Why a command did not do its work.
+/// A reason for which a command did not do its work.
 #[derive(Debug)]
 pub enum Failure {
-    /// It has something to say.
+    /// Messages for the user.
     Message {
-        /// What.
+        /// The messages.
         report: Report,
-        /// How the command ends.
+        /// The exit code.
         exit: Exit,
     },
     /// Whoever read the results does not want more of them.

@@ -34,7 +34,7 @@ pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Resul
     Err(Diagnostic::error(format!("`{name}` is neither a file nor a generated scene")).hint(hint).into())
 }
 
-/// Whether a name could be that of a generated scene.
+/// True of a name that a generated scene could have.
 fn is_plain(name: &str) -> bool {
     !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_')
 }

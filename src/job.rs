@@ -15,11 +15,11 @@ use scenes::model::{Scene, View};
 
 use crate::machine;
 
-/// Where in its pixel a ray passes in pictures that are measured, in pixels to the right of the middle and above it: parallel rays through the
+/// Place of a ray in its pixel in pictures that are measured, in pixels to the right of the middle and above it: parallel rays through the
 /// middles would run along edges of axis-aligned scenes.
 pub const SHIFT: [f64; 2] = [0.137, 0.071];
 
-/// What is asked of a picture beside its colours, counts and clocks.
+/// Results of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
     /// Totals of functions and regions, which take time.
@@ -31,9 +31,9 @@ pub enum Detail {
 /// Everything that decides a picture and what it costs.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What is drawn.
+    /// The scene that is drawn.
     pub scene: Scene,
-    /// How it is looked at.
+    /// Camera, size, light and depth of the picture.
     pub view: View,
     /// Structures of global memory; `None` for those that the set of kernels is made for.
     pub layout: Option<Layout>,
@@ -51,13 +51,13 @@ pub struct Job {
     pub machine_name: String,
     /// The machine.
     pub machine: Config,
-    /// What executes its programs.
+    /// Engine that executes its programs.
     pub engine: EngineKind,
-    /// What is recorded.
+    /// Results beside colours, counts and clocks.
     pub detail: Detail,
-    /// Whether it is counted what results lose.
+    /// True where losses of results are counted.
     pub flags: bool,
-    /// What is likely a mistake in the scene's files.
+    /// Likely mistakes in the scene's files.
     pub warnings: Report,
     /// All files that were read for it.
     pub files: Vec<PathBuf>,

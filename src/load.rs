@@ -1,4 +1,4 @@
-//! What a machine is given to do, apart from the machine: programs, global memory and its kinds of data. A picture is
+//! Work for a machine, apart from the machine: programs, global memory and its kinds of data. A picture is
 //! one such load, the report's estimate of a picture another.
 
 use emu::engine::EngineKind;
@@ -17,7 +17,7 @@ use crate::job::Job;
 /// Name of the report's estimate where a scene may be named.
 pub const ANNEX: &str = "annex";
 
-/// Its pixels.
+/// Pixels of the report's estimate.
 const ANNEX_PIXELS: u32 = 1_000;
 
 /// Programs and memory for a machine.
@@ -33,11 +33,11 @@ pub struct Load {
     pub kinds: Vec<(std::ops::Range<u32>, String)>,
     /// Formats of the picture; none of the report's estimate.
     pub formats: Option<Formats>,
-    /// What executes the programs.
+    /// Engine that executes the programs.
     pub engine: EngineKind,
 }
 
-/// What a kind of data is called where its octets are counted.
+/// Name of a kind of data where its octets are counted.
 fn traffic(kind: MemoryKind) -> &'static str {
     match kind {
         MemoryKind::Frame => "pixels",

@@ -33,7 +33,7 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     Ok((stem, config))
 }
 
-/// What each key means, with its unit, range and where its default comes from; `[section]` describes what follows.
+/// Comments on the keys: meaning, unit, range and source of the default; `[section]` describes what follows.
 const COMMENTS: &[(&str, &str)] = &[
     ("cores", "cores, 1 to 256, the main processor not counted (report 6.1: 4)"),
     ("clock_hz", "clock rate in hertz; it turns clocks into seconds and changes nothing else (report 6.1: 100 MHz)"),
@@ -86,7 +86,7 @@ const COMMENTS: &[(&str, &str)] = &[
     ("main.step_limit", "instructions that its whole program may take (ours)"),
 ];
 
-/// What may stand for a machine, for help texts.
+/// Text for help: the values that name a machine.
 pub fn named() -> String {
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
     format!("Preset ({}) or TOML file", names.join(", "))

@@ -7,7 +7,7 @@ use isa::definition::Room;
 use isa::table::ROOMS;
 use isa::{Class, InstructionDef, Isa, Kind};
 
-/// What the letters and kinds of operands mean; the kinds' own rows are generated.
+/// Meaning of the letters and kinds of operands; the kinds' own rows are generated.
 const OPERANDS: &str = "\
 Each instruction is a line: name, operands, the 32-bit word as a bit pattern, and the ways in which it ends with what each costs.
 

@@ -35,7 +35,7 @@ pub fn percent(part: u64, whole: u64) -> String {
     format!("{:.1} %", if whole == 0 { 0.0 } else { 100.0 * part as f64 / whole as f64 })
 }
 
-/// How many of something: `1 light`, `2 lights`, `1,000 lights`.
+/// A number with its noun: `1 light`, `2 lights`, `1,000 lights`.
 pub fn count(number: u64, singular: &str, plural: &str) -> String {
     format!("{} {}", grouped(number), if number == 1 { singular } else { plural })
 }

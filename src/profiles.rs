@@ -28,7 +28,7 @@ pub struct Profiles {
     pub width: u32,
     /// Height of the pictures in pixels.
     pub height: u32,
-    /// Where in its pixel a ray passes, in pixels to the right of the middle and above it.
+    /// Place of a ray in its pixel, in pixels to the right of the middle and above it.
     pub shift: [f64; 2],
     /// The pictures, scene by scene.
     pub pictures: Vec<ProfileResult>,
@@ -36,7 +36,7 @@ pub struct Profiles {
     pub ratios: Vec<Ratio>,
 }
 
-/// What a picture took.
+/// Cost of a picture in one profile.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ProfileResult {
     /// Name of the scene.

@@ -1,4 +1,4 @@
-//! What each skip saves: the same picture without any, with each alone and with all of them.
+//! Savings of each skip: the same picture without any, with each alone and with all of them.
 
 use isa::Counts;
 use kernels::{Skip, Skips};
@@ -21,7 +21,7 @@ const ALL: &str = "all";
 /// Version of [`SkipsResult`].
 pub const SCHEMA: &str = "lancer-skips-1";
 
-/// What the skips save on one scene.
+/// Savings of the skips on one scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SkipsResult {
     /// [`SCHEMA`].
@@ -47,7 +47,7 @@ pub struct SkipsResult {
 pub struct SkipResult {
     /// `none`, the name of a skip, `all`, or `interpolate`: all, and `--interpolate`.
     pub name: String,
-    /// What is left out.
+    /// Work that is left out.
     pub description: String,
     /// Operations of cores and main processor, by class.
     pub counts: ByClass,
@@ -65,9 +65,9 @@ pub struct SkipResult {
     pub octets_saved: f64,
     /// Share of the clocks that is saved.
     pub clocks_saved: f64,
-    /// Whether what is left out should not change the picture.
+    /// True where the work that is left out should not change the picture.
     pub claims_identity: bool,
-    /// Whether the picture is the same, bit for bit.
+    /// True where the picture is the same, bit for bit.
     pub is_identical: bool,
     /// Pixels that had no ray of their own.
     pub interpolated: u64,
@@ -126,7 +126,7 @@ fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<SkipsResult, Fa
     })
 }
 
-/// How many pictures [`measure`] draws of a job.
+/// Number of pictures that [`measure`] draws of a job.
 pub fn pictures(job: &Job) -> usize {
     ways(job).len()
 }

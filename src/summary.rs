@@ -99,7 +99,7 @@ fn left_last(rows: Vec<Vec<String>>) -> String {
     text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// Where the clocks of all processors went, and the bus.
+/// Clocks of all processors, and of the bus.
 pub fn processors(result: &Render) -> String {
     let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "octets", "pixels"])];
     let processor = |name: String, of: &ProcessorResult| {
@@ -146,7 +146,7 @@ pub fn processors(result: &Render) -> String {
     text
 }
 
-/// How long the cores waited for the bus: the share of no wait, then bounds that so many waits keep.
+/// Waits of the cores for the bus: the share of no wait, then bounds that so many waits keep.
 fn waits(cores: &[ProcessorResult]) -> String {
     let columns = cores.iter().map(|core| core.waits.len()).max().unwrap_or(0);
     let count = |column: usize| cores.iter().filter_map(|core| core.waits.get(column)).sum::<u64>();
@@ -226,7 +226,7 @@ pub fn pixel(drawing: &Drawing) -> String {
     text
 }
 
-/// How the operations spread over the pixels; a heat map goes from the least (dark) to the largest (bright).
+/// Spread of the operations over the pixels; a heat map goes from the least (dark) to the largest (bright).
 pub fn spread(operations: &[u64]) -> String {
     let mut sorted = operations.to_vec();
     sorted.sort_unstable();

@@ -1,4 +1,4 @@
-//! Where results and messages go: results to standard output, progress and messages to standard error, colours only
+//! Streams of a command: results to standard output, progress and messages to standard error, colours only
 //! where a terminal shows them.
 
 use std::ffi::OsStr;
@@ -71,7 +71,7 @@ impl Terminal {
     }
 }
 
-/// Whether messages have colours, given whether a terminal would show them and the value of `NO_COLOR`, which switches
+/// True where messages have colours, given whether a terminal would show them and the value of `NO_COLOR`, which switches
 /// them off by any value but an empty one (<https://no-color.org>).
 fn is_coloured(is_shown: bool, no_color: Option<&OsStr>) -> bool {
     is_shown && no_color.is_none_or(OsStr::is_empty)

@@ -1,4 +1,4 @@
-//! How many bits a picture asks for: docs/accuracy.md says it, and it is measured again.
+//! Bits that a picture asks for: docs/accuracy.md says it, and it is measured again.
 
 use std::process::Command;
 

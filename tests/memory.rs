@@ -1,4 +1,4 @@
-//! How much memory a picture of a large scene takes on the host. This test is alone in its process: it counts what is allocated.
+//! Memory of the host that a picture of a large scene takes. This test is alone in its process: it counts what is allocated.
 
 use kernels::KernelSet;
 use lancer::drawing::{self, Comparison};

@@ -1,4 +1,4 @@
-//! What vector rows save on the report's kernels, and the ray unit on those: docs/profiles.md says it, and it is measured again.
+//! Savings of the vector rows on the report's kernels, and of the ray unit on those: docs/profiles.md says it, and it is measured again.
 
 use std::process::Command;
 

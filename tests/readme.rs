@@ -1,4 +1,4 @@
-//! What the README and the tutorial show is what happens: their commands run, and the README's table is measured again.
+//! The README and the tutorial show what happens: their commands run, and the README's table is measured again.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is left out where a scene does not need it: the picture stays as it is, and less is done.
+//! Skips leave a picture as it is, and do less where a scene does not need more.
 
 use std::collections::BTreeSet;
 

@@ -26,7 +26,7 @@ pub use chart::svg;
 pub use front::rank;
 pub use rays::RayErrors;
 
-/// What is varied.
+/// Settings of one picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variant {
     /// Set of kernels.
@@ -46,7 +46,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The same with other kernels, those of the report in its layout.
+    /// The variant with other kernels, those of the report in their own layout.
     fn with(self, profile: KernelSet) -> Variant {
         let layout = match profile.layout() {
             Layout::Report => Layout::Report,
@@ -165,7 +165,7 @@ pub struct MeasuredVariant {
     /// Nanoseconds of the host a pixel; only when asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub host_nanoseconds: Option<f64>,
-    /// Whether no other variant of the scene beats it.
+    /// True where no other variant of the scene beats it.
     pub is_on_front: bool,
     /// A variant of the scene that takes no more clocks, has no larger error and is better in one of them; null for one on the front.
     pub dominated_by: Option<String>,

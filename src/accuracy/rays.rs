@@ -39,7 +39,7 @@ pub struct RayErrors {
     pub normal_max: Option<f64>,
 }
 
-/// What came of a ray.
+/// Outcome of a ray.
 struct Ended {
     is_right: bool,
     /// Errors of t, u, v and of the normal, of a hit that both find; not a number where the kernels do not compute it.

@@ -1,4 +1,4 @@
-//! How alike two pictures look.
+//! Structural similarity of two pictures.
 
 use scenes::model::Picture;
 

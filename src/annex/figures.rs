@@ -1,4 +1,4 @@
-//! What the report derives from its rows (6.1, 6.2, Annex I), derived from ours.
+//! Figures that the report derives from its rows (6.1, 6.2, Annex I), derived from ours.
 
 use emu::machine::Config;
 use emu::quantity::Octets;
@@ -17,7 +17,7 @@ const FRAME: f64 = 640.0 * 480.0;
 pub struct Derived {
     /// The figure.
     pub figure: &'static Figure,
-    /// Its value from the pixel of 22 nodes.
+    /// Value from the pixel of 22 nodes.
     pub counted: f64,
 }
 

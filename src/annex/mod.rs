@@ -31,22 +31,22 @@ pub struct Measurement {
     pub least: Counts,
     /// Most of each class in a call.
     pub most: Counts,
-    /// What the row's search tried; the last one met the row's assumption.
+    /// Tries of the row's search; the last one met the row's assumption.
     pub tried: Vec<Try>,
 }
 
 impl Measurement {
-    /// Whether every call took the same.
+    /// True where every call took the same.
     pub fn is_certain(&self) -> bool {
         self.calls != 0 && self.row.classes().all(|class| self.least[class] == self.most[class])
     }
 
-    /// Whether every call took exactly what is printed.
+    /// True where every call took exactly what is printed.
     pub fn is_met(&self) -> bool {
         self.is_certain() && self.row.classes().all(|class| self.most[class] == self.row.printed[class])
     }
 
-    /// Whether the row's terms are the difference.
+    /// True where the row's terms are the difference.
     pub fn is_explained(&self) -> bool {
         let is_sum = |&class: &Class| match self.row.classes().any(|printed| printed == class) {
             true => self.row.difference(&self.most, class) == self.row.explained(class),

@@ -26,35 +26,35 @@ pub struct Annexes {
     pub schema: &'static str,
     /// The rows.
     pub rows: Vec<RowResult>,
-    /// What the report derives from them.
+    /// Figures that the report derives from them.
     pub derived: Derivation,
-    /// What is odd in the printed figures.
+    /// Errata of the printed figures.
     pub errata: Vec<Erratum>,
 }
 
 /// Something odd in the printed figures.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Erratum {
-    /// Its name.
+    /// Name of the erratum.
     pub id: &'static str,
-    /// Where it is printed.
+    /// Place in the report.
     pub source: &'static str,
-    /// What is printed.
+    /// Printed text.
     pub printed: &'static str,
-    /// What it should be.
+    /// Correct text.
     pub correct: &'static str,
-    /// What it changes.
+    /// Effect on other figures.
     pub effect: &'static str,
 }
 
 /// A row.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RowResult {
-    /// Its name.
+    /// Name of the row.
     pub id: &'static str,
-    /// Its label as printed.
+    /// Label as printed.
     pub label: &'static str,
-    /// Where it is printed.
+    /// Place in the report.
     pub source: &'static str,
     /// The region of the kernels that is counted.
     pub region: &'static str,
@@ -74,18 +74,18 @@ pub struct RowResult {
     pub scenes: Vec<SceneRow>,
     /// Counted less printed, by class.
     pub difference: ByName<i64>,
-    /// What it comes from.
+    /// Sources of the difference.
     pub terms: Vec<TermResult>,
 }
 
 /// A constant that was searched.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SearchResult {
-    /// Its name.
+    /// Name of the constant that is searched.
     pub constant: &'static str,
     /// The function whose calls were counted.
     pub region: &'static str,
-    /// What was tried, in order; the last one is what the row assumes.
+    /// Tries in order; the last one is what the row assumes.
     pub tried: Vec<Try>,
 }
 
@@ -122,11 +122,11 @@ pub struct TermResult {
     pub class: &'static str,
     /// Operations more than printed.
     pub n: i64,
-    /// Why.
+    /// Reason for the term.
     pub reason: String,
 }
 
-/// What the report derives, from the pixel of 22 nodes and from scenes.
+/// Figures that the report derives, from the pixel of 22 nodes and from scenes.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Derivation {
     /// Figures by name.
@@ -140,19 +140,19 @@ pub struct Derivation {
 /// A figure.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FigureResult {
-    /// What it is.
+    /// Description of the figure.
     pub label: &'static str,
-    /// Where it is printed.
+    /// Place in the report.
     pub source: &'static str,
     /// As printed; null where it is left out.
     pub printed: Option<f64>,
     /// From the pixel of 22 nodes.
     pub counted: f64,
-    /// Its unit.
+    /// Unit of the figure.
     pub unit: &'static str,
 }
 
-/// The same figures where nothing is assumed.
+/// Figures of a scene, where nothing is assumed.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SceneFigures {
     /// Name of the scene.

@@ -37,7 +37,7 @@ pub fn job(scene: Scene, size: (u32, u32)) -> Job {
 }
 
 impl OnScene {
-    /// What a drawing of such a job found.
+    /// Figures from a drawing of such a job.
     pub fn new(job: &Job, drawing: &Drawing) -> OnScene {
         let frame = &drawing.frame;
         let profiles: Vec<&Profile> = [&frame.profile, &frame.main_profile].into_iter().flatten().collect();

@@ -14,7 +14,7 @@ const COLUMNS: [&str; 6] = ["add", "sub", "mul", "div", "cmp", "mem"];
 /// The elementary ones.
 const ELEMENTARY: [Class; 5] = [Class::Add, Class::Sub, Class::Mul, Class::Div, Class::Cmp];
 
-/// How a table is drawn.
+/// Style of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
     /// For terminals.
@@ -124,7 +124,7 @@ fn rows(annexes: &Annexes, style: Style) -> String {
         + &searches
 }
 
-/// How what a row assumes was found, in a line.
+/// Line on a search: how what a row assumes was found.
 fn search(result: &RowResult) -> Option<String> {
     let search = result.search.as_ref()?;
     let tried: Vec<String> =
@@ -205,7 +205,7 @@ fn peers(annexes: &Annexes, style: Style) -> String {
     style.table(cells)
 }
 
-/// What is odd in the printed figures, with what it changes.
+/// Errata of the printed figures, with what each changes.
 pub fn errata(annexes: &Annexes, style: Style) -> String {
     let mut text = style.heading("Errata of the report");
     for erratum in &annexes.errata {

@@ -1,4 +1,4 @@
-//! How much is computed.
+//! Options that say how much is computed.
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -28,7 +28,7 @@ pub struct EffortArguments {
 }
 
 impl EffortArguments {
-    /// What is left out.
+    /// The skips of the program.
     pub fn skips(&self) -> Skips {
         self.no_skip.iter().flatten().fold(Skips::ALL, |skips, &skip| skips.without(skip))
     }

@@ -45,7 +45,7 @@ pub struct JobArguments {
 }
 
 impl JobArguments {
-    /// What a command line asks for; reads the scene, the machine and the user's kernels.
+    /// The job that a command line asks for; reads the scene, the machine and the user's kernels.
     ///
     /// # Errors
     /// What is wrong in those files, and options that do not go together.

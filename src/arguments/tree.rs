@@ -1,4 +1,4 @@
-//! How the kd tree is built.
+//! Options of the kd tree.
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};

@@ -1,4 +1,4 @@
-//! How the scene is looked at.
+//! Options of camera, size and light.
 
 use clap::{Args, ValueEnum};
 

@@ -1,4 +1,4 @@
-//! How fast pictures are computed on this host: the engines, and native code beside them. What is measured is not said to anyone here.
+//! Speed of pictures on this host: the engines, and native code beside them. Nothing here prints.
 
 #[cfg(feature = "cli")]
 mod chart;
@@ -26,7 +26,7 @@ use crate::job::Job;
 use crate::load::Load;
 use crate::result::Formats;
 
-/// Who computes a picture.
+/// A way to compute a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Runner {
@@ -65,7 +65,7 @@ pub struct BenchResult {
     pub scene: String,
     /// The kernel set.
     pub profile: &'static str,
-    /// Who computed it: `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
+    /// Runner that computed it: `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Bits of a word and fraction bits of each quantity.

@@ -121,9 +121,9 @@ pub(super) struct Results {
     width: u32,
     /// Height of the pictures in pixels.
     height: u32,
-    /// Where in its pixel a ray passes, in pixels to the right of the middle and above it.
+    /// Place of a ray in its pixel, in pixels to the right of the middle and above it.
     shift: [f64; 2],
-    /// What was measured, scene by scene.
+    /// Measured variants, scene by scene.
     variants: Vec<MeasuredVariant>,
     /// Variants that a scene does not fit, and why.
     refused: Vec<Refused>,
@@ -136,7 +136,7 @@ struct Refused {
     scene: String,
     /// The variant in words.
     variant: String,
-    /// Why there is no picture.
+    /// Reason for which there is no picture.
     reason: String,
 }
 

@@ -69,9 +69,9 @@ struct ArithmeticCheckArguments {
 struct Claim {
     /// Raw number; a string, since it may have more bits than a double.
     raw: String,
-    /// Whether bits below the last place were lost; null where the vector does not say.
+    /// True where bits below the last place were lost; null where the vector does not say.
     quantized: Option<bool>,
-    /// Whether the quantized number did not fit; null where the vector does not say.
+    /// True where the quantized number did not fit; null where the vector does not say.
     overflowed: Option<bool>,
 }
 
@@ -82,13 +82,13 @@ struct Mismatch {
     line: usize,
     /// Name of the operation.
     operation: &'static str,
-    /// What the vector says.
+    /// Result in the vector.
     expected: Claim,
-    /// What the operation gives.
+    /// Result of the operation.
     found: Claim,
 }
 
-/// What came of a file of vectors.
+/// Outcome of a file of vectors.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(super) struct Checked {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.

@@ -71,7 +71,7 @@ fn definition(text: &str) -> Result<(String, i64), String> {
 }
 
 impl SourceArguments {
-    /// Whether it has options that only an assembler can follow.
+    /// True with options that only an assembler can follow.
     pub(super) fn has_options(&self) -> bool {
         !(self.defines.is_empty() && self.formats.is_empty() && self.folders.is_empty())
     }

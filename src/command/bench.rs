@@ -78,7 +78,7 @@ pub(super) struct Benches {
     threads: u32,
     /// Vector instructions of the host that the fast engine uses: baseline or avx2.
     features: &'static str,
-    /// What was measured, scene by scene.
+    /// Measurements, scene by scene.
     measured: Vec<BenchResult>,
 }
 

@@ -17,7 +17,7 @@ Examples:
   lancer manual --as html -o manual.html
   lancer manual --as man -o lancer.1";
 
-/// What is written.
+/// Forms of the manual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
     /// The instruction set and the assembler, as Markdown.

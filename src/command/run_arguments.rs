@@ -79,7 +79,7 @@ pub fn memory_file(text: &str) -> Result<(u32, PathBuf), String> {
     Ok((address(start)?, path.into()))
 }
 
-/// What is shown at the end.
+/// A part of the state that is shown at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dump {
     /// All registers.

@@ -1,4 +1,4 @@
-//! What `lancer run` found: as JSON and as tables.
+//! Results of `lancer run`: as JSON and as tables.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -32,9 +32,9 @@ pub struct RunResult {
     pub program: String,
     /// Name of the machine.
     pub machine: String,
-    /// What executed it: fast, or checked where fast does not suit or was not to be used.
+    /// Engine that executed it: fast, or checked where fast does not suit or was not to be used.
     pub engine: &'static str,
-    /// Why a faster engine that was wanted did not execute it; `None` where it did.
+    /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
     pub engine_because: Option<&'static str>,
     /// Instructions executed.
     pub instructions: u64,
@@ -55,7 +55,7 @@ pub struct RunResult {
     pub flags: Option<Vec<Loss>>,
     /// Octets that were asked for.
     pub dumps: Vec<DumpedOctets>,
-    /// Why it stopped before its `halt`.
+    /// The trap that stopped it before its `halt`.
     pub trap: Option<TrapResult>,
 }
 
@@ -69,7 +69,7 @@ impl Serialize for RegisterValues {
     }
 }
 
-/// What a register holds.
+/// Contents of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum RegisterContents {
@@ -92,10 +92,10 @@ pub struct DumpedOctets {
     raw: Vec<u8>,
 }
 
-/// Why a program stopped.
+/// The trap of a program.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct TrapResult {
-    /// What went wrong, without where.
+    /// Kind of the trap, without its place.
     pub fault: String,
     /// Word of the instruction.
     pub pc: u32,

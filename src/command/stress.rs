@@ -76,7 +76,7 @@ fn size() -> impl TypedValueParser<Value = CatalogueSize> {
     })
 }
 
-/// How far a run has come.
+/// Progress of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct State {
@@ -85,7 +85,7 @@ struct State {
     cases: BTreeMap<String, Done>,
 }
 
-/// How far a case has come: its first trials are done.
+/// Progress of a case: its first trials are done.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Done {
@@ -93,26 +93,26 @@ struct Done {
     tally: Tally,
 }
 
-/// What came of a case.
+/// Outcome of a case.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 struct Verdict {
     /// Name of the case.
     name: &'static str,
-    /// What is tried.
+    /// Description of the trials.
     about: &'static str,
-    /// What the value counts or measures.
+    /// Quantity that the value counts or measures.
     quantity: &'static str,
     /// Trials that were made.
     trials: u64,
-    /// Where the series of random numbers begins.
+    /// Beginning of the series of random numbers.
     seed: u64,
     /// Trials that went wrong, of which none is allowed.
     failures: u64,
-    /// What was measured.
+    /// The value that was measured.
     value: f64,
     /// The largest value that is allowed.
     threshold: f64,
-    /// Whether the value is allowed.
+    /// True where the value is allowed.
     passes: bool,
     /// The first trial that went wrong; null when none did.
     example: Option<Example>,
@@ -121,21 +121,21 @@ struct Verdict {
 /// A trial that went wrong.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 struct Example {
-    /// Its number, from 0.
+    /// Number of the trial, from 0.
     trial: u64,
-    /// What went wrong, in words.
+    /// Description of what went wrong.
     text: String,
 }
 
-/// What came of the cases.
+/// Outcome of the cases.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub(super) struct Catalogue {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
-    /// How many trials were made: quick or full.
+    /// Number of trials by name: quick or full.
     size: &'static str,
-    /// Whether all values are allowed.
+    /// True where all values are allowed.
     passes: bool,
     /// The cases in the order of the catalogue, or of the command line.
     cases: Vec<Verdict>,
@@ -204,7 +204,7 @@ fn try_case(
     Ok(done.tally)
 }
 
-/// What a former run has left.
+/// The state that a former run has left.
 fn read(path: &Path, size: CatalogueSize) -> Result<State, Report> {
     let shown = path.display();
     let source = files::source(path)?;

@@ -1,9 +1,9 @@
-//! What theory says of cores that compute for a while, then need one shared bus: closed forms, no simulation.
+//! Theory of cores that compute for a while, then need one shared bus: closed forms, no simulation.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What a pixel takes with nobody else on the bus, in clocks.
+/// Demand of a pixel with nobody else on the bus, in clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Demand {
     /// Clocks of computing; C.

@@ -1,4 +1,4 @@
-//! How a load's time falls with the number of cores, measured on several machines, beside what theory expects. What is
+//! Time of a load by the number of cores, measured on several machines, beside what theory expects. What is
 //! printed or drawn of it is said in the files below.
 
 #[cfg(feature = "cli")]
@@ -45,30 +45,30 @@ pub struct CoresResult {
 pub struct Curve {
     /// Name of the machine.
     pub machine: String,
-    /// Its arbiter.
+    /// Name of its arbiter.
     pub arbiter: String,
     /// Bits of a word and fraction bits of each quantity; null for `annex`, whose pixels only take time.
     pub formats: Option<Formats>,
     /// Clock rate in hertz.
     pub clock_hz: u64,
-    /// What a pixel took with one core: of the core, and of the bus, messages and the main processor's share included.
+    /// Demand of a pixel with one core: of the core, and of the bus, messages and the main processor's share included.
     pub demand: Demand,
     /// C / M.
     pub quotient: Option<f64>,
     /// (C + M) / M.
     pub closed_form: Option<f64>,
-    /// Where more cores bring no more, as measured.
+    /// Number of cores beyond which more bring no more, as measured.
     pub saturation: Option<Saturation>,
     /// One number of cores each, the fewest first; the first is one core.
     pub points: Vec<Point>,
 }
 
-/// Where more cores bring no more.
+/// The point from which more cores bring no more.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Saturation {
     /// Number of cores at which the straight line of the first cores reaches the highest speed-up.
     pub cores: f64,
-    /// What is used up: `bus`, `main-processor`, or `other` when neither is and the pixels or the messages set the pace.
+    /// Resource that is used up: `bus`, `main-processor`, or `other` when neither is and the pixels or the messages set the pace.
     pub limit: &'static str,
 }
 
@@ -79,11 +79,11 @@ pub struct Point {
     pub cores: u32,
     /// Length of the frame in clocks.
     pub clocks: u64,
-    /// The same in seconds.
+    /// Length of the frame in seconds.
     pub seconds: f64,
     /// Seconds a pixel.
     pub pixel_seconds: f64,
-    /// How many times as fast as one core.
+    /// Speed relative to one core.
     pub speed_up: f64,
     /// Share of the frame in which the bus was busy.
     pub utilisation: f64,
@@ -101,7 +101,7 @@ pub struct Point {
     pub queueing_pixel_seconds: f64,
     /// `replayed`, or `stepped`.
     pub method: &'static str,
-    /// Whether the machine is saturated from this number of cores on.
+    /// True where the machine is saturated from this number of cores on.
     pub is_saturated: bool,
 }
 
@@ -202,7 +202,7 @@ fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u6
     }
 }
 
-/// Where the curve levels off; `None` where it still rises at its end though the bus has room, or has no end to speak of.
+/// The point where the curve levels off; `None` where it still rises at its end though the bus has room, or has no end to speak of.
 fn saturation(points: &[Point]) -> Option<Saturation> {
     let [.., before, last] = points else { return None };
     let gain = (last.speed_up - before.speed_up) / f64::from(last.cores - before.cores);

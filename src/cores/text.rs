@@ -50,7 +50,7 @@ fn milliseconds(seconds: f64) -> String {
     format!("{:.4} ms", 1e3 * seconds)
 }
 
-/// What the curve says of the number of cores, beside what others say.
+/// Sentence on the number of cores: the curve beside what others say.
 fn verdict(scaling: &CoresResult, curve: &Curve) -> String {
     let clocks = |clocks: f64| grouped(clocks.round() as u64);
     let number = |cores: Option<f64>| cores.map_or("none".to_owned(), |cores| format!("{cores:.2}"));
@@ -78,7 +78,7 @@ fn verdict(scaling: &CoresResult, curve: &Curve) -> String {
     )
 }
 
-/// What a column of the comma-separated values holds.
+/// A column of the comma-separated values: its head and what it holds.
 type Column = (&'static str, fn(&Curve, &Point) -> String);
 
 const COLUMNS: [Column; 15] = [

@@ -39,7 +39,7 @@ pub struct VariantResult {
     pub run_hash: String,
 }
 
-/// What an extension changes.
+/// Changes that an extension makes to a picture's cost.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ExtensionResult {
     /// Version of the result.
@@ -47,7 +47,7 @@ pub struct ExtensionResult {
     pub schema: &'static str,
     /// File of the extension.
     pub file: String,
-    /// Its instructions.
+    /// Instructions of the extension.
     pub instructions: Vec<String>,
     /// Name of the scene.
     pub scene: String,
@@ -55,7 +55,7 @@ pub struct ExtensionResult {
     pub profile: &'static str,
     /// Name of the machine.
     pub machine: String,
-    /// Its cores.
+    /// Cores of the machine.
     pub cores: u32,
     /// Size of the picture in pixels.
     pub size: [u32; 2],
@@ -63,10 +63,10 @@ pub struct ExtensionResult {
     pub without: VariantResult,
     /// The replaced kernels with the extension.
     pub with: VariantResult,
-    /// The same kernels, each instruction of the extension as if the instructions of its body stood in its place, on registers of
+    /// The kernels with the extension, each instruction of it as if the instructions of its body stood in its place, on registers of
     /// their own.
     pub expanded: VariantResult,
-    /// Whether all three pictures are the same, bit for bit.
+    /// True where all three pictures are the same, bit for bit.
     pub is_identical: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What is suspicious about extension instructions that can be loaded.
+//! Suspicious things in extension instructions that can be loaded.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use isa::extension::{Act, Body, Summary};
 use isa::{Class, Counts, Isa};
 use messages::Diagnostic;
 
-/// What is likely a mistake in an instruction that was loaded, or should be known before one is built.
+/// Likely mistakes in an instruction that was loaded, and what should be known before one is built.
 pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
     let row = isa.definition(loaded.op);
     let warning = |message: String, label: &str| Diagnostic::warning(message).at(loaded.row.clone(), label);

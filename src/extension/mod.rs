@@ -1,4 +1,4 @@
-//! What an extension is worth: what its file makes one suspect, and a scene drawn without and with it.
+//! Worth of an extension: what its file makes one suspect, and a scene drawn without and with it.
 
 mod comparison;
 mod findings;

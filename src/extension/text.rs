@@ -80,7 +80,7 @@ impl ExtensionResult {
         format!("{}\n{}\n{}", self.title(), table(self.rows()), self.verdict())
     }
 
-    /// The same as Markdown.
+    /// The table as Markdown.
     pub fn markdown(&self) -> String {
         let rows = self.rows();
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));

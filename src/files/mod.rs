@@ -56,7 +56,7 @@ pub fn text(octets: Vec<u8>) -> String {
     String::from_utf8(octets).unwrap_or_else(|error| String::from_utf8_lossy(error.as_bytes()).into_owned())
 }
 
-/// Whether a result could be written there, so that a command fails before its work and not after it.
+/// Check that a result could be written to a place, so that a command fails before its work and not after it.
 ///
 /// # Errors
 /// A folder that does not exist, or a folder in the place of the file.
@@ -128,7 +128,7 @@ fn written_beside(path: &Path, octets: &[u8]) -> io::Result<NamedTempFile> {
     Ok(file)
 }
 
-/// What a new file would have, before the user's mask; temporary files are private otherwise.
+/// Permissions of a new file before the user's mask; temporary files are private otherwise.
 #[cfg(unix)]
 fn fresh_permissions() -> Option<Permissions> {
     use std::os::unix::fs::PermissionsExt;

@@ -95,7 +95,7 @@ fn transferred(linear: f64) -> u8 {
     (curved * 255.0).round() as u8
 }
 
-/// Where in a PNG the header chunk ends: 8 octets of signature, then length, name, 13 octets of content and check sum.
+/// End of the header chunk of a PNG: 8 octets of signature, then length, name, 13 octets of content and check sum.
 const HEADER_END: usize = 8 + 4 + 4 + 13 + 4;
 
 /// The chunk that says sRGB with the relative colorimetric intent, which `image` does not write: length, name, intent and check sum.

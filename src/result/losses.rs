@@ -1,4 +1,4 @@
-//! What numeric results lost, instruction by instruction: the flags of IEEE 1666, counted.
+//! Losses of numeric results, instruction by instruction: the flags of IEEE 1666, counted.
 
 use emu::code::Code;
 use emu::tally::{Losses, Tally};
@@ -8,13 +8,13 @@ use serde::Serialize;
 /// An instruction of whose results some lost something.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Loss {
-    /// Its word.
+    /// Address of the instruction in words.
     pub pc: u32,
     /// `file:line`.
     pub place: Option<String>,
-    /// Its mnemonic.
+    /// Mnemonic of the instruction.
     pub instruction: String,
-    /// How often it was executed.
+    /// Number of executions.
     pub executed: u64,
     /// Results that lost bits below the last place; a vector has three results.
     pub quantized: u64,

@@ -102,20 +102,20 @@ pub struct Render {
     pub clock_hz: u64,
     /// Length of the frame in clocks.
     pub clocks: u64,
-    /// The same in seconds.
+    /// Length of the frame in seconds.
     pub seconds: f64,
     /// Seconds a pixel.
     pub pixel_seconds: f64,
-    /// How the frame was run: `replayed` (pixels ran by themselves, and what they did was put on the machine's clock) or
+    /// Method of the run: `replayed` (pixels ran by themselves, and what they did was put on the machine's clock) or
     /// `stepped` (everything happened in the order of the clock). Nothing else depends on it.
     pub method: &'static str,
-    /// Why it could not be replayed; `None` when it was.
+    /// Reason for which the frame was not replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
-    /// What executed the cores' program: fast or checked. Nothing else depends on it.
+    /// Engine that executed the cores' program: fast or checked. Nothing else depends on it.
     pub engine: &'static str,
-    /// Why a faster engine that was wanted did not execute it; `None` where it did.
+    /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
     pub engine_because: Option<&'static str>,
-    /// Where the clocks of each core went.
+    /// Clocks of each core: computing, waiting, idle.
     pub cores: Vec<ProcessorResult>,
     /// Functions of the cores' program.
     pub functions: Vec<Region>,
@@ -154,7 +154,7 @@ pub struct Rays {
     pub shadow: u64,
 }
 
-/// Where the clocks of a processor went; `busy + waiting + idle` are the clocks of the frame.
+/// Clocks of a processor; `busy + waiting + idle` are the clocks of the frame.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ProcessorResult {
     /// Clocks of instructions.
@@ -176,9 +176,9 @@ pub struct ProcessorResult {
 /// A function or region.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Region {
-    /// Its name.
+    /// Name of the region.
     pub name: String,
-    /// How often it was entered.
+    /// Number of calls, or of entries.
     pub calls: u64,
     /// Instructions of its own.
     pub instructions: u64,
@@ -195,7 +195,7 @@ pub struct Main {
     pub instructions: u64,
     /// Operations by class.
     pub counts: ByClass,
-    /// Where its clocks went.
+    /// Clocks of the main processor.
     #[serde(flatten)]
     pub clocks: ProcessorResult,
     /// Share of the frame in which it was not idle.

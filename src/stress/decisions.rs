@@ -43,7 +43,7 @@ fn model(ray: &Ray, corners: &Corners) -> Option<(i128, i128)> {
     is_hit.then_some((along.abs(), whole.abs()))
 }
 
-/// Whether the machine's row decides as the model does and rounds t as it should.
+/// True where the machine's row decides as the model does and rounds t as it should.
 fn check(ray: &Ray, corners: &Corners) -> Result<f64, String> {
     let (t, _, _) = Nearest32.rtri([ray.origin, ray.direction], *corners, SHIFT as i32);
     let expected = model(ray, corners).map_or(i32::MAX, |(along, whole)| nearest_integer(along, whole, SHIFT));

@@ -11,9 +11,9 @@ const SIZE: f64 = (1 << 28) as f64;
 
 /// A closed mesh.
 pub struct Mesh {
-    /// What it is.
+    /// Name of the mesh.
     pub name: &'static str,
-    /// Its triangles.
+    /// Triangles of the mesh.
     pub triangles: Vec<Corners>,
 }
 

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 pub use tally::Tally;
 
-/// How many trials are made.
+/// Number of trials by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CatalogueSize {
@@ -33,7 +33,7 @@ impl CatalogueSize {
     /// Both sizes.
     pub const ALL: [CatalogueSize; 2] = [CatalogueSize::Quick, CatalogueSize::Full];
 
-    /// Its name.
+    /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             CatalogueSize::Quick => "quick",
@@ -51,17 +51,17 @@ type Work = (u64, Trials);
 /// One case.
 #[derive(Debug)]
 pub struct Case {
-    /// What the user types.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What is tried.
+    /// Description of the trials.
     pub about: &'static str,
-    /// What is measured.
+    /// Quantity that is measured.
     pub quantity: &'static str,
     /// The largest value that is allowed: of errors, or of trials that go wrong.
     pub threshold: f64,
-    /// Where the series of random numbers begins.
+    /// Beginning of the series of random numbers.
     pub seed: u64,
-    /// Whether the value is the largest error of a trial, and not the number of trials that go wrong, of which none is allowed either way.
+    /// True where the value is the largest error of a trial, and not the number of trials that go wrong, of which none is allowed either way.
     is_error: bool,
     quick: Work,
     full: Work,
@@ -72,7 +72,7 @@ impl Case {
         Case { name, about, quantity, threshold: 0.0, seed: 0, is_error: false, quick, full }
     }
 
-    /// The same for a case that measures errors.
+    /// A case that measures errors, up to a threshold.
     const fn at_most(self, threshold: f64) -> Case {
         Case { threshold, is_error: true, ..self }
     }
@@ -103,7 +103,7 @@ impl Case {
         if self.is_error { tally.worst } else { tally.failures as f64 }
     }
 
-    /// Whether the value is allowed.
+    /// True where the value is allowed.
     pub fn passes(&self, tally: &Tally) -> bool {
         tally.failures == 0 && tally.worst <= self.threshold
     }

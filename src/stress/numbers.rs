@@ -36,7 +36,7 @@ pub fn arithmetic(seed: u64, trials: Range<u64>) -> Tally {
     })
 }
 
-/// The same for all pairs: a trial is a first operand.
+/// Trials of all pairs: a trial is a first operand.
 pub fn all_pairs(_: u64, trials: Range<u64>) -> Tally {
     tally(trials, |trial| {
         let ends = 1 << (WORD - 1);

@@ -1,4 +1,4 @@
-//! What follows a hit: where secondary rays start and go.
+//! Secondary rays after a hit: their origins and directions.
 
 use std::ops::Range;
 use std::sync::LazyLock;

@@ -1,4 +1,4 @@
-//! What came of a number of trials.
+//! Outcome of a number of trials.
 
 use std::ops::Range;
 
@@ -40,7 +40,7 @@ pub fn tally(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String> + Sy
     trials.into_par_iter().map(|number| one(number, &trial)).reduce(Tally::default, Tally::plus)
 }
 
-/// The same one after the other, for trials that use all host threads themselves and wait for them.
+/// Trials one after the other, for those that use all host threads themselves and wait for them.
 pub fn tally_in_turn(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String>) -> Tally {
     trials.map(|number| one(number, &trial)).fold(Tally::default(), Tally::plus)
 }

@@ -19,7 +19,7 @@ const OUTWARDS: i32 = -1;
 
 /// A mesh on the grid of a word of 32 bits.
 pub struct Target {
-    /// Its name.
+    /// Name of the target.
     pub name: &'static str,
     /// The kernels' functions for it.
     pub twin: Twin<Nearest32>,
@@ -86,14 +86,14 @@ impl Target {
         found
     }
 
-    /// The same from a search through all triangles.
+    /// The nearest hit from a search through all triangles.
     pub fn all_crossings(&self, ray: &Ray) -> Vec<Crossing> {
         let mut all: Vec<Crossing> = (0..self.len() as u32).filter_map(|index| self.crossing(ray, index)).collect();
         all.sort_by(by_distance);
         all
     }
 
-    /// What the kernels find: the rounded t and the triangle.
+    /// Result of the kernels: the rounded t and the triangle.
     pub fn nearest(&self, ray: &Ray) -> Result<Option<(i32, u32)>, String> {
         let twin = &self.twin;
         let ray = ray::Ray::new(&twin.arithmetic, ray.origin, ray.direction);
@@ -104,7 +104,7 @@ impl Target {
         Ok(search.triangle.map(|index| (search.t, index)))
     }
 
-    /// What they should find: of the smallest rounded t the lowest index.
+    /// Result that the kernels should find: of the smallest rounded t the lowest index.
     pub fn expected(&self, crossings: &[Crossing]) -> Option<(i32, u32)> {
         let shift = self.twin.constants.along();
         let rounded = |&(t, determinant, _, index): &Crossing| (nearest_integer(t, determinant, shift), index);

@@ -13,7 +13,7 @@ pub use wave::wave;
 
 use crate::load::Load;
 
-/// What is shown, with what gives it names.
+/// A window of a trace, with what gives it names.
 pub struct Scene<'a> {
     /// Name of the scene.
     pub name: &'a str,
@@ -21,14 +21,14 @@ pub struct Scene<'a> {
     pub load: &'a Load,
     /// Clock rate in hertz.
     pub clock_hz: u64,
-    /// What happened.
+    /// Events of the window.
     pub trace: &'a Trace,
     /// All work items of the frame, in the order of their start.
     pub items: &'a [Item],
 }
 
 impl<'a> Scene<'a> {
-    /// What a frame's window shows; `None` for a frame without one.
+    /// The window of a frame; `None` for a frame without one.
     pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a Frame) -> Option<Scene<'a>> {
         Some(Scene { name, load, clock_hz, trace: frame.trace.as_ref()?, items: &frame.items })
     }
@@ -66,7 +66,7 @@ impl<'a> Scene<'a> {
         self.items.iter().filter(move |item| item.start < window.end && item.end > window.start)
     }
 
-    /// What a burst carries, in words.
+    /// Words for the cargo of a burst.
     fn cargo(&self, cargo: Cargo) -> String {
         let kind = |address: u32| {
             let found = self.load.kinds.iter().find(|(range, _)| range.contains(&address));

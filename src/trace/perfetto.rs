@@ -47,7 +47,7 @@ pub fn perfetto(scene: &Scene) -> String {
     format!("{file}\n")
 }
 
-/// What a processor does, in a word.
+/// Word for a processor's state.
 fn word(doing: Doing) -> &'static str {
     match doing {
         Doing::Busy => "busy",

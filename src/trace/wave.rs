@@ -18,7 +18,7 @@ type Octets = std::io::Cursor<Vec<u8>>;
 /// Bits of numbers: owner, octets, addresses, pixels.
 const NUMBER: u32 = 32;
 
-/// What a signal that has no value now shows.
+/// Value that a signal shows while it has none.
 const NONE: &[u8] = &[b'z'; NUMBER as usize];
 
 /// The file.
@@ -44,7 +44,7 @@ fn write(scene: &Scene) -> fst_writer::Result<Vec<u8>> {
     play(scene, &scale, &signals, header.finish()?)
 }
 
-/// How clocks become times of the file.
+/// Conversion of clocks to times of the file.
 struct Scale {
     clock_hz: u64,
     /// Times are in units of 10 to this power, in seconds.
@@ -109,7 +109,7 @@ fn declare(scene: &Scene, header: &mut FstHeaderWriter<Octets>) -> fst_writer::R
     Ok(Signals { busy, owner, address, write, octets, processors })
 }
 
-/// What changes when: a later note for the same time and signal replaces an earlier one.
+/// Changes by time and signal: a later note for the same time and signal replaces an earlier one.
 #[derive(Default)]
 struct Changes(BTreeMap<(u64, FstSignalId), Vec<u8>>);
 

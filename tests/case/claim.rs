@@ -1,8 +1,8 @@
-//! What comments say: claims about the line beside which they stand.
+//! Comments as claims about the line beside which they stand.
 
 use std::fmt;
 
-/// What a claim is about.
+/// Subject of a claim.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Subject {
     /// `s1 = 5`: a register after the line.
@@ -24,28 +24,28 @@ pub enum Subject {
 /// One claim.
 #[derive(Clone, Debug)]
 pub struct Claim {
-    /// What it is about.
+    /// Subject of the claim.
     pub subject: Subject,
-    /// What it claims.
+    /// Value that it claims.
     pub value: String,
     /// The line that it is about; 0 for none.
     pub line: usize,
-    /// Whether the claim names that line.
+    /// True where the claim names that line.
     pub names_line: bool,
 }
 
 /// A comment of claims.
 #[derive(Clone, Debug)]
 pub struct Comment {
-    /// Its line, from 1.
+    /// Line of the comment, from 1.
     pub line: usize,
     /// The statement before it, without blanks at the end.
     pub code: String,
     /// Characters before its semicolon.
     pub column: usize,
-    /// Its claims.
+    /// Claims of the comment.
     pub claims: Vec<Claim>,
-    /// What stands behind ` -- `.
+    /// Text behind ` -- `.
     pub prose: Option<String>,
 }
 
@@ -117,12 +117,12 @@ impl Claim {
         words.next().is_none().then(|| claim(subject, value))
     }
 
-    /// Whether it is about something that goes wrong.
+    /// True where it is about something that goes wrong.
     pub fn is_about_an_error(&self) -> bool {
         matches!(&self.subject, Subject::Said(head) if !head.starts_with("warning"))
     }
 
-    /// The same claim about something else.
+    /// This claim about something else.
     pub fn with_value(&self, value: String) -> Claim {
         Claim { value, ..self.clone() }
     }

@@ -13,11 +13,11 @@ use claim::{Claim, Comment};
 pub struct Case {
     /// Room and name, such as `vector/sums.s`.
     pub name: String,
-    /// Where it stands.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
-    /// Its comments that say something to the runner, in the order of the text.
+    /// Comments that say something to the runner, in the order of the text.
     pub comments: Vec<Comment>,
     /// Keys of the machine that differ from the default, as TOML.
     pub machine: String,
@@ -68,7 +68,7 @@ impl Case {
         self.name.split('/').next().unwrap_or_default()
     }
 
-    /// Whether it is about something that goes wrong.
+    /// True where it is about something that goes wrong.
     pub fn is_about_an_error(&self) -> bool {
         self.claims().any(Claim::is_about_an_error)
     }

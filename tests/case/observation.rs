@@ -1,4 +1,4 @@
-//! What a case really does: messages of the assembler, or a run on an engine that can be looked at after each line.
+//! Observation of a case: messages of the assembler, or a run on an engine that can be looked at after each line.
 
 use emu::code::Code;
 use emu::engine::{HostSimd, Wish};
@@ -13,7 +13,7 @@ use super::claim::{Claim, Subject};
 
 /// A way of walking through code; all of them must do what every case says.
 pub struct Engine {
-    /// Its name.
+    /// Name of the engine.
     pub name: &'static str,
     /// Runs a program on one core up to its halt, its trap or its step limit, which it meets exactly.
     pub run: fn(&Single, Memory) -> Result<SingleRun, Report>,
@@ -40,7 +40,7 @@ pub struct Said {
     pub text: String,
 }
 
-/// What a case did.
+/// Outcome of a case.
 pub struct Observation {
     /// Messages and the trap.
     pub said: Vec<Said>,
@@ -150,7 +150,7 @@ impl Run {
         Ok(self.after_steps(last as u64 + 1))
     }
 
-    /// What a claim would have to say: its own value where that is right.
+    /// The value that a claim would have to say: its own where that is right.
     pub fn value(&self, claim: &Claim) -> Result<String, String> {
         let at = self.after(claim.line)?;
         let octets = |address: &str, space: &[u8]| -> Result<Vec<i64>, String> {

@@ -4,7 +4,7 @@ use super::Case;
 use super::claim::{Claim, Subject};
 use super::observation::{Observation, Said};
 
-/// What would make a comment right.
+/// Change that would make a comment right.
 #[derive(Clone, Debug)]
 pub enum Remedy {
     /// This claim in its place.
@@ -26,7 +26,7 @@ pub struct Difference {
     pub claim: Option<(usize, usize)>,
     /// For a person.
     pub problem: String,
-    /// What would make it right.
+    /// Change that would make it right.
     pub remedy: Remedy,
 }
 

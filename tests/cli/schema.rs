@@ -50,7 +50,7 @@ fn session() -> Session {
     session
 }
 
-/// What is wrong with a value, by a schema's part of a root. Knows the keywords that occur; any other is a mistake.
+/// Faults of a value, by a schema's part of a root. Knows the keywords that occur; any other is a mistake.
 fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
     let mut found = Vec::new();
     if part.as_bool() == Some(true) {

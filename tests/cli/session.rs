@@ -11,7 +11,7 @@ pub struct Session {
     folder: TempDir,
 }
 
-/// What a command left behind.
+/// Outcome of a command.
 pub struct Run {
     /// Exit code.
     pub code: i32,

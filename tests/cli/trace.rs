@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::session::Session;
 
-/// What signals of a wave are at each clock of a window, by their names.
+/// Values of signals of a wave at each clock of a window, by their names.
 struct Wave {
     signals: BTreeMap<String, Vec<String>>,
 }

@@ -41,7 +41,7 @@ fn examples() -> Vec<(PathBuf, String, Vec<Kernel>)> {
     folders.into_iter().map(example).collect()
 }
 
-/// What a kernel was before: without the lines that end with `;+`, with those that begin with `;-`.
+/// The kernel before: without the lines that end with `;+`, with those that begin with `;-`.
 fn before(text: &str) -> String {
     let kept = text.lines().filter(|line| !line.ends_with(";+"));
     kept.map(|line| format!("{}\n", line.strip_prefix(";-").unwrap_or(line))).collect()

@@ -1,4 +1,4 @@
-//! What goes wrong in bodies, and what must not lead into them.
+//! Faults in bodies, and jumps that must not lead into them.
 
 use emu::registers::Registers;
 use emu::trap::Fault;

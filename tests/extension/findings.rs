@@ -1,4 +1,4 @@
-//! What `lancer extension check` warns of, each with its wording.
+//! Warnings of `lancer extension check`, each with its wording.
 
 use lancer::extension::findings;
 

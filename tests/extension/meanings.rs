@@ -84,7 +84,7 @@ impl Meaning for Total {
     }
 }
 
-/// Its two vectors in the other order; `e` is not written.
+/// Swaps its two vectors; `e` is not written.
 #[derive(Clone, Debug)]
 struct Swap;
 
@@ -120,7 +120,7 @@ impl Meaning for Fma {
     }
 }
 
-/// What was in its destination.
+/// Contents of its destination before.
 #[derive(Clone, Debug)]
 struct Spin;
 

@@ -44,7 +44,7 @@ fn is_composite(row: &InstructionDef) -> bool {
     row.outcomes.iter().any(|exit| exit.cost.elementary() > 1)
 }
 
-/// Where an operand lives: by its letter, behind the further vectors of the operands before it.
+/// Home of an operand: by its letter, behind the further vectors of the operands before it.
 fn register(row: &InstructionDef, operand: &Operand) -> Option<(char, u8)> {
     let place = |letter: u8| match letter {
         b'a' => 1,
@@ -66,7 +66,7 @@ struct Oracle<'a> {
 }
 
 impl Oracle<'_> {
-    /// What stands behind a key, on lines of their own.
+    /// Text behind a key, on lines of their own.
     fn settings<'t>(&'t self, key: &'t str) -> impl Iterator<Item = &'t str> {
         self.text.lines().filter_map(move |line| line.strip_prefix("; ")?.strip_prefix(key)?.strip_prefix(": "))
     }

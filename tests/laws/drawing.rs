@@ -6,7 +6,7 @@ use isa::InstructionDef;
 pub struct Drawing<'a> {
     /// The row.
     pub row: &'a InstructionDef,
-    /// Its 32 characters, from the lowest bit up.
+    /// The 32 characters, from the lowest bit up.
     pub bits: Vec<char>,
     /// Bits of each operand's field, from the lowest up.
     fields: Vec<Vec<usize>>,
@@ -28,7 +28,7 @@ impl<'a> Drawing<'a> {
         operands.map(|(operand, field)| operand.kind.range(field.len() as u8)).collect()
     }
 
-    /// How many numbers an operand's field could tell apart.
+    /// Count of the numbers that an operand's field could tell apart.
     pub fn values(&self, operand: usize) -> i64 {
         1 << self.fields[operand].len()
     }
@@ -41,7 +41,7 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// Whether a word has all the fixed bits.
+    /// True where a word has all the fixed bits.
     pub fn matches(&self, word: u32) -> bool {
         self.bits.iter().enumerate().all(|(place, c)| match c {
             '0' | '-' => word >> place & 1 == 0,
@@ -50,7 +50,7 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    /// Whether the unsigned field of an operand holds, in a word, a number beyond the operand's range.
+    /// True where the unsigned field of an operand holds, in a word, a number beyond the operand's range.
     pub fn is_beyond(&self, word: u32) -> bool {
         self.fields.iter().zip(self.ranges()).zip(self.row.operands.iter()).any(|((field, (_, most)), operand)| {
             let value: i64 = field.iter().enumerate().map(|(bit, &place)| i64::from(word >> place & 1) << bit).sum();

@@ -1,4 +1,4 @@
-//! How far the twins, and so the kernels, are from exact integers: decisions and distances of the triangle test, and searches through the
+//! Distance of the twins, and so the kernels, from exact integers: decisions and distances of the triangle test, and searches through the
 //! tree. Errors count units in the last place (ulp) of the result's format.
 
 use std::fmt::Write;
@@ -67,7 +67,7 @@ fn exact_dot(a: Exact, b: Exact) -> i128 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Where a ray hits a triangle, as a fraction in raw positions over raw directions: from the signs of the three edges seen from the
+/// Point at which a ray hits a triangle, as a fraction in raw positions over raw directions: from the signs of the three edges seen from the
 /// origin, in a direction that is moved by (e, e^2, e^3).
 fn exact_hit(origin: Vector, direction: Vector, vertices: &[Vector; 3]) -> Option<(i128, i128)> {
     let direction = direction.map(i128::from);

@@ -13,7 +13,7 @@ use messages::Source;
 
 use super::Subject;
 
-/// Where an operand or a result lies.
+/// Home of an operand or a result.
 #[derive(Clone, Copy, Debug)]
 pub enum Place {
     /// A scalar register: one word.
@@ -60,13 +60,13 @@ impl Place {
     }
 }
 
-/// What is done with a case.
+/// Work that is done with a case.
 pub struct Experiment {
     /// Functions of the subject's profile that take part.
     pub functions: &'static [Function],
     /// Operands, in the order of a case's words; those of the buffer come first.
     pub operands: &'static [Place],
-    /// What is done with them; s31 is not to be changed.
+    /// Instructions that work on them; s31 is not to be changed.
     pub body: &'static str,
     /// Results.
     pub results: &'static [Place],

@@ -18,7 +18,7 @@ use super::Subject;
 use super::bench::{Bench, Experiment, Place};
 use super::operands::{direction, number, point, vector, words};
 
-/// What all random operands grow from.
+/// Seed of all random operands.
 const SEED: [u8; 32] = *b"lancer: the twins and the kernel";
 
 /// Words and modes that functions are compared in.
@@ -242,7 +242,7 @@ fn exit_faces() {
     }
 }
 
-/// What a packet is in registers: number of triangles, address of the references, box.
+/// A packet in registers: number of triangles, address of the references, box.
 pub(super) const PACKET: &[Place] =
     &[Place::Scalar("packet_count"), Place::Scalar("packet_refs"), Place::Vector("box_low"), Place::Vector("box_high")];
 

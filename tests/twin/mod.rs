@@ -35,7 +35,7 @@ impl Subject {
         Ok(Subject { scene, view, image, features, modes, profile: KernelSet::Vector })
     }
 
-    /// The same with other kernels.
+    /// The subject with other kernels.
     fn with(self, profile: KernelSet) -> Subject {
         let features = SceneFeatures { skips: Skips::default().known_to(profile), ..self.features };
         Subject { features, profile, ..self }

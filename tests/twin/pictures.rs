@@ -56,7 +56,7 @@ impl Subject {
         }
     }
 
-    /// Whether there is a picture at all; fails where the two differ.
+    /// True where there is a picture at all; fails where the two differ.
     fn check(&self, crop: Crop, what: &str) -> bool {
         let (machine, twin) = (self.drawn(crop), self.drawn_by_twin(crop));
         match (&machine, &twin) {
@@ -72,7 +72,7 @@ impl Subject {
     }
 }
 
-/// How the scenes are drawn.
+/// Settings of the scenes' pictures.
 #[derive(Clone, Copy, Debug)]
 struct Setting {
     modes: Modes,

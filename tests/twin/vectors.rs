@@ -1,4 +1,4 @@
-//! How far the twins' unit vectors and secondary rays are from double precision, in units in the last place (ulp) of a direction.
+//! Distance of the twins' unit vectors and secondary rays from double precision, in units in the last place (ulp) of a direction.
 
 use std::fmt::Write;
 

@@ -70,7 +70,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
     Ok(Exit::Done)
 }
 
-/// What all instructions of a body cost together, each once.
+/// Cost of all instructions of a body together, each once.
 fn spent(isa: &Isa, op: isa::Op) -> String {
     let mut sum = Counts::ZERO;
     for step in isa.body(op).iter().flat_map(|body| &body.steps) {

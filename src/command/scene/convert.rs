@@ -47,7 +47,7 @@ pub struct ConvertArguments {
     dsc: bool,
 }
 
-/// What is written.
+/// Formats that a scene is converted to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ConversionTarget {
     /// A description with its mesh.

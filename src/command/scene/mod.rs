@@ -42,7 +42,7 @@ pub(super) fn execute(arguments: &SceneArguments, terminal: &mut Terminal) -> Re
     }
 }
 
-/// How much a scene holds, in short.
+/// Contents of a scene, in short.
 fn parts(scene: &Scene) -> String {
     format!(
         "{}, {}, {}",

@@ -15,7 +15,7 @@ const LONGEST: usize = 12;
 /// Most instructions among which the parts of a sequence lie.
 const WIDEST: usize = 20;
 
-/// What an instruction does with the local buffer.
+/// Accesses of an instruction to the local buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Access {
     None,
@@ -33,9 +33,9 @@ pub struct Item {
     reads: Registers,
     writes: Registers,
     buffer: Access,
-    /// Whether nothing may change places with it.
+    /// True where nothing may change places with it.
     is_fence: bool,
-    /// Whether it may become part of another one.
+    /// True where it may become part of another one.
     is_plain: bool,
 }
 
@@ -65,7 +65,7 @@ impl Item {
         Item { words, made: None, reads, writes, buffer, is_fence: !is_plain, is_plain }
     }
 
-    /// Whether two instructions must keep their order.
+    /// True where two instructions must keep their order.
     fn conflicts(&self, other: &Item) -> bool {
         self.is_fence
             || other.is_fence
@@ -83,7 +83,7 @@ impl Item {
 /// A sequence that could be one instruction.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The same for sequences that the same instruction can take the place of.
+    /// Key of sequences that the same instruction can take the place of.
     pub key: String,
     /// The instruction.
     pub pattern: Pattern,
@@ -91,7 +91,7 @@ pub struct Candidate {
     pub fields: Vec<u8>,
     /// From the first of its items to the last one.
     pub window: Range<usize>,
-    /// Whether other items stand between its own.
+    /// True where other items stand between its own.
     pub is_apart: bool,
     picks: Vec<usize>,
     before: Vec<usize>,
@@ -101,13 +101,13 @@ pub struct Candidate {
 /// A basic block, or the part of one that belongs to one region.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// Its words.
+    /// Words of the block.
     pub range: Range<usize>,
     /// The function that it belongs to.
     pub function: &'static str,
-    /// How often it was executed.
+    /// Number of executions.
     pub count: u64,
-    /// Its instructions.
+    /// Instructions of the block.
     pub items: Vec<Item>,
     /// Sequences in it; `None` when they have to be looked for again.
     pub candidates: Option<Vec<Candidate>>,
@@ -211,7 +211,7 @@ impl Block {
         choices
     }
 
-    /// What has to come before and after the instruction for some items, of those between; `None` where the order does not allow it.
+    /// The items that have to come before and after the instruction for some items, of those between; `None` where the order does not allow it.
     fn arrange(&self, picks: &[usize]) -> Option<(Vec<usize>, Vec<usize>)> {
         let (mut before, mut after): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         for at in picks[0]..=*picks.last()? {

@@ -1,4 +1,4 @@
-//! Where control goes in a program, and which registers may still be read.
+//! Flow of control in a program, and the registers that may still be read.
 
 use isa::{Instruction, Isa, Kind, Op, Program};
 
@@ -29,9 +29,9 @@ pub fn bits(kind: Kind, number: u8) -> Registers {
 
 /// A program, decoded, with what follows what.
 pub struct Flow {
-    /// Its instructions.
+    /// Instructions of the program.
     pub instructions: Vec<Option<Instruction>>,
-    /// Where each branch or call leads to.
+    /// Targets of each branch or call.
     pub targets: Vec<Option<usize>>,
     /// Words at which control may arrive from elsewhere than the word before.
     pub is_leader: Vec<bool>,

@@ -28,9 +28,9 @@ const LEAST_SHARE: f64 = 0.0005;
 /// One instruction in the place of a sequence.
 #[derive(Clone, Debug)]
 pub struct Suggestion {
-    /// Its name.
+    /// Name of the suggested instruction.
     pub name: String,
-    /// Its row.
+    /// Row of the suggested instruction.
     pub row: String,
     /// Lines of its body.
     pub lines: Vec<String>,
@@ -40,7 +40,7 @@ pub struct Suggestion {
     pub places: usize,
     /// Places where other instructions stood between those of the sequence.
     pub apart: usize,
-    /// How often it is executed.
+    /// Number of executions.
     pub executions: u64,
     /// Clocks of its instructions, one after the other.
     pub serial: u64,
@@ -48,7 +48,7 @@ pub struct Suggestion {
     pub critical: u64,
 }
 
-/// What a run suggests.
+/// Suggestions from a run.
 #[derive(Clone, Debug)]
 pub struct Suggestions {
     /// The instructions, the one that saves most first.
@@ -71,7 +71,7 @@ impl Suggestion {
 }
 
 impl Suggestions {
-    /// How much faster the cores compute at most when a suggested instruction takes as long as its chain (Amdahl).
+    /// Speed-up of the cores at most, when a suggested instruction takes as long as its chain (Amdahl).
     pub fn speedup(&self, found: &Suggestion) -> f64 {
         let saved = found.executions * (found.serial - found.critical);
         self.clocks as f64 / self.clocks.saturating_sub(saved).max(1) as f64
@@ -157,7 +157,7 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
     }
 }
 
-/// Where an instruction has been put.
+/// Sites of one instruction in the program.
 #[derive(Default)]
 struct Sites {
     pattern: Option<Pattern>,

@@ -35,7 +35,7 @@ struct Unit {
 /// Rooms of instructions that need nothing but the core.
 const ROOMS: [&str; 6] = ["scalar", "integer", "vector", "wide", "ray", "local"];
 
-/// Whether an instruction may be part of another.
+/// True where an instruction may be part of another.
 pub fn is_plain(instruction: &Instruction, isa: &Isa) -> bool {
     let row = isa.definition(instruction.op);
     ROOMS.contains(&&*row.room)

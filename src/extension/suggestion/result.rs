@@ -1,4 +1,4 @@
-//! What suggestions look like as JSON.
+//! Suggestions as JSON.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -22,7 +22,7 @@ pub struct SuggestionResult {
     pub profile: &'static str,
     /// Name of the machine.
     pub machine: String,
-    /// Its cores.
+    /// Cores of the machine.
     pub cores: u32,
     /// Size of the picture in pixels.
     pub size: [u32; 2],
@@ -41,9 +41,9 @@ pub struct SuggestionResult {
 /// An instruction that would pay.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SuggestionEntry {
-    /// Its name.
+    /// Name of the suggested instruction.
     pub name: String,
-    /// Its row.
+    /// Row of the suggested instruction.
     pub row: String,
     /// The lines of its body.
     pub body: Vec<String>,
@@ -53,7 +53,7 @@ pub struct SuggestionEntry {
     pub places: u64,
     /// Those of them where other instructions stood between those of the sequence.
     pub apart: u64,
-    /// How often it is executed.
+    /// Number of executions.
     pub executions: u64,
     /// Instructions that it saves.
     pub saved: u64,
@@ -61,12 +61,12 @@ pub struct SuggestionEntry {
     pub serial_clocks: u64,
     /// Clocks along the longest chain of its results.
     pub critical_clocks: u64,
-    /// How many times faster the cores compute at most, when it takes as long as that chain.
+    /// Speed-up of the cores at most, when it takes as long as that chain.
     pub speedup: f64,
 }
 
 impl SuggestionResult {
-    /// What was suggested for a picture.
+    /// Suggestions for a picture.
     pub fn new(job: &Job, suggestions: &Suggestions, files: Vec<String>, comparison: Option<ExtensionResult>) -> Self {
         let entries = suggestions.found.iter().map(|found| SuggestionEntry {
             name: found.name.clone(),

@@ -31,7 +31,7 @@ impl Majors {
         }
     }
 
-    /// Whether an instruction fits whose operands have so many bits.
+    /// True where an instruction fits whose operands have so many bits.
     pub fn has_room(&self, bits: u32) -> bool {
         let shares = bits + SELECTOR <= MOST_BITS && self.shared.is_some_and(|(_, count)| count < 1 << SELECTOR);
         shares || !self.free.is_empty()

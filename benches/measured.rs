@@ -1,0 +1,201 @@
+//! Writes docs/measured.md, the page of figures that depend on a host and a day: each with the host, the commit and the command line that
+//! gave it. `cargo bench --bench measured` measures all of its parts, `cargo bench --bench measured -- build pictures` those that are named; the
+//! others stay as they are.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+/// A section of the page.
+struct Part {
+    /// Name on the command line.
+    name: &'static str,
+    /// Heading.
+    title: &'static str,
+    /// Sentences before the figures.
+    about: &'static str,
+    /// Lines of commands; `lancer` is the program of this build.
+    commands: &'static [&'static str],
+}
+
+/// The sections but that of the build.
+const PARTS: &[Part] = &[
+    Part {
+        name: "pictures",
+        title: "Pictures",
+        about: "Engines beside the native twin and double precision, one host thread and two.",
+        commands: &["lancer bench --profiles ray,vector", "lancer bench slabs cornell --threads 2"],
+    },
+    Part {
+        name: "demo",
+        title: "First picture",
+        about: "The demo, which draws the Cornell box in 320 x 240 pixels and measures it.",
+        commands: &["lancer"],
+    },
+    Part {
+        name: "replay",
+        title: "Replay",
+        about: "Recorded transfers a second on one host thread, by machine and number of cores.",
+        commands: &["cargo bench --bench replay -- cornell"],
+    },
+    Part {
+        name: "cores",
+        title: "Machines with several numbers of cores",
+        about: "All clocks of a picture of 640 x 480 pixels, with one core and with four.",
+        commands: &["lancer cores cornell --size 640x480 --cores 1,4 --machine report"],
+    },
+    Part {
+        name: "loops",
+        title: "Loops",
+        about: "The intersection loop by itself beside native code, and instructions of extensions.",
+        commands: &["cargo bench --bench intersection", "cargo bench --bench extension"],
+    },
+    Part {
+        name: "trees",
+        title: "Trees",
+        about: "Building kd trees of landscapes.",
+        commands: &["cargo bench --package lancer-scenes --bench kdtree"],
+    },
+];
+
+/// Changes to the release profile, each of which undoes one lever of the build, with what it is called.
+const LEVERS: &[(&str, &[&str])] = &[
+    ("as it is", &[]),
+    (
+        "line tables, nothing stripped",
+        &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
+    ),
+    (
+        "every package at opt-level 3",
+        &[
+            "profile.release.package.\"*\".opt-level=3",
+            "profile.release.package.lancer.opt-level=3",
+            "profile.release.package.asm.opt-level=3",
+        ],
+    ),
+    (
+        "colour management at opt-level 3",
+        &["profile.release.package.moxcms.opt-level=3", "profile.release.package.pxfm.opt-level=3"],
+    ),
+    ("the command line at opt-level 3", &["profile.release.package.lancer.opt-level=3"]),
+    ("one codegen unit", &["profile.release.codegen-units=1"]),
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Output of a command; its words stand between blanks.
+fn output(line: &str) -> Result<String, String> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let program = if words[0] == "lancer" { env!("CARGO_BIN_EXE_lancer") } else { words[0] };
+    let output = Command::new(program).args(&words[1..]).current_dir(root()).output();
+    let output = output.map_err(|error| format!("{line}: {error}"))?;
+    let text = |octets: &[u8]| String::from_utf8_lossy(octets).trim_end().to_owned();
+    match output.status.success() {
+        true => Ok(text(&output.stdout)),
+        false => Err(format!("{line}: {}", text(&output.stderr))),
+    }
+}
+
+/// Host, compiler and commit, in a line.
+fn host() -> String {
+    let cpus = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = cpus.lines().find_map(|line| line.strip_prefix("model name")?.split(": ").nth(1).map(str::to_owned));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().unwrap_or("?").to_owned();
+    let said = |line: &str| output(line).unwrap_or_else(|_| "?".into());
+    let day = said("git show --no-patch --format=%cs HEAD");
+    format!(
+        "{}, {threads} threads, load before {load}; {}; commit {} of {day}",
+        model.unwrap_or_else(|| "unknown processor".into()),
+        said("rustc --version"),
+        said("git rev-parse --short=10 HEAD"),
+    )
+}
+
+/// CPU seconds of all commands that have ended; `None` where the system does not tell.
+fn cpu_seconds() -> Option<f64> {
+    // Behind the name, which ends with `)`: fields 16 and 17 of proc(5) are ticks of children in user and system mode.
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<u64> = stat.rsplit(") ").next()?.split(' ').filter_map(|field| field.parse().ok()).collect();
+    // The state, which is a letter, has been dropped: field 4 is the first number, so 16 is the thirteenth.
+    Some((fields.get(12)? + fields.get(13)?) as f64 / 100.0)
+}
+
+/// The commands of a part with what they print.
+fn part(part: &Part) -> Result<String, String> {
+    let mut text = format!("{}\n\n{}.\n", part.about, host());
+    for command in part.commands {
+        let start = Instant::now();
+        let printed = output(command)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let _ = write!(text, "\n```console\n$ {command}    # {seconds:.1} s\n{printed}\n```\n");
+    }
+    Ok(text)
+}
+
+/// A table of builds from nothing, each with one lever undone.
+fn build() -> Result<String, String> {
+    let mut text = format!(
+        "`cargo build --release` from nothing, each line with one lever of `Cargo.toml` undone by `--config`.\n\n{}.\n\n\
+         | build | seconds | CPU seconds | MB |\n|---|---|---|---|\n",
+        host()
+    );
+    let target = root().join("target/measured");
+    for (name, changes) in LEVERS {
+        let _ = std::fs::remove_dir_all(&target);
+        let mut command = Command::new("cargo");
+        command.args(["build", "--release", "--quiet", "--bin", "lancer", "--target-dir"]).arg(&target);
+        for change in *changes {
+            command.args(["--config", change]);
+        }
+        let (start, before) = (Instant::now(), cpu_seconds());
+        let status = command.current_dir(root()).status().map_err(|error| error.to_string())?;
+        if !status.success() {
+            return Err(format!("{name}: the build fails"));
+        }
+        let cpu =
+            cpu_seconds().zip(before).map_or_else(|| "-".into(), |(after, before)| format!("{:.0}", after - before));
+        let octets = std::fs::metadata(target.join("release/lancer")).map_or(0, |file| file.len());
+        let seconds = start.elapsed().as_secs_f64();
+        let _ = writeln!(text, "| {name} | {seconds:.0} | {cpu} | {:.1} |", octets as f64 / 1e6);
+    }
+    let _ = std::fs::remove_dir_all(&target);
+    Ok(text)
+}
+
+/// The page with a section in the place of the one of its title, or at its end.
+fn with_section(page: &str, title: &str, section: &str) -> String {
+    let mut parts: Vec<String> = page.split("\n## ").map(str::to_owned).collect();
+    let new = format!("{title}\n{section}");
+    match parts.iter_mut().skip(1).find(|part| part.lines().next() == Some(title)) {
+        Some(part) => *part = new,
+        None => parts.push(new),
+    }
+    let parts: Vec<&str> = parts.iter().map(|part| part.trim_end()).collect();
+    parts.join("\n\n## ") + "\n"
+}
+
+fn main() -> Result<(), String> {
+    let named: Vec<String> = std::env::args().skip(1).filter(|name| !name.starts_with("--")).collect();
+    let is_wanted = |name: &str| named.is_empty() || named.iter().any(|one| one == name);
+    let path: PathBuf = root().join("docs/measured.md");
+    let mut page = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let mut sections: Vec<(&str, String)> = Vec::new();
+    if is_wanted("build") {
+        sections.push(("Build", build()?));
+    }
+    for one in PARTS.iter().filter(|part| is_wanted(part.name)) {
+        sections.push((one.title, part(one)?));
+    }
+    if sections.is_empty() {
+        return Err(format!("parts are build, {}", PARTS.iter().map(|part| part.name).collect::<Vec<_>>().join(", ")));
+    }
+    for (title, section) in sections {
+        page = with_section(&page, title, &section);
+    }
+    std::fs::write(&path, page).map_err(|error| format!("{}: {error}", path.display()))
+}

@@ -84,6 +84,7 @@ pub fn render(job: &Job) -> Result<Drawing, Failure> {
 /// A scene that does not fit its formats, errors in the user's kernels, a machine out of its ranges, a trap.
 pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) -> Result<Drawing, Failure> {
     let start = Instant::now();
+    // Build tree, memory image and programs, and the reference's hierarchy.
     let (load, image) = Load::picture(job)?;
     let reference = match comparison {
         Comparison::Reference => Some(Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?),
@@ -91,6 +92,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     };
     let crop = load.build.crop;
     let built = Instant::now();
+    // Run the machine, with the reference beside it on a thread of its own.
     let has_profile = job.detail == Detail::Functions;
     let (has_losses, engine) = (job.flags, job.engine);
     let options = machine::Options { has_profile, has_items: true, has_losses, engine, ..machine::Options::default() };
@@ -103,12 +105,14 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     });
     let (frame, run) = frame;
     let mut frame = frame?;
+    // Totals of functions take time while running; without them only exclusive counts are known.
     if !has_profile {
         let code = |program| Code::new(program, &load.isa, job.machine.timing());
         frame.profile = Some(Profile::exclusive(&code(&load.build.cores), &frame.tally));
         frame.main_profile = Some(Profile::exclusive(&code(&load.build.main), &frame.main_tally));
     }
     let (reference, reference_time) = reference.map_or((None, Duration::ZERO), |(picture, time)| (Some(picture), time));
+    // Read the picture out of global memory and measure it.
     let words = colour_words(&image, &frame, &crop);
     let picture = picture(&image, &words, (crop.width, crop.height));
     let error = reference.as_ref().and_then(|reference| metrics::compare(&picture, reference));

@@ -115,9 +115,11 @@ pub fn measure(
             result.pictures.push(ProfileResult::new(&job, &drawing::draw(&job, Comparison::Reference, &mut |_| {})?));
             done();
         }
+        // Each profile against the one before it.
         let pairs = result.pictures[first..].windows(2);
         result.ratios.extend(pairs.map(|pair| Ratio::new(&pair[1], &pair[0])));
     }
+    // The first profile has none before it.
     let means: Vec<Ratio> = KernelSet::ALL[1..].iter().filter_map(|profile| mean(&result.ratios, *profile)).collect();
     result.ratios.extend(means);
     Ok(result)
@@ -134,6 +136,7 @@ fn job(scene: &Scene, size: (u32, u32), profile: KernelSet) -> Job {
 /// Instructions of the functions that walk the tree and intersect, inner regions included.
 fn search_instructions(spent: &Profile) -> u64 {
     let is_search = |name: &str| name.parse().is_ok_and(|function: Function| function.is_search());
+    // A region counts for the function around it.
     let outermost = |mut at: usize| {
         while let Some(parent) = spent.regions[at].parent {
             at = parent.into();

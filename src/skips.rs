@@ -113,6 +113,7 @@ fn compare(job: &Job, ways: Vec<Way>, done: &dyn Fn()) -> Result<SkipsResult, Fa
             Ok((way, drawing))
         })
         .collect::<Result<_, Failure>>()?;
+    // The picture without any skip is what the others are held against.
     let (_, plain) = &drawings[0];
     Ok(SkipsResult {
         schema: SCHEMA,
@@ -139,10 +140,12 @@ fn ways(job: &Job) -> Vec<Way> {
         Way { name: name.to_owned(), description: description.to_owned(), job }
     };
     let mut ways = vec![way(NONE, "Nothing.", Skips::NONE)];
+    // Each skip that the kernels know, alone.
     let known = Skip::ALL.iter().filter(|&&skip| job.kernels.profile.knows(skip));
     ways.extend(known.map(|&skip| way(skip.name(), skip.description(), Skips::NONE.with(skip))));
     ways.push(way(ALL, "All of these.", Skips::ALL));
     let difference = job.kernels.interpolate.unwrap_or(DIFFERENCE);
+    // Interpolation changes the picture, so it comes last and claims nothing.
     let mut interpolated = way("interpolate", "All, and pixels whose corners agree are interpolated.", Skips::ALL);
     interpolated.job.kernels.interpolate = Some(difference);
     ways.push(interpolated);

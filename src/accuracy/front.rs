@@ -13,7 +13,9 @@ pub fn rank(measured: &mut [MeasuredVariant]) {
         other_scene == scene && other_clocks <= clocks && other_error <= error && is_better
     };
     let all = 0..measured.len();
+    // A variant is on the front when no other beats it.
     let is_on_front: Vec<bool> = all.clone().map(|here| !all.clone().any(|other| beats(other, here))).collect();
+    // Name one that does and is on the front itself; there always is one, since beating is transitive.
     for here in all.clone() {
         let by = all.clone().find(|&other| is_on_front[other] && beats(other, here));
         measured[here].is_on_front = is_on_front[here];

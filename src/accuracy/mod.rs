@@ -182,6 +182,7 @@ pub fn measure(
     variant: &Variant,
     has_times: bool,
 ) -> Result<MeasuredVariant, Failure> {
+    // Draw the variant.
     let mut job = Job::new(scene.clone());
     job.view = View { bounces: variant.bounces, ..view.clone() };
     job.kernels.profile = variant.profile;
@@ -194,12 +195,15 @@ pub fn measure(
     let start = Instant::now();
     let mut drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
     let host = start.elapsed();
+    // Measure it against the scene as it was given, and against the vertices that the format could hold: the difference is the cost of rounding the mesh.
     let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
     drawing.image.bytes = drawing.frame.memory.octets().to_vec();
     let stored = drawing.image.stored_scene(scene).expect("an image that was built can be read");
     let stored = Reference::framed(&stored, scene.bounds(), view, SearchMethod::Hierarchy)?.picture().picture;
+    // Measure camera rays by themselves on the stored grid.
     let rays = RayErrors::new(&drawing.image, &job, view.size);
     let result = Render::new(&job, &drawing);
+    // Counts are told a pixel, so that sizes can be compared.
     let pixels = f64::from(result.width) * f64::from(result.height);
     let each = |total: u64| total as f64 / pixels;
     Ok(MeasuredVariant {

@@ -52,6 +52,7 @@ impl JobArguments {
     pub fn job(&self) -> Result<Job, Failure> {
         let arguments = self;
         let camera = camera(&arguments.view)?;
+        // Read the scene, and remember all files for the message that a result would overwrite one.
         let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), arguments.view.size)?;
         let mut job = Job::new(loaded.scene);
         job.warnings = loaded.warnings;
@@ -60,6 +61,7 @@ impl JobArguments {
         job.files.push(PathBuf::from(&arguments.machine.machine));
         job.files.extend(arguments.kernels.extensions.extensions.iter().cloned());
         job.isa = arguments.kernels.extensions.isa()?;
+        // Look at it.
         job.view = View {
             size: arguments.view.size.unwrap_or(job.scene.size),
             camera,
@@ -69,6 +71,7 @@ impl JobArguments {
             bounces: arguments.effort.bounces,
         };
         check_size(job.view.size)?;
+        // Choose the machine and change what options say otherwise.
         (job.machine_name, job.machine) = machine::find(&arguments.machine.machine)?;
         job.engine = arguments.machine.engine;
         adjust(&mut job.machine, &arguments.machine, &arguments.numbers);
@@ -76,6 +79,7 @@ impl JobArguments {
         job.kd_depth = arguments.effort.tree.kd_depth;
         job.kd_method = arguments.effort.tree.kd_build;
         job.formats = overrides::collect(&arguments.numbers.formats);
+        // Choose the kernels; files that replace functions are read here.
         job.kernels.profile = arguments.kernels.profile;
         job.kernels.interpolate = arguments.effort.interpolate;
         job.kernels.skips = arguments.effort.skips();

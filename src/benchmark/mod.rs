@@ -89,6 +89,7 @@ pub struct BenchResult {
 pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<BenchResult>, Failure> {
     let (load, mut image) = Load::picture(job)?;
     image.bytes = load.memory.octets().into_owned();
+    // Prepare everything that is not measured: programs, the reference's hierarchy, counts of instructions and rays.
     let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
     let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &job.kernels);
     let modes = job.machine.arithmetic.modes();
@@ -105,6 +106,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let own_packet = load.build.cores.symbols.get(Function::OwnPacket.name());
     let other_rays = own_packet.map_or(0, |&pc| counted.tally.word(&code, pc as u32).instructions);
 
+    // Each runner once a round, so that a slow moment of the host meets all of them.
     let mut times: [Vec<f64>; Runner::ALL.len()] = Default::default();
     for _ in 0..runs {
         for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
@@ -129,6 +131,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
             after_run();
         }
     }
+    // Tell medians and least times; ratios are those of medians.
     let seconds: Vec<(f64, f64)> = times.iter_mut().map(|times| median(times)).collect();
     let of = |runner: Runner| seconds[Runner::ALL.iter().position(|other| *other == runner).unwrap_or(0)];
     let (twin, _) = of(Runner::Twin);

@@ -47,6 +47,7 @@ fn most_cores(scaling: &CoresResult) -> f64 {
 
 /// Measured speed-ups as lines with dots, the closed form dashed, the queueing estimate dotted, knees as vertical lines.
 fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
+    // Scale the axes to all machines, with room for the legend above.
     let widest = most_cores(scaling) + 0.5;
     let points = scaling.machines.iter().flat_map(|curve| &curve.points);
     let highest = points.map(|point| point.speed_up).fold(scaling.report_quotient, f64::max) * 1.15;
@@ -58,12 +59,14 @@ fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
         .y_label_area_size(48)
         .build_cartesian_2d(0.0..widest, 0.0..highest)?;
     chart.configure_mesh().x_desc("cores").y_desc("times one core").light_line_style(WHITE).draw()?;
+    // Draw the report's quotient once, upright.
     let upright = |cores: f64| [(cores, 0.0), (cores, highest)];
     chart
         .draw_series(DashedLineSeries::new(upright(scaling.report_quotient), 2, 4, GREY.stroke_width(1)))?
         .label(format!("the report's C / M = {:.2}", scaling.report_quotient))
         .legend(|(x, y)| PathElement::new([(x, y), (x + 16, y)], GREY));
     for (curve, colour) in scaling.machines.iter().zip(COLOURS.into_iter().cycle()) {
+        // Turn times into speed-ups over the same machine with one core.
         let alone = curve.points.first().map_or(0.0, |point| point.pixel_seconds);
         let series = |value: fn(&super::Point) -> f64| -> Vec<(f64, f64)> {
             curve.points.iter().map(|point| (f64::from(point.cores), value(point))).collect()
@@ -72,6 +75,7 @@ fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
             let ratio = |(cores, seconds): (f64, f64)| (cores, if seconds > 0.0 { alone / seconds } else { 0.0 });
             series(seconds).into_iter().map(ratio).collect()
         };
+        // Draw theory below what was measured.
         let measured = series(|point| point.speed_up);
         chart.draw_series(DashedLineSeries::new(against(|p| p.bound_pixel_seconds), 7, 4, colour.stroke_width(1)))?;
         chart.draw_series(DashedLineSeries::new(
@@ -85,6 +89,7 @@ fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
             .draw_series(LineSeries::new(measured, colour.stroke_width(2)))?
             .label(name(curve))
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], colour.stroke_width(2)));
+        // Mark the knee where the curve has one.
         if let Some(saturation) = curve.saturation {
             chart
                 .draw_series(LineSeries::new(upright(saturation.cores), colour.stroke_width(1)))?

@@ -123,15 +123,18 @@ pub fn measure(
     cores: &[u32],
     progress: &mut dyn FnMut(u64),
 ) -> Result<CoresResult, Failure> {
+    // One core is the measure of all others, so it is always among them.
     let mut cores: Vec<u32> = std::iter::once(1).chain(cores.iter().copied()).collect();
     cores.sort_unstable();
     cores.dedup();
+    // All machines with all numbers of cores in one run: what only differs in time is computed once.
     let with = |config: &Config| cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>();
     let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
     let Some(first) = configs.first() else { return Err(no_machine()) };
     let setup = load.setup(first, Options { engine: load.engine, ..Options::default() });
     let frames = emu::run_all(&setup, &configs, &load.memory, progress);
     let frames = frames.into_iter().collect::<Result<Vec<Frame>, _>>()?;
+    // Frames come back in the order of the configurations: machine by machine, fewest cores first.
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
         let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();
         Curve { formats: load.formats.as_ref().map(Formats::from), ..curve(name, config, &points) }
@@ -157,6 +160,7 @@ fn share(part: u64, whole: u64) -> f64 {
 fn curve(name: &str, config: &Config, frames: &[(u32, &Frame)]) -> Curve {
     let (_, alone) = frames[0];
     let pixels = alone.item_count.max(1) as f64;
+    // Computing and transfers of a pixel, as one core shows them.
     let demand =
         Demand { computing: alone.processors[0].busy.0 as f64 / pixels, transfer: alone.bus.busy.0 as f64 / pixels };
     let mut points: Vec<Point> =
@@ -205,6 +209,7 @@ fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u6
 /// The point where the curve levels off; `None` where it still rises at its end though the bus has room, or has no end to speak of.
 fn saturation(points: &[Point]) -> Option<Saturation> {
     let [.., before, last] = points else { return None };
+    // A curve that still rises at its end has a knee only where the bus is full already.
     let gain = (last.speed_up - before.speed_up) / f64::from(last.cores - before.cores);
     if gain >= LEVEL && last.utilisation < FULL {
         return None;

@@ -113,9 +113,11 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
         // A file of another kind would otherwise be refused word by word.
         messages.0.len() < 5
     };
+    // Walk from token to token; `@4 0000000c` puts the word 12 at word 4, over zeros behind the last word before.
     let mut at = 0;
     while let Some(first) = text[at..].find(|letter: char| !letter.is_whitespace()).map(|skipped| at + skipped) {
         let rest = &text[first..];
+        // Skip comments of a line, then comments between marks.
         if rest.starts_with("//") {
             at = first + rest.find('\n').unwrap_or(rest.len());
             continue;
@@ -128,14 +130,17 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
             at = first + end + 2;
             continue;
         }
+        // A token ends at white space or where a comment begins.
         let end = first + rest.find(|letter: char| letter.is_whitespace() || letter == '/').unwrap_or(rest.len());
         let end = end.max(first + 1);
         at = end;
         let token = text.get(first..end).unwrap_or_default();
+        // Read an address behind `@` or a word; `_` between digits says nothing.
         let digits = token.strip_prefix('@').unwrap_or(token).replace('_', "");
         let is_plain = digits.chars().all(|digit| digit.is_ascii_hexdigit());
         let goes_on = match is_plain.then(|| u32::from_str_radix(&digits, 16).ok()).flatten() {
             Some(address) if token.starts_with('@') => {
+                // Addresses only go forward, so that no word is written twice.
                 let is_possible = (words.len()..=WORDS).contains(&(address as usize));
                 if is_possible {
                     words.resize(address as usize, 0);

@@ -297,9 +297,12 @@ impl Render {
     /// The results of a drawing, without host times.
     pub fn new(job: &Job, drawing: &Drawing) -> Render {
         let frame = &drawing.frame;
+        // Tell the cores from the main processor, which comes after the last of them.
         let (cores, main) = frame.processors.split_at(job.machine.cores as usize);
         let main_use = main.first().copied().unwrap_or_default();
+        // A whole picture has no crop in its result.
         let whole = (drawing.crop.width, drawing.crop.height) == job.view.size;
+        // Sum the operations of both programs, each over all that execute it.
         let counts = frame.profile.as_ref().map(Profile::total).unwrap_or_default();
         let main_counts = frame.main_profile.as_ref().map(Profile::total).unwrap_or_default();
         let crop = [drawing.crop.column, drawing.crop.row, drawing.crop.width, drawing.crop.height];
@@ -312,6 +315,7 @@ impl Render {
             height: drawing.crop.height,
             crop: (!whole).then_some(crop),
             triangles: job.scene.triangles.len(),
+            // Pixels and rays: camera rays are the pixels that were not interpolated.
             interpolated: drawing.interpolated(),
             rays: Rays::new(drawing.words.len() as u64 - drawing.interpolated(), frame.profile.as_ref()),
             instructions: cores.iter().map(|core| core.instructions).sum(),
@@ -321,6 +325,7 @@ impl Render {
             clocks: frame.clocks.0,
             seconds: frame.seconds(job.machine.clock_hz),
             pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
+            // How the host did it, which changes nothing else.
             method: frame.method.name(),
             stepped_because: frame.method.reason(),
             engine: drawing.engine.kind.name(),
@@ -332,6 +337,7 @@ impl Render {
                 instructions: main.iter().map(|main| main.instructions).sum(),
                 counts: ByClass(main_counts),
                 clocks: ProcessorResult::new(&main_use, frame.waits.get(cores.len())),
+                // Share of the frame in which it was not idle; a frame of no clocks has none.
                 load: (main_use.busy + main_use.waiting).0 as f64 / frame.clocks.0.max(1) as f64,
                 functions: regions(frame.main_profile.as_ref(), true),
             },
@@ -359,6 +365,7 @@ impl Render {
             run_hash: String::new(),
             host: None,
         };
+        // The hash is over all that stands above, so it comes last.
         result.run_hash = run_hash(&result);
         result
     }
@@ -384,6 +391,7 @@ impl Rays {
             let named = |region: &&RegionProfile| region.is_function && region.name == function.name();
             regions.iter().find(named).map_or(0, |region| region.calls)
         };
+        // Each ray but a camera ray starts in its own packet; those that are neither reflected nor refracted are shadow rays.
         let (reflected, refracted) = (calls(Function::Reflect), calls(Function::Refract));
         let shadow = calls(Function::OwnPacket).saturating_sub(reflected + refracted);
         Rays { camera: pixels, reflected, refracted, shadow }

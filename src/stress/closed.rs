@@ -33,6 +33,7 @@ pub fn closed_meshes(seed: u64, trials: Range<u64>) -> Tally {
         let mut towards = point(target, random);
         let mut origin = start(random);
         for k in 0..3 {
+            // One coordinate in eight makes the ray run at right angles to an axis, one in eight lies in a plane of the tree.
             match random.below(8) {
                 0 => origin[k] = towards[k],
                 1 => towards[k] = split(target, random, k).unwrap_or(towards[k]),
@@ -79,6 +80,7 @@ pub fn zero_directions(seed: u64, trials: Range<u64>) -> Tally {
 fn point(target: &Target, random: &mut Random) -> Vector {
     let [a, b, c] = *target.corners(random.below(target.len()) as u32);
     match random.below(4) {
+        // Vertices of the meshes are multiples of four, so these points are exact.
         0 => std::array::from_fn(|k| (a[k] + b[k]) / 2),
         1 => std::array::from_fn(|k| (a[k] + b[k]) / 4 + c[k] / 2),
         _ => a,

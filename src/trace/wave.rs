@@ -149,6 +149,7 @@ fn play(
             changes.number(first, pixel, None);
         }
     }
+    // Things that end.
     let bursts = || scene.trace.bursts.iter().filter(|burst| burst.start < window.end && burst.end > window.start);
     let pixel = |core: u32| signals.processors[core as usize].pixel;
     for burst in bursts().filter(|burst| burst.end < window.end) {
@@ -168,6 +169,7 @@ fn play(
             changes.number(at(item.end), signal, None);
         }
     }
+    // Things that begin.
     for burst in bursts() {
         let start = at(burst.start);
         changes.bit(start, signals.busy, true);
@@ -188,6 +190,7 @@ fn play(
             changes.number(at(item.start), signal, Some(item.subject[0] as u32));
         }
     }
+    // States of processors, which have no gaps.
     for (lines, spans) in signals.processors.iter().zip(&scene.trace.processors) {
         for span in spans {
             let state: &[u8] = match span.doing {
@@ -198,6 +201,7 @@ fn play(
             changes.0.insert((at(span.start), lines.state), state.to_vec());
         }
     }
+    // Write the changes in the order of their times, each time once.
     let mut now = None;
     for ((time, signal), value) in &changes.0 {
         if now != Some(*time) {
@@ -206,6 +210,7 @@ fn play(
         }
         body.signal_change(*signal, value)?;
     }
+    // The file ends with the window even where nothing changes there.
     let end = scale.time(window.end);
     if now.is_none_or(|now| now < end) {
         body.time_change(end)?;

@@ -169,6 +169,7 @@ impl Block {
         if !items[first].is_plain || !items[last].is_plain {
             return Vec::new();
         }
+        // All of the window, where nothing in it keeps it from being one instruction.
         let mut choices: Vec<Vec<usize>> = Vec::new();
         if items[first..=last].iter().all(|item| item.is_plain) {
             choices.push((first..=last).collect());
@@ -185,12 +186,14 @@ impl Block {
             });
             writers.filter(|&at| items[at].is_plain)
         };
+        // Follow the last instruction's operands to what made them, until nothing new comes.
         let mut at = 0;
         while at < needed.len() {
             let new: Vec<usize> = sources(needed[at]).filter(|source| !needed.contains(source)).collect();
             needed.extend(new);
             at += 1;
         }
+        // The same in both directions: what made an operand, and what else uses a result.
         let mut at = 0;
         while at < related.len() {
             let here = related[at];
@@ -200,6 +203,7 @@ impl Block {
             related.extend(new);
             at += 1;
         }
+        // A choice counts in the window of its own first instruction alone, so that none is found twice.
         for mut picks in [needed, related] {
             picks.sort_unstable();
             picks.dedup();
@@ -217,12 +221,14 @@ impl Block {
         for at in picks[0]..=*picks.last()? {
             let item = &self.items[at];
             let follows = |others: &[usize]| others.iter().any(|&other| self.items[other].conflicts(item));
+            // A part of the sequence moves to the place of the instruction, so it must not depend on anything put behind it.
             if picks.contains(&at) {
                 if follows(&after) {
                     return None;
                 }
                 continue;
             }
+            // Another item goes behind the instruction when it depends on a part of it or on something behind it already.
             let earlier = &picks[..picks.partition_point(|&pick| pick < at)];
             if follows(earlier) || follows(&after) { after.push(at) } else { before.push(at) }
         }
@@ -232,6 +238,7 @@ impl Block {
     fn candidate(&self, picks: Vec<usize>, flow: &Flow, isa: &Isa, timing: &Timing) -> Option<Candidate> {
         let (before, after) = self.arrange(&picks)?;
         let window = picks[0]..picks.last()? + 1;
+        // Registers that are read after the window, or by what is moved behind the instruction.
         let behind = self.items[window.end..].iter();
         let live = behind.rev().fold(self.live, |live, item| item.live_before(live));
         let live = after.iter().rev().fold(live, |live, &at| self.items[at].live_before(live));
@@ -248,6 +255,7 @@ impl Block {
         let Candidate { pattern, fields, window, picks, before, after, .. } = candidate;
         let parts = || picks.iter().map(|&at| &self.items[at]);
         let (reads, writes) = pattern.registers(fields);
+        // The new instruction takes the words, registers and buffer accesses of its parts together.
         let made = Item {
             words: parts().flat_map(|item| item.words.clone()).collect(),
             made: Some(line),

@@ -79,7 +79,9 @@ impl Flow {
     /// Finds what may be read after each word, from the ends backwards.
     fn follow(&mut self, isa: &Isa) {
         let words = self.instructions.len();
+        // A call through a register may lead anywhere, and each return then as well.
         let has_unknown = self.instructions.iter().flatten().any(|found| found.op == Op::callr);
+        // List the words that may follow each word; `None` is any word.
         let next: Vec<Option<Vec<usize>>> = (0..words)
             .map(|pc| {
                 let found = self.instructions[pc].as_ref()?;
@@ -93,6 +95,8 @@ impl Flow {
                 })
             })
             .collect();
+        // Repeat from the last word to the first until nothing changes: what is read before a word is what is read after it, without what it
+        // writes, with what it reads. Sets only grow, so this ends.
         let mut before: Vec<Registers> = vec![0; words + 1];
         loop {
             let mut is_done = true;

@@ -80,6 +80,7 @@ impl Suggestions {
 
 /// Finds up to `most` instructions.
 pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggestions {
+    // Decode both programs, and count how often each word ran.
     let isa = &job.isa;
     let program = &drawing.build.cores;
     let timing = job.machine.timing();
@@ -99,10 +100,12 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
             functions.push((function, own));
         }
     }
+    // Take the sequence that saves most, put the instruction in all of its places, and look again: what is left may form others.
     let total: u64 = counts.iter().sum();
     let mut majors = Majors::new(isa);
     let mut found: Vec<Suggestion> = Vec::new();
     while found.len() < most {
+        // Sum what each sequence would save over all blocks.
         let mut totals: BTreeMap<&str, (u64, u32)> = BTreeMap::new();
         for block in functions.iter_mut().flat_map(|(_, blocks)| blocks) {
             block.search(&flow, isa, &timing);
@@ -118,11 +121,13 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
                 }
             }
         }
+        // Choose the one that saves most, of equal ones the one with fewest operand bits, as long as it is worth an opcode.
         let fitting = totals.into_iter().filter(|(_, (_, bits))| majors.has_room(*bits));
         let best = fitting.max_by_key(|&(_, (saved, bits))| (saved, std::cmp::Reverse(bits)));
         let Some((key, _)) = best.filter(|&(_, (saved, _))| saved as f64 >= LEAST_SHARE * total as f64) else { break };
         let key = key.to_owned();
         let mnemonic = format!("{name}{}", found.len() + 1);
+        // Replace it wherever it stands; each replacement changes the block, so the search starts anew.
         let mut sites = Sites::default();
         for block in functions.iter_mut().flat_map(|(_, blocks)| blocks) {
             loop {
@@ -139,6 +144,7 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
         let name = mnemonic;
         found.push(Suggestion { name, row, lines, functions, places, apart, executions, serial, critical });
     }
+    // Write the functions that changed as files that serve them.
     let scene = crate::job::result_name(&job.scene);
     let kernels =
         functions.iter().filter(|(function, _)| found.iter().any(|one| one.functions.contains(&function.name())));

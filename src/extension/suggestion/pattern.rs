@@ -54,12 +54,16 @@ impl Pattern {
         isa: &Isa,
         timing: &Timing,
     ) -> Option<(Pattern, Vec<u8>)> {
+        // Collect what the sequence reads and writes, register by register. Of `mul s3, s1, s2; add s4, s3, s5` with s3 dead behind it,
+        // s4 becomes `d`, s1, s2 and s5 become `a`, `b` and `c`, and s3 the temporary `t0`.
         let units = units(instructions, isa)?;
         let (mut operands, mut fields, mut names) = (Vec::new(), Vec::new(), Vec::new());
+        // Letters of written, changed and read operands, each list taken from its end.
         let mut letters = [vec!['e', 'd'], vec!['y', 'x'], vec!['c', 'b', 'a']];
         let mut temporaries = [0u8; 3];
         for unit in &units {
             let file = ['s', 'v', 'w'].iter().position(|file| *file == unit.file)?;
+            // What is written and not read later needs no operand.
             let class = match (unit.is_written, unit.is_read_first) {
                 (true, true) => Some(1),
                 (true, false) if bits(unit.kind, unit.first) & live != 0 => Some(0),
@@ -80,6 +84,7 @@ impl Pattern {
                 }
             });
         }
+        // Refuse what a word has no bits or fields for, and what the hidden wide registers cannot hold.
         let width: u32 = operands.iter().map(|(_, kind)| u32::from(kind.width().unwrap_or(0))).sum();
         let wides =
             operands.iter().filter(|(letter, kind)| "dexy".contains(*letter) && kind.register_file() == Some('w'));
@@ -87,6 +92,7 @@ impl Pattern {
         if width > MOST_BITS || operands.len() > isa::pattern::MAX_FIELDS || hidden > 8 || operands.is_empty() {
             return None;
         }
+        // Write the lines of the body with the letters in the places of registers.
         let name = |file: char, number: u8| -> String {
             let unit = units.iter().position(|unit| unit.file == file && unit.first == number);
             unit.map_or_else(|| "s0".to_owned(), |at| names[at].clone())

@@ -201,8 +201,10 @@ impl Assembler<'_> {
 
     pub(crate) fn second_pass(&mut self) {
         self.is_last_pass = true;
+        // Report the names that decided the layout and were not known, then compute what `.equ` left open.
         self.report_early();
         self.resolve_pending();
+        // Put in what waited for names.
         for fixup in std::mem::take(&mut self.fixups) {
             match fixup {
                 Fixup::Instruction { op, arguments, pc } if self.body.is_some() => {
@@ -227,6 +229,7 @@ impl Assembler<'_> {
                 },
             }
         }
+        // Assertions see the final values.
         for (expression, text, _) in std::mem::take(&mut self.asserts) {
             match self.evaluate(&expression) {
                 Ok(0) => {
@@ -246,6 +249,7 @@ impl Assembler<'_> {
     pub(crate) fn finish(mut self) -> Attempt {
         let symbols = self.map();
         self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
+        // Constants that were known late appear in the listing with their values.
         for (place, name) in std::mem::take(&mut self.pending_records) {
             if let Some(SymbolValue::Constant(value)) = self.names.get(name).map(|symbol| &symbol.value) {
                 self.records[place].value = Some(*value);
@@ -255,6 +259,7 @@ impl Assembler<'_> {
             .into_iter()
             .flat_map(|(file, count)| (0..count).map(move |number| format!("{file}{number}")))
             .collect();
+        // Names by kind, for suggestions: only those that the place of the mistake could have.
         let known = |among: Among| -> Vec<&str> {
             match among {
                 Among::Instructions => (self.operations.keys().copied())

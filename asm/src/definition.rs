@@ -199,6 +199,7 @@ impl Assembler<'_> {
                 .suggest(register_text, crate::message::Among::Registers));
         };
         cursor.end()?;
+        // A name must neither hide a register nor a symbol.
         if looks_like_register(text) || is_function(text) {
             self.check_name(text, at)?;
         }
@@ -209,6 +210,7 @@ impl Assembler<'_> {
             );
         }
         let scope = self.aliases.last_mut().expect("the outermost scope is never closed");
+        // Once more with the same register is no mistake: two files may say so.
         match scope.get(text) {
             Some(other) if other.register != register => {
                 let (file, number) = other.register;

@@ -45,6 +45,7 @@ pub fn disassemble(words: &[u32], isa: &Isa) -> String {
 }
 
 fn code(words: &[u32], names: BTreeMap<i64, String>, isa: &Isa) -> String {
+    // Decode everything and collect where branches lead.
     let decoded: Vec<Option<Instruction>> = words.iter().map(|&word| isa.decode(word)).collect();
     let mut targets: BTreeSet<i64> = BTreeSet::new();
     for (pc, instruction) in decoded.iter().enumerate() {
@@ -53,12 +54,14 @@ fn code(words: &[u32], names: BTreeMap<i64, String>, isa: &Isa) -> String {
             targets.insert(target);
         }
     }
+    // Names of the program first; `L0`, `L1`, ... for the other targets, past names that are taken.
     let taken: BTreeSet<String> = names.values().cloned().collect();
     let mut numbered = (0..).map(|number| format!("L{number}")).filter(|label| !taken.contains(label));
     let mut labels = names;
     for target in targets {
         labels.entry(target).or_insert_with(|| numbered.next().expect("there is no last number"));
     }
+    // Write a line a word, so that the text assembles to the same words at the same places.
     let mut text = String::new();
     for (pc, (instruction, word)) in decoded.iter().zip(words).enumerate() {
         if let Some(label) = labels.get(&(pc as i64)) {
@@ -75,6 +78,7 @@ fn code(words: &[u32], names: BTreeMap<i64, String>, isa: &Isa) -> String {
         };
         let _ = writeln!(text, "    {line}");
     }
+    // A branch may lead right behind the last word.
     if let Some(label) = labels.get(&(words.len() as i64)) {
         let _ = writeln!(text, "{label}:");
     }

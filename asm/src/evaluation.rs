@@ -44,6 +44,7 @@ impl Assembler<'_> {
 
     /// The stack after these steps.
     fn run(&self, steps: &[(Step, At)]) -> Result<Vec<i64>, Failure> {
+        // Reverse Polish: `2 + 3 * x` is 2, 3, x, *, +.
         let mut stack: Vec<i64> = Vec::with_capacity(8);
         let mut next = 0;
         while let Some((step, at)) = steps.get(next) {
@@ -67,6 +68,7 @@ impl Assembler<'_> {
                 Step::Complement => !pop(),
                 Step::Not => i64::from(pop() == 0),
                 Step::Truth => i64::from(pop() != 0),
+                // `a && b` skips b when a is 0, `a || b` when it is not; what is skipped may even be without a value.
                 Step::UnlessZero(end) => {
                     if pop() != 0 {
                         continue;
@@ -89,6 +91,7 @@ impl Assembler<'_> {
                     let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
                     let a = pop();
                     let is_half = matches!(name, Function::Low | Function::High);
+                    // A literal in a format is meant with its sign, so 0.9 in 32 fraction bits is no number of 32 bits.
                     if is_half && a > i64::from(i32::MAX) && has_fixed(steps) {
                         let fits = Err((explain::RANGE, "the number does not fit 32 bits with its sign"));
                         checked(fits, &|| format!("of {a}"))?;

@@ -60,12 +60,14 @@ fn without_comments(text: &str) -> (Cow<'_, str>, Option<usize>) {
     let mut new = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
+        // Blanks keep all offsets, so that places in messages stay true.
         let length = if rest.starts_with("/*") {
             let end = rest[2..].find("*/").map(|end| end + 4);
             new.extend(rest[..end.unwrap_or(rest.len())].bytes().map(|octet| if octet == b'\n' { '\n' } else { ' ' }));
             let Some(end) = end else { return (new.into(), Some(text.len() - rest.len())) };
             rest = &rest[end..];
             continue;
+        // A line comment hides the beginning of a block comment.
         } else if starts_comment(rest) {
             rest.find('\n').unwrap_or(rest.len())
         } else if first == '"' {
@@ -154,6 +156,7 @@ impl Assembler<'_> {
         let frame = self.frames.last_mut()?;
         let line = frame.lines.get(frame.next)?;
         frame.next += 1;
+        // Lines of a macro are read in the context of the call, so that messages can name it.
         let context = frame.context.unwrap_or(line.context);
         let line = match &frame.substitution {
             Some(substitution) => line.substituted(substitution, context),
@@ -165,6 +168,7 @@ impl Assembler<'_> {
         };
         self.lines_read += 1;
         self.octets_read += line.text.len();
+        // Count what was read, expansions included: a short text can ask for endless lines.
         let excess = if self.lines_read > LINES {
             Some(format!("the program has more than {LINES} lines with all its expansions"))
         } else if self.octets_read > TEXT_OCTETS {

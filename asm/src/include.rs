@@ -14,6 +14,7 @@ impl Assembler<'_> {
             Err(Problem::new(code, message, at, label))
         };
         let from = at.source;
+        // The same name in the same file is the same source, read once.
         let known = self.included.get(&(name.to_string(), from)).copied();
         let index = match known {
             Some(index) => index,
@@ -22,6 +23,7 @@ impl Assembler<'_> {
                     Ok(source) => source,
                     Err(why) => return refuse(self, explain::INCLUDE, format!("cannot include `{name}`"), why),
                 };
+                // Two names may lead to one file.
                 let same = self.program.sources.iter().position(|other| other.name == source.name);
                 let index = same.unwrap_or(self.program.sources.len());
                 if index > SOURCES {
@@ -39,6 +41,7 @@ impl Assembler<'_> {
                 index as u16
             }
         };
+        // A file that is still being read would come again without end.
         if self.frames.iter().any(|frame| frame.origin == Origin::File(index)) {
             let message = format!("`{name}` includes itself");
             return refuse(self, explain::DEPTH, message, "it is being read already".into());

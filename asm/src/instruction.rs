@@ -79,6 +79,7 @@ fn legend(row: &InstructionDef) -> String {
 impl Assembler<'_> {
     /// Assembles an instruction, a pseudo-instruction or a macro call.
     pub(crate) fn instruction(&mut self, name: &str, at: At, cursor: &mut Cursor) {
+        // Macros come first: they may have an instruction's name.
         if let Some(definition) = self.macros.get(name).cloned() {
             self.call_macro(&definition, at, cursor);
             return;
@@ -88,6 +89,7 @@ impl Assembler<'_> {
         }
         let op = self.operations.get(name).copied();
         let pseudo = crate::pseudo::find(name);
+        // A word of zeros keeps the place, so that later labels and messages are right.
         if op.is_none() && pseudo.is_none() {
             if !self.is_incomplete {
                 let problem = self.unknown_instruction(name, at, cursor.is_at_end());
@@ -128,6 +130,7 @@ impl Assembler<'_> {
             return;
         };
         let pc = self.program.words.len();
+        // In a body a step takes the place of the word.
         let encoded = match self.body {
             None => self.encode(op, &arguments, pc),
             Some(_) => self.encode_step(op, &arguments, pc).map(|act| {
@@ -145,6 +148,7 @@ impl Assembler<'_> {
                         other => self.report_failure(other),
                     }
                 }
+                // Names that come further on: keep the operands, with today's values of those that may change.
                 if is_later {
                     for argument in &mut arguments {
                         if let Value::Expression(expression) = &mut argument.value {
@@ -169,6 +173,7 @@ impl Assembler<'_> {
             let kind = row.operands[place].kind;
             let Some(operand) = rest.next() else { break };
             let known = |value: u8| Argument { value: Value::Known(value.into()), at: operand.at };
+            // An operand of the text may be two of the row: `8(s2)` is an address and its offset.
             match &operand.written {
                 Written::Memory(offset, (file, number), register_at) if takes_offset(row, place) => {
                     if *file == 's' {
@@ -198,6 +203,7 @@ impl Assembler<'_> {
             }
             place += 1;
         }
+        // Only tell the number of operands when each of them was right.
         let left = rest.count();
         if left > 0 || place < row.operands.len() {
             if is_right {

@@ -85,14 +85,17 @@ pub fn write(program: &Program) -> Vec<u8> {
         count(file, text.len());
         file.extend(text.as_bytes());
     };
+    // Write the head: 8 octets that say what the file is, then the entry.
     file.extend(MAGIC);
     file.extend(VERSION.to_le_bytes());
     file.extend([0, 0]);
     file.extend(program.entry.to_le_bytes());
+    // Write what runs.
     count(&mut file, program.words.len());
     program.words.iter().for_each(|word| file.extend(word.to_le_bytes()));
     count(&mut file, program.buffer.len());
     file.extend(&program.buffer);
+    // Write what ties it to the source: names in order, sources with their text, a line a word, regions.
     count(&mut file, program.symbols.len());
     for (name, value) in &program.symbols {
         text(&mut file, name);
@@ -114,6 +117,7 @@ pub fn write(program: &Program) -> Vec<u8> {
         file.extend(region.parent.unwrap_or(NONE).to_le_bytes());
     }
     program.region_of.iter().for_each(|region| file.extend(region.unwrap_or(NONE).to_le_bytes()));
+    // The checksum covers everything before it.
     file.extend(crc32fast::hash(&file).to_le_bytes());
     file
 }
@@ -175,6 +179,7 @@ fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Pie
 
 fn parts(input: &[u8]) -> Piece<'_, Result<Program, &'static str>> {
     let (input, (reserved, entry, word_count)) = (le_u16, le_u32, le_u32).parse(input)?;
+    // Sizes come from the file, so octets are taken before anything is allocated for them.
     let count = word_count as usize;
     let (input, octets) = take(4 * u64::from(word_count) as usize)(input)?;
     let words = octets.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect();
@@ -188,6 +193,7 @@ fn parts(input: &[u8]) -> Piece<'_, Result<Program, &'static str>> {
     let (input, regions) = list(input, region_count as usize, |input| (text, le_u8, le_u16).parse(input))?;
     let (input, places) = list(input, count, le_u16)?;
     let region = |number: u16| (number != NONE).then_some(number);
+    // The shape was right; contents may still be wrong, which is another error.
     let build = || {
         if reserved != 0 {
             return Err("reserved octets are not 0");

@@ -40,6 +40,7 @@ impl Assembler<'_> {
             self.give_up(Problem::new(explain::DEPTH, message, at, "one too many"));
             return Ok(());
         }
+        // The same name in the same surroundings goes on with the region that is there.
         let parent = self.regions.last().map(|open| open.index);
         let key = (String::from(name), is_function, parent);
         let index = match self.known_regions.get(&key) {
@@ -57,6 +58,7 @@ impl Assembler<'_> {
             }
         };
         self.regions.push(OpenRegion { index, is_function, at: name_at });
+        // Register names of a function end with it.
         if is_function {
             self.aliases.push(HashMap::new());
         }

@@ -76,6 +76,7 @@ impl Assembler<'_> {
 
     fn statement(&mut self, cursor: &mut Cursor) -> Parsed<()> {
         let is_skipping = self.is_skipping();
+        // Labels: any number of them before the statement.
         while let (Some(first), Some(second)) = (cursor.peek(), cursor.peek_second()) {
             let is_name = matches!(first.kind, Kind::Name | Kind::Directive | Kind::Integer);
             if !is_name || second.kind != Kind::Mark(":") {
@@ -89,6 +90,7 @@ impl Assembler<'_> {
         }
         let Some(first) = cursor.peek() else { return Ok(()) };
         let (text, at) = (cursor.text(first), cursor.at(first));
+        // Inside of a branch that is not taken only conditions are looked at.
         if is_skipping {
             let steers = text.starts_with(".if") || matches!(text, ".elseif" | ".else" | ".endif");
             if !steers {

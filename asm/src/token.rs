@@ -135,6 +135,7 @@ pub(crate) fn tokens(line: &str) -> (Vec<Token>, Option<Unreadable>) {
             return (found, None);
         }
         let start = line.len() - rest.len();
+        // The first octet tells the kind.
         let parsed = match rest.as_bytes()[0] {
             b'0'..=b'9' => number(rest),
             b'.' => alt((directive, mark)).parse(rest),
@@ -197,6 +198,7 @@ pub(crate) fn text_octets(literal: &str) -> Result<Vec<u8>, (usize, usize)> {
     let mut rest = inner;
     while let Some(c) = rest.chars().next() {
         let start = 1 + inner.len() - rest.len();
+        // Anything but a backslash stands for itself.
         if c != '\\' {
             octets.extend_from_slice(&rest.as_bytes()[..c.len_utf8()]);
             rest = &rest[c.len_utf8()..];
@@ -210,6 +212,7 @@ pub(crate) fn text_octets(literal: &str) -> Result<Vec<u8>, (usize, usize)> {
             'r' => b'\r',
             'b' => 0x08,
             'f' => 0x0c,
+            // Up to three octal digits: `\1019` is an `A` and a 9.
             '0'..='7' => {
                 let digits: String = rest[1..].chars().take(3).take_while(|digit| digit.is_digit(8)).collect();
                 length = 1 + digits.len();
@@ -253,6 +256,7 @@ pub(crate) fn integer_value(text: &str) -> Result<u64, String> {
     if let Some(wrong) = digits.chars().find(|c| !c.is_digit(radix)) {
         return Err(format!("`{wrong}` is not a {base} digit"));
     }
+    // C and other assemblers read `012` as ten.
     if radix == 10 && digits.len() > 1 && digits.starts_with('0') {
         return Err("a leading 0 could mean octal: write `0o` before octal digits, or leave it out".into());
     }

@@ -215,6 +215,7 @@ impl InstructionDef {
     /// Checks that operands, pattern and outcomes fit together.
     pub const fn check(operands: &[Operand], pattern: &BitPattern, outcomes: usize) -> Result<(), DefinitionError> {
         let mut at = 0;
+        // Each operand: a letter of its own, of the right group, with a field as wide as its kind.
         while at < operands.len() {
             let Operand { letter, kind } = operands[at];
             let mut before = 0;
@@ -239,6 +240,7 @@ impl InstructionDef {
             }
             at += 1;
         }
+        // Every operand has a field by now, so equal numbers mean that no field is left over.
         if pattern.field_count() != operands.len() {
             return Err(DefinitionError::Spare);
         }

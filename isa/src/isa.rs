@@ -112,6 +112,7 @@ impl Isa {
 
     fn enter(&mut self, op: Op) {
         let pattern = self.definition(op).pattern;
+        // A pattern may leave some of the major bits to operands; then several values lead to it.
         for major in 0..64u32 {
             if (major << 26 ^ pattern.value) & pattern.mask >> 26 << 26 == 0 {
                 self.by_major[major as usize].push(op);
@@ -214,6 +215,7 @@ impl Isa {
 
     /// Decodes a word; `None` when no row matches or a register or component does not exist.
     pub fn decode(&self, word: u32) -> Option<Instruction> {
+        // The six top bits leave a few candidates, of which at most one matches since patterns do not overlap.
         let op = self.by_major[(word >> 26) as usize]
             .iter()
             .copied()
@@ -222,10 +224,12 @@ impl Isa {
         let mut fields = Fields::default();
         for operand in definition.operands.iter() {
             let field = definition.pattern.field(operand.letter)?;
+            // 0x8000 in a signed field of 16 bits is 32768 - 65536.
             let raw = i64::from(word >> field.shift) & ((1 << field.width) - 1);
             let is_negative = operand.kind.is_signed() && raw >> (field.width - 1) == 1;
             let value = if is_negative { raw - (1 << field.width) } else { raw };
             let (least, most) = operand.kind.range(field.width);
+            // A group that would reach beyond its register file, or a fourth component.
             if value < least || value > most {
                 return None;
             }
@@ -251,6 +255,7 @@ impl Isa {
             if value < least || value > most {
                 return Err(EncodeError::Range { operand: place, value, least, most });
             }
+            // Two's complement: the low bits of a negative number in the range.
             word |= (value as u32 & ((1u64 << field.width) - 1) as u32) << field.shift;
         }
         Ok(word)
@@ -285,6 +290,7 @@ impl Instruction {
         while at < definition.operands.len() {
             let operand = definition.operands[at];
             let value = self.fields.get(operand.letter);
+            // An address register and the offset behind it are one operand of the text: `8(s2)`.
             let next_is_offset = definition.operands.get(at + 1).is_some_and(|next| next.kind == Kind::Off);
             if next_is_offset && operand.kind.register_file() == Some('s') {
                 let offset = self.fields.get(definition.operands[at + 1].letter);

@@ -64,12 +64,15 @@ pub const CUSTOM: [(&str, &str); 4] =
 impl BitPattern {
     /// Reads a pattern.
     pub const fn parse(text: &str) -> Result<BitPattern, PatternError> {
+        // From the top bit down. `vlt`, for example, is "010000 ddddd aaaaa bbbbb ------ 10100": value 0x4000_0014, mask 0xfc00_07ff, and the
+        // fields d at 21, a at 16, b at 11, of 5 bits each.
         let text = text.as_bytes();
         let empty = Field { letter: 0, shift: 0, width: 0 };
         let mut pattern = BitPattern { value: 0, mask: 0, fields: [empty; MAX_FIELDS], count: 0 };
         let mut bits = 0;
         let mut at = 0;
         let mut last = 0;
+        // A name in the place of the six major bits.
         if let Some(value) = custom_major(text) {
             pattern.value = value << 26;
             pattern.mask = 0x3f << 26;
@@ -83,21 +86,25 @@ impl BitPattern {
                 continue;
             }
             bits += 1;
+            // Further ones are only counted, for the message.
             if bits > 32 {
                 continue;
             }
             let shift = 32 - bits as u8;
             match c {
+                // A dash is a fixed 0, so that words with another bit there stay free for later.
                 b'0' | b'1' | b'-' => {
                     pattern.mask |= 1 << shift;
                     pattern.value |= ((c == b'1') as u32) << shift;
                 }
                 _ if is_letter(c) => {
+                    // The same letter goes on: its field grows downwards.
                     if c == last {
                         let field = &mut pattern.fields[pattern.count as usize - 1];
                         field.shift = shift;
                         field.width += 1;
                     } else {
+                        // A letter that comes back would be a second piece of its field.
                         if pattern.field(c).is_some() {
                             return Err(PatternError::Split(c));
                         }

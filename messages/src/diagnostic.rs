@@ -102,11 +102,13 @@ impl Diagnostic {
             Severity::Warning => Level::WARNING,
             Severity::Note { .. } => Level::NOTE,
         };
+        // The first line, with the code in brackets.
         let mut title = level.primary_title(self.message.as_str());
         if let Some(code) = self.code {
             title = title.id(code);
         }
         let mut group = Group::with_title(title);
+        // One snippet a place; where its line was cut, the renderer's column is mended below.
         let mut columns = Vec::new();
         if let Some((place, label)) = &self.place {
             let (with, cut) = with_snippet(group, place, label, AnnotationKind::Primary);
@@ -122,6 +124,7 @@ impl Diagnostic {
         if let Some(hint) = &self.hint {
             groups.push(Group::with_title(Level::HELP.secondary_title(hint.as_str())));
         }
+        // Plain characters draw the margin, so that files and terminals of all kinds show it.
         let renderer = if is_coloured { Renderer::styled() } else { Renderer::plain() };
         let text = renderer.decor_style(DecorStyle::Ascii).render(&groups);
         columns.into_iter().fold(text, |text, (wrong, right)| text.replacen(&wrong, &right, 1))

@@ -23,6 +23,7 @@ pub(crate) fn with_snippet<'a>(
 ) -> (Group<'a>, Option<(String, String)>) {
     let text = &place.source.text;
     let from = floor_boundary(text, place.span.start);
+    // Find the line, and cut it around the place when it is long.
     let line_start = text[..from].rfind('\n').map_or(0, |at| at + 1);
     let line_end = text[from..].find('\n').map_or(text.len(), |at| from + at);
     let cut_start = if from - line_start > SHOWN / 2 { floor_boundary(text, from - SHOWN / 2) } else { line_start };
@@ -32,6 +33,7 @@ pub(crate) fn with_snippet<'a>(
     let shown = text[cut_start..cut_end].trim_end_matches('\r');
     let before = if cut_start > line_start { CUT } else { "" };
     let behind = if cut_end < line_end { CUT } else { "" };
+    // Places in the part that is shown, dots in front of it included.
     let clamp = |at: usize| before.len() + (at - cut_start).min(shown.len());
     let name = place.source.name.as_str();
     let snippet = Snippet::source(format!("{before}{shown}{behind}"))

@@ -2,6 +2,7 @@
 
 /// The name of `known` nearest to `name`, when near enough to be what was meant.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    // One slip in three letters.
     let allowed = (name.chars().count() / 3).max(1);
     known
         .into_iter()

@@ -26,6 +26,7 @@ pub(super) fn assemble(
     source: &Arc<Source>,
     include: Loader,
 ) -> Result<(Body, Summary, Report), Report> {
+    // An assembler of its own: names of the body are not those of the program.
     let options = Options { include, ..Options::default() };
     let mut assembler = assembler::new(isa, &options);
     assembler.take_options(source);
@@ -33,6 +34,7 @@ pub(super) fn assemble(
     let row_line = source.line_column(row_at.span.start).0 as u32;
     let template = Template { op, row: row.clone(), row_line, steps: Vec::new(), places: Vec::new(), is_shared: true };
     assembler.body = Some(template);
+    // What all bodies share comes first; instructions are refused there.
     assembler.enter(Frame::new(shared, Origin::File(0)), At::default());
     assembler.read_frames();
     if let Some(template) = &mut assembler.body {
@@ -58,6 +60,7 @@ fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place)
     let Template { row, mut steps, .. } = template;
     let end = steps.len();
     let mut body = Body { steps: steps.clone(), source: source.clone(), temporaries: [0; 3] };
+    // A step from which control falls off the end, or an empty body.
     let runs_on = (0..end).find(|&step| body.successors(step, isa).any(|next| next == end));
     if let Some(step) = runs_on.or((end == 0).then_some(0)) {
         if row.outcomes.len() > 1 {
@@ -75,6 +78,7 @@ fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place)
         steps.push(Step { act: Act::End { outcome: 0, jumps: false }, line });
         body.steps = steps;
     }
+    // Count hidden registers: temporaries, and a copy of each destination in the worst case.
     for (place, file) in ['s', 'v', 'w'].into_iter().enumerate() {
         let hidden = registers::hidden(file);
         let used = temporaries(&body, isa, file);

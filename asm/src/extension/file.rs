@@ -49,6 +49,7 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
                 continue;
             }
         };
+        // The row has a line of its own; the body begins below.
         let Some(lines) = body_lines(&block.lines, source, drawn.end) else {
             let end = drawn.end..drawn.end + source.text[drawn.end..].find('\n').unwrap_or(0);
             report.0.push(error(
@@ -61,6 +62,7 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
             continue;
         };
         let each_at = drawn.each_at.clone().map(|span| Place::new(source, span));
+        // Enter the row, then its body: a row with a wrong body is reported and keeps its name.
         let found =
             add(isa, source, drawn, block.doc, parts.name.as_deref().unwrap_or_default()).and_then(|mut found| {
                 let is_empty = lines.iter().all(|line| crate::token::tokens(&line.text).0.is_empty());
@@ -117,6 +119,7 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
         report.0.push(error(explain::SIZE, message, source, 0..1, "starts here"));
         return parts;
     }
+    // Split the file: what stands between `.instr` and `.end` belongs to an instruction, the rest to all of them.
     let (lines, unclosed) = file_lines(&source.text, 0);
     if let Some(at) = unclosed {
         let span = at.start as usize..at.end as usize;
@@ -130,11 +133,13 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
         let at = line.at_all();
         let place = Place::new(source, at.start as usize..at.end as usize);
         let word = leading_directive(&line.text);
+        // Comments of macros are no documentation of the next instruction.
         match word {
             Some(".macro") => macro_depth += 1,
             Some(".endm") => macro_depth = macro_depth.saturating_sub(1),
             _ => {}
         }
+        // Inside a block only its end and the directives of extensions are looked at.
         if let Some((block, _)) = &mut open {
             match word {
                 Some(".end") => parts.blocks.extend(open.take().map(|(block, _)| block)),
@@ -172,6 +177,7 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
                 report.0.push(message.at(place, "nothing is open"));
             }
             _ => {
+                // Lines with `;;` document the instruction that follows them.
                 let text = line.text.trim();
                 match text.strip_prefix(";;") {
                     Some(text) if macro_depth == 0 => {

@@ -70,12 +70,14 @@ impl Template {
             let message = format!("the body of `{}` does not own `{text}`", self.row.name);
             return Err(Problem::new(explain::BODY, message, at, "belongs to the program").hint(self.owns()));
         }
+        // Operands of the row by their letters.
         if let &[letter] = text.as_bytes()
             && let Some(operand) = self.operand(letter)
             && let Some(file) = operand.kind.register_file()
         {
             return Ok(Some((file, registers::operand(letter, 0))));
         }
+        // Temporaries: `t` for scalars, `tv` and `tw` for the other files.
         for (prefix, file) in TEMPORARIES {
             let Some(digits) = text.strip_prefix(prefix).filter(|digits| !digits.is_empty()) else { continue };
             let is_plain = digits.bytes().all(|c| c.is_ascii_digit()) && (digits == "0" || !digits.starts_with('0'));
@@ -246,6 +248,7 @@ impl Assembler<'_> {
         for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
             let width = row.pattern.field(operand.letter).map_or(32, |field| field.width);
             let range = operand.kind.range(width);
+            // Immediates `i` and `j` have a place each.
             let place = usize::from(operand.letter == b'j');
             let number = match &argument.value {
                 Value::Known(number) if operand.kind.register_file().is_some() => {
@@ -260,6 +263,7 @@ impl Assembler<'_> {
                     .evaluate(expression)
                     .and_then(|target| self.distance(expression, target, step))
                     .and_then(|distance| {
+                        // A branch stays between the first step and the end of the body.
                         let inside = 0..=self.last_step(step);
                         if inside.contains(&(step as i64 + distance)) {
                             Ok(Immediate::Number(distance as i32))
@@ -273,6 +277,7 @@ impl Assembler<'_> {
                     }),
                 Value::Expression(expression) => self.immediate(expression, row, *operand, range),
             };
+            // Numbers are held to their fields now; letters of immediates when the instruction is spliced.
             match number {
                 Ok(Immediate::Number(number))
                     if operand.kind != Kind::Rel && !(range.0..=range.1).contains(&i64::from(number)) =>
@@ -312,6 +317,7 @@ impl Template {
         let Some(file) = operand.kind.register_file() else { return Ok(()) };
         let count = operand.kind.registers();
         let name = register_name(file, number);
+        // The whole group lies in one operand, in `s0`, or among the temporaries.
         let fits = match registers::letter(number) {
             Some((letter, offset)) => self.operand(letter).is_some_and(|own| offset + count <= own.kind.registers()),
             None if number == 0 => count == 1,

@@ -98,7 +98,9 @@ impl Body {
     /// # Errors
     /// Why it cannot be executed, by the lowest step.
     pub fn summary(&self, definition: &InstructionDef, isa: &Isa) -> Result<Summary, Defect> {
+        // What is known to be written before each step, on every way that leads there; `None` for steps that no way reaches.
         let mut known: Vec<Option<Known>> = vec![None; self.steps.len()];
+        // At the start `s0` holds zero and sources hold what the program put there.
         let mut first: Known = [1, 0, 0];
         for operand in definition.operands.iter().filter(|operand| operand.is_read()) {
             if let Some(file) = operand.kind.register_file() {
@@ -106,6 +108,7 @@ impl Body {
             }
         }
         known[0] = Some(first);
+        // Forward data flow to the greatest fixed point: sets only lose bits where ways meet, so each step is visited at most once a bit.
         let mut open = vec![0];
         while let Some(step) = open.pop() {
             let mut after = known[step].expect("what is open has been reached");
@@ -113,6 +116,7 @@ impl Body {
                 after[place(file)] |= bits(kind, number);
             }
             for next in self.successors(step, isa) {
+                // Known on both ways, or on the only one so far.
                 let merged = match known[next] {
                     None => after,
                     Some(before) => std::array::from_fn(|file| before[file] & after[file]),
@@ -128,15 +132,18 @@ impl Body {
     }
 
     fn check(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
+        // In the order of the steps, so that the first defect of the text is told.
         let mut has_outcome = false;
         for (step, known) in known.iter().enumerate() {
             let Some(known) = known else { continue };
+            // What the step reads.
             for (file, number, kind) in self.operands(step, isa, false) {
                 let missing = (0..kind.registers()).find(|at| known[place(file)] >> (number + at) & 1 == 0);
                 if let Some(at) = missing {
                     return Err(Defect::Unwritten { step, file, number: number + at });
                 }
             }
+            // At an outcome all destinations have to be there.
             if !matches!(self.steps[step].act, Act::End { .. }) {
                 continue;
             }
@@ -159,6 +166,7 @@ impl Body {
             outcomes: vec![false; definition.outcomes.len()],
             ..Summary::default()
         };
+        // Letters of operands that some reached step names, as registers, in immediates or as the way out.
         let mut used = Vec::new();
         for step in (0..self.steps.len()).filter(|&step| known[step].is_some()) {
             match self.steps[step].act {
@@ -174,6 +182,7 @@ impl Body {
                 }
                 Act::Execute { instruction, immediates } => {
                     let inner = isa.definition(instruction.op);
+                    // These may stop any machine; a division only one that makes it a trap.
                     if instruction.op == Op::trap || matches!(&*inner.room, "local" | "bus") {
                         summary.faults.push(step);
                     }
@@ -189,6 +198,7 @@ impl Body {
                         super::Immediate::Letter { letter, .. } => Some(*letter),
                         super::Immediate::Number(_) => None,
                     }));
+                    // The first step that can come after itself stands for its loop.
                     if summary.repeats.is_none() && self.leads_to(step, isa).contains(&step) {
                         summary.repeats = Some(step);
                     }

@@ -74,6 +74,7 @@ pub trait Arithmetic {
 ///
 /// Rounding may then bring the largest component to 2^(word-2) exactly.
 pub fn normalizing_shift(components: [i128; 3], word: u32) -> i32 {
+    // (5, -9, 2) in a word of 32 bits: 9 has 4 bits, which come to 30 by a shift of -26.
     let largest = components.map(i128::unsigned_abs).into_iter().max().unwrap_or(0);
     if largest == 0 { 0 } else { (128 - largest.leading_zeros()) as i32 - (word as i32 - 2) }
 }

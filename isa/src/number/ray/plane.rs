@@ -62,6 +62,7 @@ impl Plane {
     #[inline]
     fn is_before(self, other: Plane, ray: &Ray) -> bool {
         let ((run, slope), (other_run, other_slope)) = (self.run_and_slope(ray), other.run_and_slope(ray));
+        // run / slope < other_run / other_slope, multiplied by both slopes: the comparison turns round when one of them is negative.
         let (here, there) = (run * other_slope, other_run * slope);
         let is_same_way = (slope < 0) == (other_slope < 0);
         match if is_same_way { here.cmp(&there) } else { there.cmp(&here) } {
@@ -118,10 +119,12 @@ pub enum BoxEnd {
 /// misses the box.
 pub fn across_box(ray: &Ray, low: Vector, high: Vector) -> (Plane, Plane, BoxEnd) {
     let faces = faces(ray, low, high);
+    // A box beside the ray: one of its slabs lies behind the start.
     if faces.iter().any(|(_, leave)| !leave.is_ahead(ray)) {
         return (Plane::NOWHERE, Plane::NOWHERE, BoxEnd::Beside);
     }
     let exit = first_to_leave(ray, &faces);
+    // The last slab to be entered decides where the ray comes in, the first to be left where it goes out.
     let entries = faces.into_iter().map(|(enter, _)| enter).filter(|enter| enter.is_ahead(ray));
     let entry = entries.fold(Plane::START, |last, next| if last.is_before(next, ray) { next } else { last });
     if entry == Plane::START {

@@ -73,6 +73,7 @@ fn is_inside(edge: i128, is_positive: bool, ray: &Ray, [from, to]: [Vector; 2], 
 /// Ray against triangle on exact integers, without a shortcut.
 pub fn exact_triangle(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Meeting {
     let mut ties = 0;
+    // Compute the determinant: edges have 33 bits, products of three below 99.
     let direction = ray.direction.map(i64::from);
     let (edge1, edge2) = (difference(v1, v0), difference(v2, v0));
     let p = cross(direction, edge2);
@@ -82,6 +83,7 @@ pub fn exact_triangle(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Meeting {
         return Meeting::missed(TriangleEnd::Parallel, ties);
     }
     let is_positive = determinant > 0;
+    // Compute u and v times the determinant, with the third edge's as what is left of it; each edge takes part in the tie rule.
     let start = difference(ray.origin, v0);
     let u = dot(p, start);
     if !is_inside(u, is_positive, ray, [v0, v2], &mut ties) {
@@ -96,6 +98,7 @@ pub fn exact_triangle(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Meeting {
     if !is_inside(w, is_positive, ray, [v2, v1], &mut ties) {
         return Meeting::missed(TriangleEnd::OutsideW, ties);
     }
+    // Decide by the sign of t alone; the quotients are rounded by whoever needs them.
     let t = dot(q, edge2);
     debug_assert!(t.unsigned_abs() < 1 << 100);
     if t == 0 || (t > 0) != is_positive {

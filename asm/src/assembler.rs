@@ -168,6 +168,7 @@ impl Assembler<'_> {
         if self.is_incomplete {
             return;
         }
+        // What is still open at the end of the text.
         for open in std::mem::take(&mut self.regions) {
             self.messages.add(open.unclosed());
         }
@@ -189,6 +190,7 @@ impl Assembler<'_> {
         if !self.takes_step(line) {
             return;
         }
+        // A repetition can ask for more words than any machine has.
         if self.program.words.len() >= WORDS {
             let message = format!("the program has more than {WORDS} words");
             self.give_up(Problem::new(explain::SIZE, message, line.at_all(), "one too many"));

@@ -192,6 +192,7 @@ impl Assembler<'_> {
                 Problem::new(explain::DIRECTIVE, message, at, "unknown directive").suggest(name, Among::Directives)
             );
         };
+        // A structure holds fields and space; code and data would lie nowhere.
         if let Some(open) = &self.structure {
             let belongs = matches!(
                 directive.action,
@@ -213,6 +214,7 @@ impl Assembler<'_> {
                     .hint("`.endstruct` ends the structure"));
             }
         }
+        // A body of an extension has no data and no sections.
         if let Some(template) = &self.body
             && !directive.action.suits_body()
         {

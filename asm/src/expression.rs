@@ -103,6 +103,7 @@ impl Assembler<'_> {
             && !ahead.text(token).contains(['x', 'X', 'o'])
         {
             let ends = ahead.peek_second().is_none_or(|after| after.kind == Kind::Mark(","));
+            // Only when nothing but the literal stands there; `1 + 2` is a raw number.
             if ends {
                 ahead.skip();
                 *cursor = ahead;
@@ -121,6 +122,7 @@ impl Assembler<'_> {
         least: u8,
         depth: usize,
     ) -> Parsed<()> {
+        // Precedence climbing: `a - b * c - d` reads b * c at a higher level, then goes on from the left.
         self.prefixed(cursor, steps, depth)?;
         while let Some(token) = cursor.peek()
             && let Kind::Mark(mark) = token.kind
@@ -136,6 +138,7 @@ impl Assembler<'_> {
                     steps.push((Step::Binary(operator), at));
                 }
                 Infix::BothTrue | Infix::OneTrue => {
+                    // A place for the jump over the second operand, filled in when its length is known.
                     steps.push((Step::Truth, at));
                     self.infix_expression(cursor, steps, level + 1, depth)?;
                     steps.push((Step::Truth, at));
@@ -153,6 +156,7 @@ impl Assembler<'_> {
         while matches!(cursor.kind(), Some(Kind::Mark("-" | "+" | "~" | "!"))) {
             cursor.skip();
         }
+        // A minus right before a literal belongs to it: -9223372036854775808 fits, and -0.5 rounds as a negative number.
         let mut prefixes = &cursor.tokens[first..cursor.position];
         let is_negative = prefixes.last().is_some_and(|token| token.kind == Kind::Mark("-"));
         if is_negative && let Some(literal) = self.negative_literal(cursor)? {
@@ -190,6 +194,7 @@ impl Assembler<'_> {
     /// `0.5:format`, without blanks.
     fn fixed_literal(&mut self, cursor: &mut Cursor, token: Token, is_negative: bool) -> Parsed<Option<Step>> {
         let tokens = &cursor.tokens[cursor.position..];
+        // The three parts touch, so that no other colon is taken for this one.
         if let [number, colon, format, ..] = tokens
             && matches!(number.kind, Kind::Integer | Kind::Decimal)
             && colon.kind == Kind::Mark(":")

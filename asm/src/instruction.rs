@@ -79,7 +79,7 @@ fn legend(row: &InstructionDef) -> String {
 impl Assembler<'_> {
     /// Assembles an instruction, a pseudo-instruction or a macro call.
     pub(crate) fn instruction(&mut self, name: &str, at: At, cursor: &mut Cursor) {
-        // Macros come first: they may have an instruction's name.
+        // No macro has the name of an instruction.
         if let Some(definition) = self.macros.get(name).cloned() {
             self.call_macro(&definition, at, cursor);
             return;

@@ -74,6 +74,7 @@ impl Line {
         if substitution.locals.is_empty() && !text.contains('\\') {
             return Line { context, ..self.clone() };
         }
+        // Copy the line and note for each piece where it comes from: `add \a` with a = s12 is "add " from the file and "s12" for `\a`.
         let mut new = String::with_capacity(text.len() + 16);
         let mut segments = Vec::new();
         let mut copied = 0;
@@ -86,6 +87,7 @@ impl Line {
                 continue;
             }
             let (c, rest) = (char::from(octet), &text[at..]);
+            // What stands here: an argument, a text, a comment, a local name, or anything else, an octet long.
             let (replacement, length) = if c == '\\' {
                 match substitution.backslash(&rest[1..]) {
                     Some((replacement, length)) => (Some(replacement), length + 1),
@@ -129,6 +131,7 @@ impl Line {
         if range.is_empty() {
             return;
         }
+        // A line of the file is one piece; a line with pieces of its own hands on those in the range, cut at its ends.
         let base = new.len() as u32;
         new.push_str(&self.text[range.clone()]);
         let Some(own) = &self.segments else {
@@ -178,6 +181,7 @@ impl Substitution {
         if rest.starts_with("()") {
             return Some(("".into(), 2));
         }
+        // The longest name counts: `\ab` is no `\a` before a b.
         let length = name_length(rest);
         self.arguments.get(&rest[..length]).map(|argument| (argument.clone(), length))
     }

@@ -62,11 +62,13 @@ fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
     let mut start = cursor.position;
     let mut depth = 0usize;
     for (place, token) in cursor.tokens.iter().enumerate().skip(start) {
+        // `add_all s1 s2, s3` has three arguments.
         if depth == 0 && place > start && is_separated(cursor.tokens[place - 1], *token) {
             parts.push((start, place));
             start = place;
         }
         match token.kind {
+            // Commas of a call in parentheses belong to the argument.
             Kind::Mark("(") => depth += 1,
             Kind::Mark(")") => depth = depth.saturating_sub(1),
             Kind::Mark(",") if depth == 0 => {
@@ -154,6 +156,7 @@ impl Assembler<'_> {
                 let message = format!("the parameter `{text}` is there twice");
                 return Err(Problem::new(explain::DUPLICATE, message, at, "second one"));
             }
+            // One that takes the rest leaves nothing for another.
             if parameters.last().is_some_and(|last| last.takes_rest) {
                 return Err(Problem::new(
                     explain::MACRO,
@@ -165,6 +168,7 @@ impl Assembler<'_> {
             let mut parameter =
                 Parameter { name: text.into(), default: "".into(), is_required: false, takes_rest: false };
             qualifier(&mut parameter, cursor)?;
+            // A default goes up to the next comma outside of parentheses.
             if !parameter.takes_rest && !parameter.is_required && cursor.accept("=") {
                 let start = cursor.position;
                 let end = split(cursor).first().map_or(start, |&(_, end)| end);
@@ -215,10 +219,12 @@ impl Assembler<'_> {
 
     fn macro_arguments(&mut self, definition: &Macro, at: At, cursor: &mut Cursor) -> Parsed<Substitution> {
         let parameters = &definition.parameters;
+        // Arguments by position fill the parameters from the left; `name=text` fills that of the name.
         let mut values: Vec<Option<Rc<str>>> = vec![None; parameters.len()];
         let mut next = 0;
         for (start, end) in split(cursor) {
             let place = cursor.tokens.get(start).map_or(cursor.here(), |&token| cursor.at(token));
+            // The rest, commas included, is one argument.
             if parameters.get(next).is_some_and(|parameter| parameter.takes_rest) {
                 values[next] = Some(text_of(cursor, start, cursor.tokens.len()).into());
                 break;
@@ -247,6 +253,7 @@ impl Assembler<'_> {
             *value = (start < end).then(|| argument_of(cursor, start, end));
             next += usize::from(named.is_none());
         }
+        // Each call has a number: that of `\@` and of its local names.
         cursor.position = cursor.tokens.len();
         self.expansions += 1;
         let number = self.expansions;
@@ -260,6 +267,7 @@ impl Assembler<'_> {
             let text = value.unwrap_or_else(|| parameter.default.clone());
             substitution.arguments.insert(parameter.name.clone(), text);
         }
+        // `loop` of call 7 is `loop$7`, which nobody can write.
         for name in &definition.locals {
             substitution.locals.insert(name.clone(), format!("{name}${number}").into());
         }

@@ -38,6 +38,7 @@ pub struct MapEntry {
 pub fn symbol_map(assembled: &Assembled) -> String {
     let program = &assembled.program;
     let mut entries: Vec<&MapEntry> = assembled.symbols.iter().collect();
+    // By address; constants have none and go by name.
     entries.sort_by_key(|entry| {
         let address = if entry.kind == NameKind::Constant { 0 } else { entry.value };
         (entry.kind, address, &entry.name)
@@ -70,6 +71,7 @@ pub fn symbol_map(assembled: &Assembled) -> String {
         let _ = writeln!(text, "Functions and regions, in words");
     }
     for (index, region) in program.regions.iter().enumerate() {
+        // Show what is inside what by indentation.
         let mut depth = 0;
         let mut parent = region.parent;
         while let Some(outer) = parent {

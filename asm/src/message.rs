@@ -143,6 +143,7 @@ impl Messages {
             return;
         }
         let at = problem.at.unwrap_or_default();
+        // A repetition could make millions of messages: keep some and count the others.
         if self.kept.len() >= KEPT_MESSAGES {
             self.unkept += 1;
             self.unkept_errors += usize::from(problem.severity == Severity::Error);
@@ -153,6 +154,7 @@ impl Messages {
 
     /// The report; `known` gives the names that a suggestion may come from.
     pub fn report<'a>(mut self, sources: &[Arc<Source>], known: impl Fn(Among) -> Vec<&'a str>) -> Report {
+        // Messages come from two passes; people read them in the order of the text.
         self.kept.sort_by_key(|problem| problem.at.map(|at| (at.source, at.start, at.end)));
         let calls = std::mem::take(&mut self.calls);
         let is_error = |problem: &&Problem| problem.severity == Severity::Error;
@@ -181,6 +183,7 @@ fn shown_calls(context: u32, calls: &[Call]) -> Vec<&Call> {
         }
         next = call.at.context;
     }
+    // Keep the innermost calls and the outermost one.
     if chain.len() > SHOWN_CALLS + 1 {
         chain.drain(SHOWN_CALLS..chain.len() - 1);
     }

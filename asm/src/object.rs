@@ -135,6 +135,7 @@ pub fn read(file: &[u8]) -> Result<Program, ObjectError> {
     if version != VERSION {
         return Err(ObjectError::Version(version));
     }
+    // The last four octets are the checksum of what stands before them.
     let body_end = file.len().checked_sub(4).filter(|&end| end >= MAGIC.len() + 4).ok_or(ObjectError::Truncated)?;
     let (body, check) = file.split_at(body_end);
     let (rest, program) =

@@ -115,9 +115,11 @@ impl Assembler<'_> {
             "z" => Some(2),
             _ => None,
         });
+        // A register; one called `x` may still be meant as a component.
         if let Some((register, _)) = self.register_here(cursor)? {
             return Ok(Operand { written: Written::Register(register), at: cursor.since(first), component });
         }
+        // `(s2)` is `0(s2)`; any other parenthesis belongs to an expression.
         if cursor.is_mark("(") {
             let mut ahead = *cursor;
             ahead.skip();
@@ -145,6 +147,7 @@ impl Assembler<'_> {
             let at_all = cursor.since(first);
             return Ok(Operand { written: Written::Memory(expression, register, at), at: at_all, component: None });
         }
+        // `x` alone may be a component; `x + 1` is a number.
         let component = component.filter(|_| expression.symbol().is_some());
         Ok(Operand { written: Written::Number(expression), at: cursor.since(first), component })
     }

@@ -137,6 +137,7 @@ impl Assembler<'_> {
             return;
         }
         let place = |letter: char| pseudo.operands.iter().position(|&(other, _)| other == letter);
+        // Numbers that are known where the line stands choose the form; later passes keep it, so that addresses stay.
         let known = |letter: char| match &operands[place(letter)?].written {
             Written::Number(expression) => self.evaluate(expression).ok(),
             _ => None,
@@ -151,7 +152,9 @@ impl Assembler<'_> {
             When::AreZero => ['x', 'y', 'z'].into_iter().all(|letter| known(letter) == Some(0)),
             When::AreEqual => known('x').is_some() && known('x') == known('y') && known('y') == known('z'),
         };
+        // The first form whose condition holds; the last has none.
         let form = pseudo.forms.iter().find(holds).expect("the last form is always right");
+        // Assemble its instructions with the operands put in.
         for line in form.lines {
             let (name, rest) = line.split_once(' ').unwrap_or((line, ""));
             let parts = rest.split(", ").filter(|part| !part.is_empty());
@@ -182,6 +185,7 @@ impl Assembler<'_> {
             self.messages.add(problem.hint(if legend.is_empty() { "it takes no operands".into() } else { legend }));
             return false;
         }
+        // Report each operand of a wrong kind, not the first one alone.
         let mut is_right = true;
         for (operand, &(letter, part)) in operands.iter().zip(pseudo.operands) {
             let file = match part {
@@ -221,6 +225,7 @@ fn fill(part: &str, pseudo: &Pseudo, operands: &[Operand], at: At) -> Operand {
     if let Some(operand) = operand(part) {
         return operand.clone();
     }
+    // Halves of a number of 32 bits, for `movi` and `movhi`.
     for (prefix, function) in [("low(", Function::Low), ("high(", Function::High)] {
         if let Some(letter) = part.strip_prefix(prefix)
             && let Some(Operand { written: Written::Number(expression), at, .. }) =

@@ -123,6 +123,7 @@ pub fn operate(
     quantization: Quantization,
     overflow: Overflow,
 ) -> Outcome {
+    // A quotient by 0 has no value to quantize: the end of the range with the sign of a.
     let [a, b, c] = std::array::from_fn(|k| operands.get(k).copied());
     let a = a.expect("every operation has an operand");
     if operation == Operation::Div && b.is_some_and(|b| b.raw == 0) {
@@ -162,6 +163,7 @@ fn exact<I: Exact>(
     let raw = |number: Number| I::from(number.raw);
     let none = Number { raw: 0, ..a };
     let (b, c) = (b.unwrap_or(none), c.unwrap_or(none));
+    // Compute a fraction in units of 2^at: 3 2^-2 times 5 2^-1 is 15 2^-3.
     let (numerator, at, denominator) = match operation {
         Operation::Cvt => (raw(a), place(a), I::one()),
         Operation::Neg => (-raw(a), place(a), I::one()),
@@ -180,6 +182,7 @@ fn exact<I: Exact>(
             (sum, at, I::one())
         }
     };
+    // Bring it into units of the last place: numerator or denominator takes the rest of the weight.
     let shift = at - format.last_place();
     match shift {
         0.. => Fraction { numerator: numerator << shift as u32, denominator },
@@ -210,6 +213,7 @@ fn round<I: Exact>(value: &Fraction<I>, mode: Quantization) -> I {
     let down = |x: &I| -up(&-x.clone());
     let x = &value.numerator;
     let size = x.abs();
+    // Modes that treat both signs alike round the size.
     match mode {
         Quantization::Trn => floor(x),
         Quantization::TrnZero => floor(&size) * x.signum(),

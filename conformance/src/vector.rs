@@ -66,6 +66,7 @@ pub fn parse(source: &Arc<Source>) -> (Vec<Vector>, Report) {
         let content = text.trim_end_matches(['\n', '\r']);
         let place = Line { source, start, text: content };
         start += text.len();
+        // Blank lines may stand anywhere; the first other line names the columns.
         let is_first = !is_headed;
         if content.trim().is_empty() {
             continue;
@@ -82,6 +83,7 @@ pub fn parse(source: &Arc<Source>) -> (Vec<Vector>, Report) {
                 if wrong <= MOST_ERRORS {
                     report.0.push(*error);
                 }
+                // Without its head the file is no table, so no line of it is told.
                 if is_first {
                     return (Vec::new(), report);
                 }

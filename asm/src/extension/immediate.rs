@@ -50,6 +50,7 @@ impl Assembler<'_> {
         operand: isa::definition::Operand,
         range: (i64, i64),
     ) -> Result<Immediate, Failure> {
+        // A number without letters is known now.
         let letters = self.letters(expression);
         let wrong =
             |message: String, label: &str| Failure::Wrong(Problem::new(explain::BODY, message, expression.at, label));
@@ -68,6 +69,7 @@ impl Assembler<'_> {
             let message = format!("`{}` is a distance in the program", letter as char);
             return Err(wrong(message, "only `exit NAME, i` may use it"));
         }
+        // Put the least two values in: they give the line `first + factor (i - least)`. `2 * i + 3` with i from 0 to 31 has first 3 and factor 2.
         let (least, most) = self.letter_range(letter);
         let value_at = |value: i64| -> Result<i64, Failure> {
             let put = |calculation: &Calculation| match calculation {
@@ -80,6 +82,7 @@ impl Assembler<'_> {
         let (first, second) = (value_at(least)?, value_at((least + 1).min(most))?);
         let factor = second.wrapping_sub(first);
         let line = |value: i64| i128::from(first) + i128::from(value - least) * i128::from(factor);
+        // Hold all values of the field to that line; a letter alone is one, however many values it has.
         let is_plain = expression.symbol().is_some();
         let is_known = is_plain || most - least <= 1 << 16;
         if !is_known {
@@ -91,6 +94,7 @@ impl Assembler<'_> {
                 return Err(wrong(message, "only constants may be added and multiplied"));
             }
         }
+        // A line has its extremes at the ends.
         for value in [least, most] {
             let result = line(value);
             if result < i128::from(range.0) || result > i128::from(range.1) {

@@ -154,6 +154,7 @@ fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
             let message = format!("`{kind_text}` is no kind of operand");
             return Err(Box::new(scanner.wrong(message, kind_at, "not known").hint(hint)));
         };
+        // Immediates are `i` and `j`, registers the other letters.
         let letter = letter.as_bytes()[0];
         if matches!(letter, b'i' | b'j') != kind.register_file().is_none() {
             let (is, wants) = match kind.register_file() {
@@ -181,6 +182,7 @@ fn pattern<'a>(
 ) -> Read<(BitPattern, &'a str, Range<usize>)> {
     scanner.expect("\"").map_err(|_| scanner.expected("the word as a bit pattern, in quotation marks"))?;
     let rest = scanner.rest();
+    // The pattern ends in its line, so that a missing mark does not swallow the file.
     let length = rest.find(['"', '\n']).filter(|&end| rest[end..].starts_with('"'));
     let Some(length) = length else {
         let start = scanner.at - 1;
@@ -192,6 +194,7 @@ fn pattern<'a>(
     };
     let (text, span) = (&rest[..length], scanner.at..scanner.at + length);
     scanner.at = span.end + 1;
+    // Point at what is wrong: the character, the second piece of a field, or the whole.
     let pattern = BitPattern::parse(text).map_err(|wrong| {
         let at = |octet: usize| {
             span.start + octet..span.start + octet + text[octet..].chars().next().map_or(1, char::len_utf8)
@@ -217,6 +220,7 @@ fn pattern<'a>(
         };
         Box::new(scanner.wrong(wrong.to_string(), place, "cannot be read").hint(hint))
     })?;
+    // Words of the table keep their opcodes, so that programs of all extensions decode alike.
     if !pattern.is_custom() {
         let wide: u32 =
             operands.iter().filter_map(|(operand, _)| pattern.field(operand.letter)).map(|f| u32::from(f.width)).sum();
@@ -286,6 +290,7 @@ fn outcomes(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(
         }
         scanner.expect("(")?;
         let outcome = cost(scanner, name, each_at)?;
+        // All outcomes are counted in one way.
         if let Some(first) = outcomes.first()
             && first.is_body != outcome.is_body
         {
@@ -318,6 +323,7 @@ fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -
     let mut named: Vec<Class> = Vec::new();
     let mut is_each = false;
     loop {
+        // Behind the semicolon follows the cost of each unit.
         if !is_each && scanner.accept(";") {
             let at = scanner.at - 1;
             *each_at = Some(at..at + 1);
@@ -325,6 +331,7 @@ fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -
             scanner.expect("each")?;
         }
         let (class_text, class_at) = scanner.word("a class of operations")?;
+        // `body` stands alone: the sum of the steps, whatever they are.
         if class_text == "body" && named.is_empty() && !is_each {
             outcome.is_body = true;
             scanner.expect(")")?;

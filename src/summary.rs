@@ -101,6 +101,7 @@ fn left_last(rows: Vec<Vec<String>>) -> String {
 
 /// Clocks of all processors, and of the bus.
 pub fn processors(result: &Render) -> String {
+    // Shares of the frame, processor by processor; the main processor has no pixels of its own.
     let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "octets", "pixels"])];
     let processor = |name: String, of: &ProcessorResult| {
         let share = |part: u64| percent(part, result.clocks);
@@ -110,6 +111,7 @@ pub fn processors(result: &Render) -> String {
     let mut main = processor("main".into(), &result.main.clocks);
     main[5] = String::new();
     rows.push(main);
+    // The frame as a whole, with the bus below the table.
     let bus = &result.bus;
     let mut text = format!(
         "Machine: {} clocks, {} at {} MHz, {} a pixel; {} by the engine `{}`{}\n{}bus: busy {}, {} octets in {} transfers, longest wait {} clocks\n",
@@ -127,6 +129,7 @@ pub fn processors(result: &Render) -> String {
         grouped(bus.longest_wait),
     );
     text += &waits(&result.cores);
+    // Caches and kinds of data, where the machine has them.
     let cache = &bus.cache;
     if cache.hits + cache.misses != 0 {
         text += &format!(
@@ -156,6 +159,7 @@ fn waits(cores: &[ProcessorResult]) -> String {
         return String::new();
     }
     // Column n ends before 2^n clocks.
+    // For example counts 50, 30, 20: no wait in 50 of 100, so half of the waits end before 1 clock and nine of ten before 4.
     let bound = |share: f64| {
         let mut sum = 0;
         let is_reached = |&count: &u64| {

@@ -52,11 +52,13 @@ impl RayErrors {
         let (profile, modes) = (job.kernels.profile, job.machine.arithmetic.modes());
         let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &kernels::KernelOptions::default());
         let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");
+        // Trace all camera rays on the native twin, and decide each again exactly.
         let ended: Vec<Ended> = (0..width * height)
             .into_par_iter()
             .map(|pixel| end(&twin, &twin.camera_ray(pixel % width, pixel / width)))
             .collect();
         let wrong = ended.iter().filter(|ray| !ray.is_right).count();
+        // Sort each kind of error, without those of quantities that the kernels do not compute.
         let errors = |which: usize| {
             let all = ended.iter().filter_map(|ray| ray.errors).map(|errors| errors[which]);
             let mut errors: Vec<f64> = all.filter(|error| !error.is_nan()).collect();
@@ -81,6 +83,7 @@ impl RayErrors {
 
 fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
     let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+    // A walk that does not end finds nothing and counts as wrong.
     let is_stuck = twin.camera_packet(ray).is_some_and(|first| twin.trace(ray, first, &mut search).is_err());
     let expected = nearest(twin, ray);
     let errors = match (search.triangle, expected) {
@@ -97,6 +100,7 @@ fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
 fn nearest(twin: &Twin<Modes>, ray: &Ray) -> Option<(f64, u32)> {
     let stage = &twin.stage;
     let ray = exact::Ray { origin: ray.origin, direction: ray.direction };
+    // t is a quotient of integers; this makes it units in the last place.
     let scale = f64::from(twin.constants.along()).exp2();
     let packets = Packets::new(&stage.nodes, &stage.bounds, ray);
     let indices = packets.flat_map(|packet| &stage.references[packet.start as usize..packet.end as usize]);
@@ -130,6 +134,7 @@ fn normal_error(twin: &Twin<Modes>, direction: Vector, index: u32) -> f64 {
         Formulas::Printed => report::normal(&twin.arithmetic, bits, vertices),
         Formulas::Vector => normal(&twin.arithmetic, bits, direction, vertices).0,
     };
+    // The exact normal is the cross product of the edges, in 128 bits; only its length is rounded.
     let [a, b, c] = vertices.map(|vertex| vertex.map(i128::from));
     let (e, f): ([i128; 3], [i128; 3]) = (std::array::from_fn(|k| b[k] - a[k]), std::array::from_fn(|k| c[k] - a[k]));
     let exact = [0, 1, 2].map(|k| (e[(k + 1) % 3] * f[(k + 2) % 3] - e[(k + 2) % 3] * f[(k + 1) % 3]) as f64);

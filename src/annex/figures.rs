@@ -44,6 +44,7 @@ impl Pixel {
 
     /// Microseconds of a pixel with four cores: as 6.1 has it, or what the bus takes where that is more.
     pub fn microseconds(&self) -> f64 {
+        // With four cores the bus is busy for the memory of four pixels while each computes one: whichever takes longer.
         let clocks = ((self.operations + self.memory) / CORES).max(self.memory);
         clocks / Config::default().clock_hz as f64 * 1e6
     }

@@ -68,6 +68,7 @@ pub fn measure() -> Result<Vec<Measurement>, Failure> {
 fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
     let mut tried = Vec::new();
     for number in row.tries() {
+        // Run the driver with this number, and look at its regions.
         let (program, memory) = row.program(number, isa)?;
         let regions = run(&program, memory, isa)?.regions;
         let find = |name: &str| {
@@ -78,6 +79,7 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
             Some(search) => find(&search.region)?.calls,
             None => 0,
         };
+        // A row without a search is met by its first run.
         tried.push(Try { number, calls });
         if row.search.as_ref().is_none_or(|search| search.calls == calls) {
             let RegionProfile { calls, least, most, .. } = *find(&row.region)?;

@@ -206,6 +206,7 @@ impl Erratum {
 impl RowResult {
     fn new(measurement: &Measurement, number: usize, scenes: &[OnScene]) -> RowResult {
         let (row, most) = (measurement.row, &measurement.most);
+        // A scene whose programs do not have the region has no figures for the row.
         let on_scene = |scene: &OnScene| {
             let region = scene.regions.get(number)?.as_ref()?;
             let mean = |class| region.inclusive[class] as f64 / region.calls as f64;
@@ -262,6 +263,7 @@ impl Derivation {
             (figure.id.as_str(), result)
         });
         let scene_figures: Vec<SceneFigures> = scenes.iter().map(SceneFigures::new).collect();
+        // Table 3 is continued by the machine here, counted and on scenes.
         let ours = Pixel::of(measured).map(|(pixel, _)| ("counted, 22 nodes".to_owned(), pixel.microseconds()));
         let on_scenes = scene_figures.iter().map(|of| (of.scene.clone(), of.pixel_ms * 1e3));
         let ours = ours.into_iter().chain(on_scenes).map(|(name, pixel_us)| Peer {
@@ -279,6 +281,7 @@ impl Derivation {
 impl SceneFigures {
     fn new(scene: &OnScene) -> SceneFigures {
         let pixels = scene.pixels.max(1) as f64;
+        // Operations and octets of all pixels together, then divided: a transfer has no half octet.
         let whole = Pixel::new(scene.operations as f64, scene.octets);
         let hertz = emu::machine::Config::default().clock_hz as f64;
         let pixel_ms = scene.clocks as f64 / pixels / hertz * 1e3;

@@ -195,6 +195,7 @@ fn decibels(psnr: Option<f64>) -> String {
 }
 
 fn text(results: &Results) -> String {
+    // Scenes in the order in which they were measured, a table each.
     let mut scenes: Vec<&str> = results.variants.iter().map(|one| one.scene.as_str()).collect();
     scenes.dedup();
     let mut text = String::new();
@@ -240,6 +241,7 @@ fn text(results: &Results) -> String {
         text += &table(rows);
         text.push('\n');
     }
+    // Variants that a scene does not fit come last.
     for Refused { scene, variant, reason } in &results.refused {
         let _ = writeln!(text, "{scene}, {variant}: {reason}");
     }
@@ -252,6 +254,7 @@ fn csv(measured: &[MeasuredVariant]) -> String {
          stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
     );
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    // Names may hold commas; RFC 4180 doubles the quotes inside.
     let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
     for one in measured {
         let cells = [

@@ -111,6 +111,7 @@ fn included(wanted: &str, from: &str, folders: &[PathBuf]) -> Result<Arc<Source>
 
 /// Assembles, writes and prints.
 pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    // Refuse before any work what would overwrite an input or another output.
     let outputs = [&arguments.output, &arguments.data, &arguments.list, &arguments.map];
     let all = outputs.into_iter().flatten().map(PathBuf::as_path).filter(|path| *path != Path::new(PRINTED));
     files::check_distinct(all.clone()).map_err(Failure::usage)?;
@@ -121,7 +122,9 @@ pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) ->
     }
     let isa = arguments.extensions.isa()?;
     let attempt = attempted(&arguments.file, &arguments.source, &isa)?;
+    // Included files are known only now.
     files::check_spared(all, attempt.program.sources.iter().map(|source| &source.name)).map_err(Failure::usage)?;
+    // The listing shows errors in their places, so it is written whatever they are.
     if let Some(path) = &arguments.list {
         write_or_print(path, &asm::listing(&attempt), terminal)?;
     }
@@ -134,6 +137,7 @@ pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) ->
     }
     let program = &assembled.program;
     write_program(arguments, program, terminal)?;
+    // Who asked for no file is told that there are no errors.
     if outputs.iter().all(|output| output.is_none()) {
         let words = count(program.words.len() as u64, "word", "words");
         let data = count(program.buffer.len() as u64, "octet", "octets");

@@ -39,6 +39,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
         let message = Diagnostic::error(format!("the folder {FOLDER} for the demo's pictures cannot be made: {error}"));
         message.hint("the demo writes below the current folder; start it where it may")
     })?;
+    // Count the annexes, then draw the picture.
     let measured = annex::measure()?;
     terminal.print(&annex::text::demo(&measured))?;
     let mut job = Job::new(generate::scene(
@@ -48,6 +49,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     job.view.shift = SHIFT;
     let drawing = draw(&job, Comparison::Reference, terminal)?;
     let result = Render::new(&job, &drawing);
+    // Write the picture and its maps.
     let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));
     files::write(&paths[0], &Format::Png.encode(&drawing.picture))?;
     write_maps(&drawing, Some(&paths[1]), Some(&paths[2]))?;
@@ -72,6 +74,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
         NEXT.to_owned(),
     ];
     terminal.print(&parts.join("\n"))?;
+    // A row whose difference is not explained is a mistake of this program.
     match measured.iter().all(annex::Measurement::is_explained) {
         true => Ok(Exit::Done),
         false => Ok(Exit::Tolerance),

@@ -117,6 +117,7 @@ impl RunResult {
         flags: Option<Vec<Loss>>,
         dumps: &[Dump],
     ) -> Result<RunResult, Failure> {
+        // Registers that are zero are left out unless all are asked for.
         let has_all = dumps.contains(&Dump::Registers);
         let registers =
             registers(&run.state.registers).into_iter().filter(|(_, contents)| has_all || !is_zero(contents));
@@ -147,6 +148,7 @@ impl RunResult {
 
     /// Registers, counts, functions and dumps for people.
     pub fn text(&self) -> String {
+        // Registers, operations by class, functions, losses, dumps and the end, each with a line between.
         let mut parts = vec![self.register_text()];
         let mut rows = vec![row(["class", "count"])];
         rows.extend(

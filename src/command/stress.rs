@@ -152,6 +152,7 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
         terminal.print(&list(&chosen))?;
         return Ok(Exit::Done);
     }
+    // Take up what a former run has left.
     let file = arguments.resume.as_deref();
     let mut state = match file.filter(|path| path.exists()) {
         Some(path) => read(path, size)?,
@@ -160,6 +161,7 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
     if let Some(path) = file {
         files::check_target(path)?;
     }
+    // Try the cases, and say each as soon as it is done unless all of them are one JSON object.
     let mut verdicts = Vec::new();
     for case in chosen {
         let tally = try_case(case, size, &mut state, file, terminal)?;
@@ -190,6 +192,7 @@ fn try_case(
     let bar = terminal.progress(case.name, trials);
     bar.set_position(done.tally.trials);
     while done.tally.trials < trials {
+        // A part at a time, so that the state is written often and a run that is stopped loses little.
         let from = done.tally.trials;
         let to = (from + trials.div_ceil(PARTS).max(LEAST)).min(trials);
         done.tally = done.tally.plus(case.run(size, from..to));
@@ -210,6 +213,7 @@ fn read(path: &Path, size: CatalogueSize) -> Result<State, Report> {
     let source = files::source(path)?;
     let state: State = serde_json::from_str(&source.text)
         .map_err(|error| Diagnostic::error(format!("{shown} is no state of `lancer stress`: {error}")))?;
+    // A state of other seeds or sizes would be added to trials that are not the same.
     let fits = |(name, done): (&String, &Done)| {
         stress::find(name).is_ok_and(|case| case.seed == done.seed && done.tally.trials <= case.trials(size))
     };

@@ -73,6 +73,7 @@ fn clocks(text: &str) -> Result<Range<u64>, String> {
 /// Runs, writes and prints.
 pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let (name, load, config, width, read) = load(arguments, terminal)?;
+    // Without a name for either, both files are written beside each other.
     let is_default = arguments.fst.is_none() && arguments.perfetto.is_none();
     let target = |given: &Option<PathBuf>, ending: &str| match is_default {
         true => Some(PathBuf::from(format!("{name}.{ending}"))),
@@ -85,6 +86,7 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     for path in paths() {
         files::check_target(path)?;
     }
+    // The window: clocks as given, or those of a pixel, for which the frame runs once without watching.
     let window = match (&arguments.clocks, arguments.job.view.pixel) {
         (Some(clocks), _) => Window { start: Clocks(clocks.start), end: Clocks(clocks.end) },
         (None, Some([column, row])) => pixel(&load, &config, [column, row], width, terminal)?,
@@ -146,6 +148,7 @@ fn pixel(
     terminal: &Terminal,
 ) -> Result<Window, Failure> {
     let crop = load.build.crop;
+    // Pixels are numbered inside the drawn part, row by row.
     let place = column.checked_sub(crop.column).zip(row.checked_sub(crop.row));
     let place = place.filter(|&(column, row)| column < crop.width && row < crop.height);
     let outside = || {

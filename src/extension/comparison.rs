@@ -112,6 +112,7 @@ pub fn compare(
     extended: &Job,
     progress: &mut dyn FnMut(),
 ) -> Result<ExtensionResult, Failure> {
+    // Draw the three pictures with the same view and machine.
     let mut draw = |job: &Job| -> Result<VariantResult, Failure> {
         let drawing = drawing::draw(job, Comparison::Reference, &mut |_| {})?;
         progress();
@@ -119,6 +120,7 @@ pub fn compare(
     };
     let without = draw(plain)?;
     let with = draw(extended)?;
+    // The kernels of the extension with bodies in the places of their instructions: what the extension saves is the difference.
     let mut expanded = extended.clone();
     expanded.isa = extended.isa.expanded(ops);
     let expanded = draw(&expanded)?;

@@ -34,6 +34,7 @@ pub fn run_hash(result: &Render) -> String {
         main: &'a Main,
         bus: &'a BusResult,
     }
+    // The order of the keys is part of the hash.
     let run = Run {
         image_hash: &result.image_hash,
         instructions: result.instructions,

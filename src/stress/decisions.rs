@@ -29,10 +29,12 @@ fn dot(a: Exact, b: Exact) -> i128 {
 
 /// The model: the volumes of the pyramids that the direction and the edges span, as the origin sees them. t as a fraction.
 fn model(ray: &Ray, corners: &Corners) -> Option<(i128, i128)> {
+    // Move the origin to 0: coordinates then have 32 bits, products of three of them 96.
     let [a, b, c]: [Exact; 3] = corners.map(|v| std::array::from_fn(|k| i128::from(v[k]) - i128::from(ray.origin[k])));
     let direction = ray.direction.map(i128::from);
     let edges = [cross(a, b), cross(b, c), cross(c, a)];
     let whole: i128 = edges.iter().map(|&edge| dot(edge, direction)).sum();
+    // A volume of 0 is decided as if the direction were moved by (e, e^2, e^3): by the first component of the edge's normal that is not 0.
     let side = |edge: &Exact| {
         let powers = [dot(*edge, direction), edge[0], edge[1], edge[2]];
         powers.into_iter().find(|&power| power != 0).map_or(0, i128::signum)

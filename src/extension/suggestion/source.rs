@@ -37,11 +37,13 @@ fn chain(program: &Program, pc: usize) -> Vec<u16> {
 
 /// The text of a function from its blocks. `None` where the function and others lead into each other otherwise than by calls.
 pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Block]) -> Option<String> {
+    // Refuse a function that others jump into: its words would no longer be where they lead.
     let (function, range) = range(program, name)?;
     let leads_in = |pc: usize| flow.targets[pc].is_some_and(|to| to != range.start && range.contains(&to));
     if (0..program.words.len()).any(|pc| !range.contains(&pc) && leads_in(pc)) {
         return None;
     }
+    // Name the targets: the function itself, words inside it by their distance from its start, other functions by their names.
     let label = |to: usize| -> Option<String> {
         if range.contains(&to) {
             return Some(if to == range.start { name.to_owned() } else { format!("{name}_at_{}", to - range.start) });
@@ -59,6 +61,7 @@ pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Blo
     let _ = writeln!(text, ".func {name}");
     let mut open: Vec<u16> = vec![function];
     for block in blocks {
+        // Close the regions that the block before was in and this one is not, then open its own.
         let around = chain(program, block.range.start);
         let around = &around[around.iter().position(|&region| region == function)?..];
         let kept = open.iter().zip(around).take_while(|(a, b)| a == b).count();
@@ -71,6 +74,7 @@ pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Blo
             let _ = writeln!(text, ".region {}", program.regions[usize::from(region)].name);
         }
         let start = block.range.start;
+        // A label stands only where something leads.
         if start != range.start && flow.targets[range.clone()].contains(&Some(start)) {
             let _ = writeln!(text, "{}:", label(start)?);
         }

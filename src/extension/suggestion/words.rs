@@ -41,12 +41,15 @@ impl Majors {
     pub fn row(&mut self, name: &str, pattern: &Pattern) -> String {
         let bits = pattern.bits();
         let mut picture = String::new();
+        // Fields stand in the order of their letters, as the table has them.
         let mut fields: Vec<(char, u8)> =
             pattern.operands.iter().map(|&(letter, kind)| (letter, kind.width().unwrap_or(0))).collect();
         fields.sort_by_key(|(letter, _)| isa::pattern::LETTERS.iter().position(|&other| other == *letter as u8));
         for (letter, width) in fields {
             let _ = write!(picture, " {}", letter.to_string().repeat(width.into()));
         }
+        // Share a major opcode where the operands leave room for a selector. Of two instructions with 15 bits of operands the first has
+        // `-------0000` behind them, the second `-------0001`; one with 25 bits takes an opcode of its own.
         let major = if bits + SELECTOR <= MOST_BITS {
             let (major, count) = match self.shared.take().filter(|(_, count)| *count < 1 << SELECTOR) {
                 Some(shared) => shared,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use emu::code::Code;
 use emu::engine::Choice;
-use emu::machine::{self, Frame};
+use emu::machine::{self, RunOutcome};
 use emu::profile::Profile;
 use kernels::build::{Build, Crop};
 use messages::Report;
@@ -49,7 +49,7 @@ pub struct Drawing {
     /// The programs.
     pub build: Build,
     /// Outcome of the run on the machine.
-    pub frame: Frame,
+    pub frame: RunOutcome,
     /// The part that was drawn; pictures have its size.
     pub crop: Crop,
     /// The colours, raw.
@@ -142,7 +142,7 @@ fn part(reference: &Reference, crop: &Crop) -> Picture {
 }
 
 /// The colours in the frame, where the drawn part lies row by row from its start.
-fn colour_words(image: &MemoryImage, frame: &Frame, crop: &Crop) -> Vec<[i32; 3]> {
+fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i32; 3]> {
     let start = image.region(MemoryKind::Frame).start;
     let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
     let octets = octets.expect("the image has a frame for the whole picture");

@@ -3,7 +3,7 @@
 use crate::code::octets::Memory;
 use crate::engine::Task;
 use crate::machine::schedule;
-use crate::machine::{Config, Failure, Frame, Setup, check, on_arithmetic};
+use crate::machine::{Config, Failure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::RunObserver;
 use crate::replay;
 use crate::semantics::Watch;
@@ -13,11 +13,11 @@ use crate::semantics::Watch;
 ///
 /// Work items that only take a message, read global memory and send messages to the main processor run once, on all host
 /// threads, and are then replayed in the order of the machine's clocks; anything else is stepped in that order. The
-/// result is the same, but for [`Frame::method`].
+/// result is the same, but for [`RunOutcome::method`].
 ///
 /// # Errors
 /// A machine out of its ranges, a program whose initial buffer does not fit, or a trap.
-pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
+pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, Failure> {
     check(setup)?;
     let results = run_alike(std::slice::from_ref(setup), &memory, progress);
     results.into_iter().next().expect("a machine has a result")
@@ -27,7 +27,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
 ///
 /// # Errors
 /// As [`run`].
-pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<Frame, Failure> {
+pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, Failure> {
     check(setup)?;
     on_arithmetic(setup, Stepping { setup, memory, progress })
 }
@@ -40,9 +40,9 @@ pub fn run_all(
     machines: &[Config],
     memory: &Memory,
     progress: &mut dyn FnMut(u64),
-) -> Vec<Result<Frame, Failure>> {
+) -> Vec<Result<RunOutcome, Failure>> {
     let setups: Vec<Setup> = machines.iter().map(|config| Setup { config, ..setup.clone() }).collect();
-    let mut results: Vec<Option<Result<Frame, Failure>>> = setups.iter().map(|_| None).collect();
+    let mut results: Vec<Option<Result<RunOutcome, Failure>>> = setups.iter().map(|_| None).collect();
     for first in 0..setups.len() {
         if results[first].is_some() {
             continue;
@@ -70,7 +70,7 @@ fn at_once(memory: &Memory) -> usize {
 }
 
 /// Runs machines that compute alike.
-fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<Frame, Failure>> {
+fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<RunOutcome, Failure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     on_arithmetic(first, Replaying { setups, memory, progress })
 }
@@ -82,7 +82,7 @@ struct Stepping<'a> {
 }
 
 impl Task for Stepping<'_> {
-    type Result = Result<Frame, Failure>;
+    type Result = Result<RunOutcome, Failure>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         schedule::run::<T, O>(self.setup, self.memory, arithmetic, self.progress)
@@ -96,7 +96,7 @@ struct Replaying<'a> {
 }
 
 impl Task for Replaying<'_> {
-    type Result = Vec<Result<Frame, Failure>>;
+    type Result = Vec<Result<RunOutcome, Failure>>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)

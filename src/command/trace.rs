@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use emu::machine::trace::Window;
-use emu::machine::{Config, Frame, Options};
+use emu::machine::{Config, RunOutcome, Options};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 
@@ -130,7 +130,7 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
     Ok((result_name(&job.scene), load, job.machine, width, job.files))
 }
 
-fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<Frame, Failure> {
+fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<RunOutcome, Failure> {
     let crop = load.build.crop;
     let bar = terminal.progress("pixels", u64::from(crop.width) * u64::from(crop.height));
     let setup = load.setup(config, Options { has_items: true, window, engine: load.engine, ..Options::default() });
@@ -164,7 +164,7 @@ fn pixel(
     Ok(Window { start: item.start, end })
 }
 
-fn text<'a>(scene: &Scene, frame: &Frame, paths: impl Iterator<Item = &'a Path>) -> String {
+fn text<'a>(scene: &Scene, frame: &RunOutcome, paths: impl Iterator<Item = &'a Path>) -> String {
     let window = scene.trace.window;
     let end = window.end.min(frame.clocks);
     let length = (end - window.start).0;

@@ -7,7 +7,7 @@ mod demand;
 #[cfg(feature = "cli")]
 mod text;
 
-use emu::machine::{self, Config, Frame, Options};
+use emu::machine::{self, Config, RunOutcome, Options};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -133,10 +133,10 @@ pub fn measure(
     let Some(first) = configs.first() else { return Err(no_machine()) };
     let setup = load.setup(first, Options { engine: load.engine, ..Options::default() });
     let frames = emu::run_all(&setup, &configs, &load.memory, progress);
-    let frames = frames.into_iter().collect::<Result<Vec<Frame>, _>>()?;
+    let frames = frames.into_iter().collect::<Result<Vec<RunOutcome>, _>>()?;
     // Frames come back in the order of the configurations: machine by machine, fewest cores first.
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
-        let points: Vec<(u32, &Frame)> = cores.iter().copied().zip(frames).collect();
+        let points: Vec<(u32, &RunOutcome)> = cores.iter().copied().zip(frames).collect();
         Curve { formats: load.formats.as_ref().map(Formats::from), ..curve(name, config, &points) }
     });
     Ok(CoresResult {
@@ -157,7 +157,7 @@ fn share(part: u64, whole: u64) -> f64 {
 }
 
 /// The curve of a machine from its frames, that of one core first.
-fn curve(name: &str, config: &Config, frames: &[(u32, &Frame)]) -> Curve {
+fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     let (_, alone) = frames[0];
     let pixels = alone.item_count.max(1) as f64;
     // Computing and transfers of a pixel, as one core shows them.
@@ -182,7 +182,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &Frame)]) -> Curve {
     }
 }
 
-fn point(cores: u32, frame: &Frame, alone: &Frame, demand: &Demand, clock_hz: u64) -> Point {
+fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &Demand, clock_hz: u64) -> Point {
     let (workers, main) = frame.processors.split_at(cores as usize);
     let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
     let whole = frame.clocks.0 * u64::from(cores);

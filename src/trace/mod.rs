@@ -5,7 +5,7 @@ mod perfetto;
 mod wave;
 
 use emu::machine::trace::{Burst, Cargo, Doing, Span, Trace};
-use emu::machine::{Frame, Item};
+use emu::machine::{RunOutcome, Item};
 use emu::quantity::Clocks;
 
 pub use perfetto::perfetto;
@@ -29,7 +29,7 @@ pub struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     /// The window of a frame; `None` for a frame without one.
-    pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a Frame) -> Option<Scene<'a>> {
+    pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a RunOutcome) -> Option<Scene<'a>> {
         Some(Scene { name, load, clock_hz, trace: frame.trace.as_ref()?, items: &frame.items })
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::engine::EngineKind;
-use emu::machine::{Frame, Options};
+use emu::machine::{RunOutcome, Options};
 use kernels::{Function, KernelSet};
 use lancer::job::{Job, SHIFT};
 use lancer::load::Load;
@@ -81,7 +81,7 @@ fn all_ways_to_run_an_example_agree() {
             job.kernels.replaced.push((function, Source::new(format!("{function:?}.s"), text)));
         }
         let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{}: {failure:?}", folder.display()));
-        let run = |engine, steps: bool| -> Frame {
+        let run = |engine, steps: bool| -> RunOutcome {
             let options = Options { engine, has_profile: true, has_items: true, ..Options::default() };
             let setup = load.setup(&job.machine, options);
             let run = if steps { emu::step } else { emu::run };
@@ -99,6 +99,6 @@ fn all_ways_to_run_an_example_agree() {
         for engine in EngineKind::ALL {
             assert!(run(engine, false) == frame, "{}: {}", folder.display(), engine.name());
         }
-        assert!(Frame { method: frame.method, ..stepped } == frame, "{}: stepped", folder.display());
+        assert!(RunOutcome { method: frame.method, ..stepped } == frame, "{}: stepped", folder.display());
     }
 }

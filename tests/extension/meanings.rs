@@ -353,7 +353,7 @@ fn each_work_item_begins_with_the_state_after_reset_unless_it_is_kept() {
             assert_eq!(words, [0xa300, 0x5180, 0xa300, 0x5180, 0xa300, 0x5180]);
             assert_eq!(frame.method.name(), "replayed");
             let stepped = emu::step(&setup, memory, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
-            assert_eq!(machine::Frame { method: frame.method, ..stepped }, frame);
+            assert_eq!(machine::RunOutcome { method: frame.method, ..stepped }, frame);
         }
     }
 }

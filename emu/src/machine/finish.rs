@@ -4,7 +4,7 @@ use isa::Class;
 
 use super::Failure;
 use super::cache::Cache;
-use super::outcome::{Frame, Method};
+use super::outcome::{RunOutcome, Method};
 use super::processor::Standing;
 use super::schedule::Machine;
 use super::trace::Spans;
@@ -49,7 +49,7 @@ impl<W: Worker> Machine<'_, W> {
     }
 
     /// The outcome of a run that has ended.
-    pub(super) fn finish(mut self) -> Frame {
+    pub(super) fn finish(mut self) -> RunOutcome {
         let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
         for processor in &mut self.processors {
             processor.idle_until(clocks);
@@ -77,7 +77,7 @@ impl<W: Worker> Machine<'_, W> {
             }
         }
         let asked = tally.counts(core_code)[Class::Octet] + main_tally.counts(main_code)[Class::Octet];
-        Frame {
+        RunOutcome {
             method: Method::Stepped { why: "" },
             clocks,
             processors: used,

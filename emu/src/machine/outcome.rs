@@ -88,7 +88,7 @@ impl Method {
 
 /// The result of a run of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct RunOutcome {
     /// How it was run.
     pub method: Method,
     /// Length of the frame: until the last processor had nothing more to do.
@@ -126,7 +126,7 @@ pub struct Frame {
     pub item_count: u64,
 }
 
-impl Frame {
+impl RunOutcome {
     /// Share of the frame in which the bus was busy, in [0, 1].
     pub fn utilisation(&self) -> f64 {
         if self.clocks.0 == 0 { 0.0 } else { self.bus.busy.0 as f64 / self.clocks.0 as f64 }

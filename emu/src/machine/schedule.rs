@@ -7,7 +7,7 @@ use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
 use super::kinds::Kinds;
-use super::outcome::{Frame, Item};
+use super::outcome::{RunOutcome, Item};
 use super::port::Shared;
 use super::processor::{Act, Processor, Standing, Work};
 use super::request::{Access, Request};
@@ -31,7 +31,7 @@ pub fn run<T: Watch, O: RunObserver>(
     memory: Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> Result<Frame, Failure> {
+) -> Result<RunOutcome, Failure> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
@@ -138,7 +138,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     ///
     /// # Errors
     /// A trap.
-    pub(crate) fn run(mut self) -> Result<Frame, Failure> {
+    pub(crate) fn run(mut self) -> Result<RunOutcome, Failure> {
         self.begin();
         while self.step()? {}
         self.check_end()?;

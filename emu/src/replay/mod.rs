@@ -28,7 +28,7 @@ use crate::code::quantity::Octets;
 use crate::extension;
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
-use crate::machine::{Failure, Frame, Setup};
+use crate::machine::{Failure, RunOutcome, Setup};
 use crate::profile::{RunObserver, Unobserved};
 use crate::semantics::Watch;
 use cursor::{Cursor, Replayer};
@@ -46,11 +46,11 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> Vec<Result<Frame, Failure>> {
+) -> Vec<Result<RunOutcome, Failure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     let step = |setup: &Setup, why: Reason, progress: &mut dyn FnMut(u64)| {
         let frame = schedule::run::<T, O>(setup, memory.clone(), arithmetic, progress)?;
-        Ok(Frame { method: Method::Stepped { why }, ..frame })
+        Ok(RunOutcome { method: Method::Stepped { why }, ..frame })
     };
     let prefix = match prefix(first, memory, arithmetic) {
         Ok(prefix) => prefix,
@@ -83,7 +83,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> (Survey, Vec<Result<Result<Frame, Failure>, Reason>>) {
+) -> (Survey, Vec<Result<Result<RunOutcome, Failure>, Reason>>) {
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
     let recorded_cores = setups[0].config.cores;
@@ -122,7 +122,7 @@ fn on_clock<T: Watch, O: RunObserver>(
     arithmetic: &T,
     feed: Feed,
     progress: &mut dyn FnMut(u64),
-) -> Result<Result<Frame, Failure>, Reason> {
+) -> Result<Result<RunOutcome, Failure>, Reason> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
@@ -141,14 +141,14 @@ fn on_clock<T: Watch, O: RunObserver>(
 }
 
 /// The frame with what the cores counted, which the replay does not know.
-pub fn with_counts(frame: Frame, setup: &Setup, survey: &Survey) -> Frame {
+pub fn with_counts(frame: RunOutcome, setup: &Setup, survey: &Survey) -> RunOutcome {
     let timing = setup.config.timing();
     let code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
     let counts = survey.tally.counts(&code) + frame.main_tally.counts(&main_code);
     let mut kinds = survey.kinds.clone();
     kinds.merge(&frame.kinds);
-    Frame {
+    RunOutcome {
         method: Method::Replayed,
         tally: survey.tally.clone(),
         profile: survey.profile.clone(),

@@ -4,7 +4,7 @@ use emu::machine::arbiter::ArbiterKind;
 use emu::machine::bus::{Bus, Grant};
 use emu::machine::config::{BusConfig, MainConfig};
 use emu::machine::waits::Waits;
-use emu::machine::{Config, Frame};
+use emu::machine::{Config, RunOutcome};
 use emu::quantity::{Clocks, Octets};
 use isa::{Class, Op, Program};
 use proptest::prelude::*;
@@ -13,7 +13,7 @@ use proptest::test_runner::RngSeed;
 use super::builder::program;
 use super::machine::{dispatch, run, worker};
 
-fn check_accounts(frame: &Frame) {
+fn check_accounts(frame: &RunOutcome) {
     let uncached = frame.bus.moved - frame.cache.filled + frame.aside;
     assert_eq!(frame.asked, uncached + frame.cache.asked);
     assert_eq!(frame.asked, frame.kinds.iter().map(|kind| kind.octets).sum());
@@ -85,7 +85,7 @@ proptest! {
         prop_assert_eq!(&frame.profile, &alone.profile);
         prop_assert_eq!(&frame.tally, &alone.tally);
         prop_assert_eq!(&frame.memory, &alone.memory);
-        let summary = |frame: &Frame| {
+        let summary = |frame: &RunOutcome| {
             let mut items: Vec<_> =
                 frame.items.iter().map(|item| (item.subject, item.instructions, item.elementary)).collect();
             items.sort_unstable();

@@ -3,7 +3,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{Config, Failure, Frame, Options, Setup};
+use emu::machine::{Config, Failure, RunOutcome, Options, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
 use random::SplitMix64;
@@ -24,7 +24,7 @@ const ITEMS: i32 = 45;
 const FREE: i64 = 19;
 const NUMBER: i64 = 22;
 
-fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_limit: u64) -> Result<Frame, Failure> {
+fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_limit: u64) -> Result<RunOutcome, Failure> {
     let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
     let options = Options { has_items: true, engine, simd: features, ..Options::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
@@ -34,7 +34,7 @@ fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_li
 }
 
 /// Runs a program on both engines, the fast one with each of the host's features, and yields what all said.
-fn same(name: &str, core: &Program, step_limit: u64) -> Result<Frame, String> {
+fn same(name: &str, core: &Program, step_limit: u64) -> Result<RunOutcome, String> {
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
     let checked = run(EngineKind::Checked, None);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {

@@ -1,7 +1,7 @@
 //! Messages, barriers and the atomic counter between processors, and who waits for whom.
 
 use emu::machine::mailbox::Mailboxes;
-use emu::machine::{Config, Failure, Frame, Options, Setup};
+use emu::machine::{Config, Failure, RunOutcome, Options, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use emu::semantics::Message;
@@ -10,7 +10,7 @@ use isa::{Isa, Op, Program};
 
 use super::builder::{Builder, program};
 
-fn result(config: &Config, core: &Program, main: &Program) -> Result<Frame, Box<Trap>> {
+fn result(config: &Config, core: &Program, main: &Program) -> Result<RunOutcome, Box<Trap>> {
     let isa = Isa::base();
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![], options: Options::default() };
     match emu::run(&setup, Memory::new(vec![0; 400]), &mut |_| {}) {
@@ -20,7 +20,7 @@ fn result(config: &Config, core: &Program, main: &Program) -> Result<Frame, Box<
     }
 }
 
-fn frame(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Builder)) -> Frame {
+fn frame(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Builder)) -> RunOutcome {
     let config = Config { cores, ..Config::default() };
     let frame = result(&config, &program(core), &program(main)).unwrap_or_else(|trap| panic!("{trap}"));
     for used in &frame.processors {
@@ -35,7 +35,7 @@ fn trap(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Buil
     *result(&config, &program(core), &program(main)).expect_err("it traps")
 }
 
-fn word(frame: &Frame, index: u32) -> i32 {
+fn word(frame: &RunOutcome, index: u32) -> i32 {
     frame.memory.word(4 * index).expect("it is in the memory")
 }
 

@@ -3,7 +3,7 @@
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::{BusConfig, CacheConfig};
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, Frame, Method, Options, Setup};
+use emu::machine::{Config, RunOutcome, Method, Options, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 use proptest::prelude::*;
@@ -53,7 +53,7 @@ fn wander(steps: i32, spin: i32, octets: i32) -> Program {
 }
 
 /// Runs both ways and yields the frame, with how the first was run.
-fn both(config: &Config, core: &Program, main: &Program) -> Frame {
+fn both(config: &Config, core: &Program, main: &Program) -> RunOutcome {
     let isa = Isa::base();
     let setup = setup(config, &isa, core, main);
     let run = emu::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
@@ -218,7 +218,7 @@ fn work_that_depends_on_the_number_of_cores_is_not_shared() {
     let main = dispatch(20);
     let machines: Vec<Config> = [3, 5].into_iter().map(|cores| Config { cores, ..Config::default() }).collect();
     let frames = emu::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
-    let frames: Vec<Frame> = frames.into_iter().map(|frame| frame.expect("it runs")).collect();
+    let frames: Vec<RunOutcome> = frames.into_iter().map(|frame| frame.expect("it runs")).collect();
     assert_eq!(frames[0].method, Method::Replayed);
     assert_eq!(frames[1].method, Method::Stepped { why: "the work items depend on the number of cores" });
     for (config, frame) in machines.iter().zip(frames) {

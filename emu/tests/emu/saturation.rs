@@ -1,7 +1,7 @@
 //! Where the bus saturates: the report's estimate of a pixel as a load, against the closed form.
 
 use emu::machine::config::MainConfig;
-use emu::machine::{Config, Frame, Options, Setup};
+use emu::machine::{Config, RunOutcome, Options, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use isa::{Isa, Op, Program};
@@ -58,7 +58,7 @@ fn feed() -> Program {
     })
 }
 
-fn frames(cores: &[u32]) -> Vec<Frame> {
+fn frames(cores: &[u32]) -> Vec<RunOutcome> {
     let (isa, core, main) = (Isa::base(), pixel(), feed());
     let main_config = MainConfig { traffic: false, ..MainConfig::default() };
     let machine = |&cores: &u32| Config { cores, main: main_config.clone(), ..Config::default() };

@@ -2,7 +2,7 @@
 
 use crate::code::ExitCost;
 
-/// The numbers of a [`Toll`]: where each begins, and its bits. The sign of all is the [`FLAG`].
+/// The numbers of a [`Cost`]: where each begins, and its bits. The sign of all is the [`FLAG`].
 const STEPS: (u32, u32) = (0, 15);
 const INNER: (u32, u32) = (15, 15);
 const CLOCKS: (u32, u32) = (30, 17);
@@ -18,35 +18,35 @@ const fn half((start, bits): (u32, u32)) -> u64 {
 
 /// Instructions, steps of bodies beside them, clocks and elementary operations in one number, so that all are added up at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Toll(pub u64);
+pub struct Cost(pub u64);
 
-impl Toll {
+impl Cost {
     /// Half of the room for steps: what a sum of them may come to before it is looked at.
     pub const WHOLE: u32 = 1 << 14;
 
-    /// The toll of a step through an exit that costs as much; of a number that is too large, what makes the plan be refused.
-    pub(super) fn new(cost: &ExitCost) -> Toll {
+    /// The cost of a step through an exit that costs as much; of a number that is too large, what makes the plan be refused.
+    pub(super) fn new(cost: &ExitCost) -> Cost {
         let fit = |number: u32, (start, bits): (u32, u32)| u64::from(number.min(1 << (bits - 1))) << start;
-        Toll::step(cost.is_inner).plus(Toll(fit(cost.clocks, CLOCKS) | fit(cost.elementary, ELEMENTARY)))
+        Cost::step(cost.is_inner).plus(Cost(fit(cost.clocks, CLOCKS) | fit(cost.elementary, ELEMENTARY)))
     }
 
     /// An instruction or a step of a body, whatever else it takes.
-    pub(super) fn step(is_inner: bool) -> Toll {
-        Toll(1 << if is_inner { INNER.0 } else { STEPS.0 })
+    pub(super) fn step(is_inner: bool) -> Cost {
+        Cost(1 << if is_inner { INNER.0 } else { STEPS.0 })
     }
 
     /// So many instructions and steps of bodies, which must fit.
-    pub(super) fn of_steps(steps: u64, inner: u64) -> Toll {
-        Toll(steps << STEPS.0 | inner << INNER.0)
+    pub(super) fn of_steps(steps: u64, inner: u64) -> Cost {
+        Cost(steps << STEPS.0 | inner << INNER.0)
     }
 
-    pub(super) fn plus(self, more: Toll) -> Toll {
-        Toll(self.0 + more.0)
+    pub(super) fn plus(self, more: Cost) -> Cost {
+        Cost(self.0 + more.0)
     }
 
     /// The larger one of each number.
-    pub(super) fn max(self, other: Toll) -> Toll {
-        Toll(FIELDS.iter().map(|&field| self.part(field).max(other.part(field)) << field.0).sum())
+    pub(super) fn max(self, other: Cost) -> Cost {
+        Cost(FIELDS.iter().map(|&field| self.part(field).max(other.part(field)) << field.0).sum())
     }
 
     /// Whether none of the numbers has come to a quarter of the room for it: two runs and what their exits add fit on top of a half.
@@ -84,5 +84,5 @@ impl Toll {
     }
 }
 
-/// The bit that no toll has: a run has to be looked at before it begins.
+/// The bit that no cost has: a run has to be looked at before it begins.
 pub const FLAG: u64 = 1 << 63;

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use isa::{Fields, InstructionDef, Kind, Op};
 
-use super::cost::{FLAG, Toll};
+use super::cost::{FLAG, Cost};
 use crate::code::layout::{Order, Stage};
 use crate::code::registers::Registers;
 use crate::code::{Code, ExitCost, Slot};
@@ -35,7 +35,7 @@ pub struct Step {
     /// Number of the instruction whose meaning is in Rust.
     pub unit: u16,
     /// What a run takes that begins here, with the [`FLAG`] where it has to be looked at.
-    pub toll: u64,
+    pub cost: u64,
 }
 
 impl Step {
@@ -68,8 +68,8 @@ pub struct Plan<'a> {
     /// The program.
     pub code: &'a Code<'a>,
     order: Order,
-    /// Tolls of the places up to each, and up to the end, without what depends on exits: differences are those of runs.
-    before: Vec<Toll>,
+    /// Costs of the places up to each, and up to the end, without what depends on exits: differences are those of runs.
+    before: Vec<Cost>,
     /// By exit: the pass of the program.
     passes: Vec<u32>,
     has_inner_steps: bool,
@@ -77,8 +77,8 @@ pub struct Plan<'a> {
     pub words: u32,
     /// Whether their places are their numbers.
     is_in_order: bool,
-    /// By exit: what it adds to the toll of its run; 0 where all exits of the slot take the same.
-    extra: Vec<Toll>,
+    /// By exit: what it adds to the cost of its run; 0 where all exits of the slot take the same.
+    extra: Vec<Cost>,
     marks: Vec<Mark>,
     /// The steps, and one behind them; then, where registers may hold the number of cores, the same for an item in which one does.
     steps: Vec<Step>,
@@ -89,7 +89,7 @@ pub struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Finds the runs; `None` for timings with which an instruction takes so long that tolls do not fit.
+    /// Finds the runs; `None` for timings with which an instruction takes so long that costs do not fit.
     pub fn new(code: &'a Code<'a>) -> Option<Plan<'a>> {
         let order = Order::new(code);
         let stages = order.stages();
@@ -107,9 +107,9 @@ impl<'a> Plan<'a> {
         }
         firsts.push(passes.len());
         let mut sums = Vec::with_capacity(stages.len() + 1);
-        let mut extra = vec![Toll::default(); passes.len()];
-        let mut before = Toll::default();
-        let mut most = vec![Toll::default(); stages.len()];
+        let mut extra = vec![Cost::default(); passes.len()];
+        let mut before = Cost::default();
+        let mut most = vec![Cost::default(); stages.len()];
         for (place, stage) in stages.iter().enumerate() {
             sums.push(before);
             let exits = firsts[place]..firsts[place + 1];
@@ -118,21 +118,21 @@ impl<'a> Plan<'a> {
             }
             let costs: Vec<ExitCost> = passes[exits.clone()].iter().map(|&pass| code.costs()[pass as usize]).collect();
             let is_alike = costs.iter().all(|cost| cost == &costs[0]);
-            let bare = Toll::step(costs.first().is_some_and(|cost| cost.is_inner));
-            let whole = if is_alike { costs.first().map_or(bare, Toll::new) } else { bare };
+            let bare = Cost::step(costs.first().is_some_and(|cost| cost.is_inner));
+            let whole = if is_alike { costs.first().map_or(bare, Cost::new) } else { bare };
             most[place] = whole;
             for (exit, cost) in exits.zip(&costs) {
-                most[place] = most[place].max(Toll::new(cost));
+                most[place] = most[place].max(Cost::new(cost));
                 if !is_alike {
-                    extra[exit] = Toll(Toll::new(cost).0 - bare.0);
+                    extra[exit] = Cost(Cost::new(cost).0 - bare.0);
                 }
             }
             // Differences of sums that wrap are still right.
-            before = Toll(before.0.wrapping_add(whole.0));
+            before = Cost(before.0.wrapping_add(whole.0));
         }
         sums.push(before);
         let mut run_ends = vec![stages.len() as u32; stages.len() + 1];
-        let mut of_run = Toll::default();
+        let mut of_run = Cost::default();
         for place in (0..stages.len()).rev() {
             let is_end = ends_run(code, stages[place]);
             run_ends[place] = if is_end { place as u32 + 1 } else { run_ends[place + 1] };
@@ -198,10 +198,10 @@ impl<'a> Plan<'a> {
     }
 
     /// What a run takes, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
-    fn flagged_toll(&self, place: u32, is_held: bool) -> u64 {
+    fn flagged_cost(&self, place: u32, is_held: bool) -> u64 {
         match place <= self.end() {
-            true if self.asks(&(place..self.run_end(place)), is_held) => FLAG | self.run_toll(place).0,
-            true => self.run_toll(place).0,
+            true if self.asks(&(place..self.run_end(place)), is_held) => FLAG | self.run_cost(place).0,
+            true => self.run_cost(place).0,
             false => FLAG,
         }
     }
@@ -219,23 +219,23 @@ impl<'a> Plan<'a> {
             edges: [FLAG; 2],
             target: self.end() + 1,
             unit: 0,
-            toll: self.flagged_toll(place, is_held),
+            cost: self.flagged_cost(place, is_held),
         };
         let Some(&stage) = self.order.stages().get(place as usize) else { return step };
         let target = target(code, &self.order, stage);
         step.target = target.unwrap_or(self.end() + 1);
         if let Stage::Hop(_) = stage {
-            step.edges[1] = self.flagged_toll(step.target, is_held);
+            step.edges[1] = self.flagged_cost(step.target, is_held);
             return Step { row: Step::HOP, exits: 1, ..step };
         }
         let Some((op, row)) = code.slots()[slot as usize].op.zip(code.slot_row(slot)) else { return step };
         step.exits = row.outcomes.len() as u8;
         let extra = &self.extra[first..first + row.outcomes.len()];
-        step.is_uneven = extra.iter().any(|extra| *extra != Toll::default());
+        step.is_uneven = extra.iter().any(|extra| *extra != Cost::default());
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
         step.edges = [
-            self.flagged_toll(place + 1, is_held) + extra_of(0),
-            self.flagged_toll(step.target, is_held) + extra_of(row.outcomes.len().saturating_sub(1)),
+            self.flagged_cost(place + 1, is_held) + extra_of(0),
+            self.flagged_cost(step.target, is_held) + extra_of(row.outcomes.len().saturating_sub(1)),
         ];
         // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
         step.fields = code.slots()[slot as usize].fields;
@@ -268,9 +268,9 @@ impl<'a> Plan<'a> {
         if self.is_in_order { slot.min(self.words) } else { self.order.place(slot) }
     }
 
-    /// What an exit adds to the toll of its run.
+    /// What an exit adds to the cost of its run.
     #[inline(always)]
-    pub fn extra(&self, exit: usize) -> Toll {
+    pub fn extra(&self, exit: usize) -> Cost {
         self.extra[exit]
     }
 
@@ -331,9 +331,9 @@ impl<'a> Plan<'a> {
 
     /// What a run takes, without what depends on exits.
     #[inline(always)]
-    pub fn run_toll(&self, place: u32) -> Toll {
+    pub fn run_cost(&self, place: u32) -> Cost {
         let [from, to] = [place, self.run_end(place)].map(|place| self.before[place as usize].0);
-        Toll(to.wrapping_sub(from))
+        Cost(to.wrapping_sub(from))
     }
 
     /// The decoded words.

@@ -1,7 +1,7 @@
 //! What an item took so far, and when it is to be looked at: four sums in one number of 64 bits, which are emptied before one of them is full
 //! or the step limit is reached.
 
-use crate::engine::cost::{FLAG, HALVES, Toll};
+use crate::engine::cost::{FLAG, HALVES, Cost};
 use crate::engine::plan::Plan;
 use crate::engine::taint::Origin;
 use crate::engine::{CoreId, State};
@@ -18,7 +18,7 @@ pub(super) struct Fuse {
     elementary: u64,
     limit: u64,
     /// Where the sums of the steps began, so that one is full before both come to the limit.
-    bias: Toll,
+    bias: Cost,
     is_following: bool,
     /// What it knows of the cores.
     origin: Origin,
@@ -32,7 +32,7 @@ impl Fuse {
     /// At the state of an item.
     pub(super) fn new(state: &State, seat: CoreId, origin: Origin, is_following: bool) -> Fuse {
         let State { steps, inner_steps, clocks, elementary, pc, .. } = *state;
-        let (limit, bias, followed) = (seat.step_limit, Toll::default(), (pc, 0));
+        let (limit, bias, followed) = (seat.step_limit, Cost::default(), (pc, 0));
         Fuse { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
     }
 
@@ -47,23 +47,23 @@ impl Fuse {
 
     /// The sums at the beginning.
     pub(super) fn begin(&mut self, plan: &Plan) -> u64 {
-        const FULL: u64 = Toll::WHOLE as u64;
+        const FULL: u64 = Cost::WHOLE as u64;
         let room = self.limit.saturating_sub(self.all_steps());
         // Where there are two kinds of steps, each of the two sums may come to half of what is left.
         self.bias = match plan.has_inner_steps() {
-            false => Toll::of_steps(FULL - FULL.min(room), 0),
-            true => Toll::of_steps(FULL - FULL.min(room / 2), FULL - FULL.min(room / 2)),
+            false => Cost::of_steps(FULL - FULL.min(room), 0),
+            true => Cost::of_steps(FULL - FULL.min(room / 2), FULL - FULL.min(room / 2)),
         };
         self.bias.0
     }
 
-    /// Looks at what is to be looked at before the run at a place begins. `toll` is what it takes, and the exit that led there. Yields the
+    /// Looks at what is to be looked at before the run at a place begins. `cost` is what it takes, and the exit that led there. Yields the
     /// sums, and whether the run begins; else they are those before it.
     #[cold]
     #[inline(never)]
-    pub(super) fn look(&mut self, plan: &Plan, place: u32, sums: u64, toll: u64) -> (u64, bool) {
-        let run = plan.run_toll(place);
-        let sums = self.empty(plan, sums + ((toll & !FLAG) - run.0));
+    pub(super) fn look(&mut self, plan: &Plan, place: u32, sums: u64, cost: u64) -> (u64, bool) {
+        let run = plan.run_cost(place);
+        let sums = self.empty(plan, sums + ((cost & !FLAG) - run.0));
         let after = self.all_steps() + run.steps() + run.inner_steps();
         if after > self.limit {
             return (sums, false);
@@ -79,11 +79,11 @@ impl Fuse {
     }
 
     fn empty(&mut self, plan: &Plan, sums: u64) -> u64 {
-        let toll = Toll(sums - self.bias.0);
-        self.steps += toll.steps();
-        self.inner_steps += toll.inner_steps();
-        self.clocks += toll.clocks();
-        self.elementary += toll.elementary();
+        let cost = Cost(sums - self.bias.0);
+        self.steps += cost.steps();
+        self.inner_steps += cost.inner_steps();
+        self.clocks += cost.clocks();
+        self.elementary += cost.elementary();
         self.begin(plan)
     }
 
@@ -98,8 +98,8 @@ impl Fuse {
 
     /// Clocks before the rest of a run.
     #[inline(always)]
-    pub(super) fn clocks_before(&self, sums: u64, rest: Toll) -> u64 {
-        self.clocks + Toll(sums.wrapping_sub(rest.0)).clocks()
+    pub(super) fn clocks_before(&self, sums: u64, rest: Cost) -> u64 {
+        self.clocks + Cost(sums.wrapping_sub(rest.0)).clocks()
     }
 
     /// Brings the state up to date at a place; `rest` is what of the run was not executed.
@@ -109,7 +109,7 @@ impl Fuse {
         state: &mut State,
         sums: u64,
         place: u32,
-        rest: Option<Toll>,
+        rest: Option<Cost>,
     ) -> Origin {
         self.empty(plan, sums);
         if let Some(rest) = rest {

@@ -111,7 +111,7 @@ fn walk<L: Wire, O: RunObserver>(
     let first = walk.begin(from, sums);
     run(registers, first, &mut walk);
     let Ended { stopped, place, sums, is_cut } = walk.stop;
-    let rest = is_cut.then(|| plan.run_toll(place));
+    let rest = is_cut.then(|| plan.run_cost(place));
     if is_cut {
         walk.count.runs[place as usize].cut += 1;
         if O::IS_ACTIVE {

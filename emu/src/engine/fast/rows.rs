@@ -65,9 +65,9 @@ macro_rules! thread {
 macro_rules! turn {
     ($way:expr, $sums:ident, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
         let way: Way = $way;
-        let after = $sums.wrapping_add(way.toll);
+        let after = $sums.wrapping_add(way.cost);
         if after & LOOK != 0 {
-            return $walk.look(way.step, way.toll, $sums);
+            return $walk.look(way.step, way.cost, $sums);
         }
         thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O))
     }};

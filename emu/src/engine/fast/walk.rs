@@ -27,7 +27,7 @@ pub(super) struct Place {
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     pub step: *const Step,
-    pub toll: u64,
+    pub cost: u64,
 }
 
 /// How and where a walk stopped.
@@ -108,30 +108,30 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     #[inline(always)]
     pub fn way_to(&mut self, place: u32) -> Way {
         let step = self.step(place);
-        let toll = match self.count.runs.get_mut(place as usize) {
+        let cost = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
                 run.begun += 1;
                 // SAFETY: there is a step for each of the counts, which `super::walk` has compared. The safe twin is `Plan::steps`.
-                unsafe { (*step).toll }
+                unsafe { (*step).cost }
             }
             None => FLAG,
         };
-        Way { step, toll }
+        Way { step, cost }
     }
 
     /// Begins at a place.
     pub fn begin(&mut self, place: u32, sums: u64) -> Place {
         self.from = place;
         let way = self.way_to(place);
-        self.look(way.step, way.toll, sums)
+        self.look(way.step, way.cost, sums)
     }
 
     /// Looks at what is to be looked at before a run begins, which is counted already.
     #[cold]
     #[inline(never)]
-    pub fn look(&mut self, step: *const Step, toll: u64, sums: u64) -> Place {
+    pub fn look(&mut self, step: *const Step, cost: u64, sums: u64) -> Place {
         let place = self.place(step);
-        let (sums, begins) = self.fuse.look(self.plan, place, sums, toll);
+        let (sums, begins) = self.fuse.look(self.plan, place, sums, cost);
         self.steps = self.plan.steps_of(self.fuse.is_held()).as_ptr();
         if begins {
             return Place { step: self.step(place), sums };
@@ -169,11 +169,11 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             self.tell(place, next, flow.motion);
         }
         if is_falling {
-            return Way { step: step.wrapping_add(1), toll: now.edges[0] };
+            return Way { step: step.wrapping_add(1), cost: now.edges[0] };
         }
         if has_target {
             self.count.take_exit(number);
-            return Way { step: self.step(now.target), toll: now.edges[1] };
+            return Way { step: self.step(now.target), cost: now.edges[1] };
         }
         self.way_to(self.next_place(step, now, flow))
     }
@@ -194,7 +194,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             self.from = now.target;
         }
         self.count.take_exit(now.exit as usize);
-        Way { step: self.step(now.target), toll: now.edges[1] }
+        Way { step: self.step(now.target), cost: now.edges[1] }
     }
 
     /// Executes an instruction with a meaning in Rust.
@@ -229,7 +229,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             return self.stop(Ended { stopped: Stopped::Fault(fault), place: next, sums, is_cut: false });
         }
         let way = self.way_to(next);
-        self.look(way.step, way.toll, sums)
+        self.look(way.step, way.cost, sums)
     }
 
     /// Tells the link when it is asked.
@@ -284,6 +284,6 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 /// Tells a link when it is asked by a slot at a place.
 #[inline(always)]
 fn note(plan: &Plan, fuse: &Fuse, link: &mut impl Wire, (slot, place): (u32, u32), sums: u64) {
-    let clocks = if link.keeps_time() { fuse.clocks_before(sums, plan.run_toll(place)) } else { 0 };
+    let clocks = if link.keeps_time() { fuse.clocks_before(sums, plan.run_cost(place)) } else { 0 };
     link.note(Moment { pc: slot, clocks });
 }

@@ -5,14 +5,14 @@
 mod count;
 #[cfg(target_arch = "x86_64")]
 mod doubles;
-mod fuse;
+mod fuel;
 mod operands;
 #[cfg(target_arch = "x86_64")]
 mod planes;
 mod rows;
 mod walk;
 
-use fuse::Fuse;
+use fuel::Fuel;
 use walk::{Ended, Place, Walk};
 
 use count::Count;
@@ -98,16 +98,16 @@ fn walk<L: Wire, O: RunObserver>(
 ) -> Stopped {
     // Rows count without a look at how much there is.
     assert_eq!((count.runs.len(), count.exits.len()), (plan.steps().len(), plan.exits()), "they are of one plan");
-    let fuse = Fuse::new(state, seat, count.origin, count.is_following);
+    let fuel = Fuel::new(state, seat, count.origin, count.is_following);
     if state.pc as usize >= plan.slots().len() {
         return Stopped::Unusual;
     }
     let from = plan.place_of(state.pc);
     let State { registers, buffer, units, .. } = &mut *state;
     let stop = Ended { stopped: Stopped::Unusual, place: from, sums: 0, is_cut: false };
-    let steps = plan.steps_of(fuse.is_held()).as_ptr();
-    let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuse, steps, from, stop };
-    let sums = walk.fuse.begin(plan);
+    let steps = plan.steps_of(fuel.is_held()).as_ptr();
+    let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuel, steps, from, stop };
+    let sums = walk.fuel.begin(plan);
     let first = walk.begin(from, sums);
     run(registers, first, &mut walk);
     let Ended { stopped, place, sums, is_cut } = walk.stop;
@@ -118,7 +118,7 @@ fn walk<L: Wire, O: RunObserver>(
             walk.observer.walked(walk.from..place);
         }
     }
-    let fuse = walk.fuse;
-    count.origin = fuse.settle(plan, state, sums, place, rest);
+    let fuel = walk.fuel;
+    count.origin = fuel.settle(plan, state, sums, place, rest);
     stopped
 }

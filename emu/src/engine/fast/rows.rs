@@ -265,7 +265,7 @@ macro_rules! stamp {
                 use isa::number::Nearest32;
                 use isa::table::{AnyOutcome, outcome};
 
-                use super::super::super::fuse::LOOK;
+                use super::super::super::fuel::LOOK;
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Place, Walk, Way};
                 use crate::engine::{Stopped, Wire};

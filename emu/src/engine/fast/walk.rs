@@ -3,7 +3,7 @@
 use isa::table::AnyOutcome;
 
 use super::count::Count;
-use super::fuse::Fuse;
+use super::fuel::Fuel;
 use crate::code::octets::Buffer;
 use crate::code::registers::Registers;
 use crate::code::trap::{Fault, Stop};
@@ -16,7 +16,7 @@ use crate::extension::{Numbers, Units};
 use crate::profile::RunObserver;
 use crate::semantics::{Flow, Motion};
 
-/// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuse was looked at.
+/// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuel was looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub step: *const Step,
@@ -49,8 +49,8 @@ pub(super) struct Walk<'a, L, O> {
     pub link: &'a mut L,
     pub count: &'a mut Count,
     pub observer: &'a mut O,
-    pub fuse: Fuse,
-    /// The plan's steps for what the fuse knows of the cores.
+    pub fuel: Fuel,
+    /// The plan's steps for what the fuel knows of the cores.
     pub steps: *const Step,
     /// The place from which on the observer was told of nothing.
     pub from: u32,
@@ -131,8 +131,8 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     #[inline(never)]
     pub fn look(&mut self, step: *const Step, cost: u64, sums: u64) -> Place {
         let place = self.place(step);
-        let (sums, begins) = self.fuse.look(self.plan, place, sums, cost);
-        self.steps = self.plan.steps_of(self.fuse.is_held()).as_ptr();
+        let (sums, begins) = self.fuel.look(self.plan, place, sums, cost);
+        self.steps = self.plan.steps_of(self.fuel.is_held()).as_ptr();
         if begins {
             return Place { step: self.step(place), sums };
         }
@@ -201,9 +201,9 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     pub fn unit(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
         let at = Place { step, sums };
         let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Unusual, at) };
-        let (plan, fuse, link) = (self.plan, &self.fuse, &mut *self.link);
+        let (plan, fuel, link) = (self.plan, &self.fuel, &mut *self.link);
         let mut read = |address, words: &mut [i32]| {
-            note(plan, fuse, link, (now.slot, plan.place_of(now.slot)), sums);
+            note(plan, fuel, link, (now.slot, plan.place_of(now.slot)), sums);
             link.read(address, words)
         };
         let ending = match unit.execute(&now.fields, registers, self.buffer, &mut read, &Numbers::Nearest32) {
@@ -236,7 +236,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     #[inline(always)]
     pub fn note(&mut self, at: Place, now: &Step) {
         let place = self.place(at.step);
-        note(self.plan, &self.fuse, self.link, (now.slot, place), at.sums);
+        note(self.plan, &self.fuel, self.link, (now.slot, place), at.sums);
     }
 
     fn pass_seen(&mut self, exit: usize, is_only: bool, units: u32) {
@@ -273,7 +273,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     fn count_units(&mut self, exit: usize, units: u32) {
         self.count.add_units(exit, units);
         if let Some(pass) = self.plan.pass(exit) {
-            self.fuse.add_units(self.plan, pass, units);
+            self.fuel.add_units(self.plan, pass, units);
         }
         if O::IS_ACTIVE {
             self.pass_seen(exit, true, units);
@@ -283,7 +283,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
 /// Tells a link when it is asked by a slot at a place.
 #[inline(always)]
-fn note(plan: &Plan, fuse: &Fuse, link: &mut impl Wire, (slot, place): (u32, u32), sums: u64) {
-    let clocks = if link.keeps_time() { fuse.clocks_before(sums, plan.run_cost(place)) } else { 0 };
+fn note(plan: &Plan, fuel: &Fuel, link: &mut impl Wire, (slot, place): (u32, u32), sums: u64) {
+    let clocks = if link.keeps_time() { fuel.clocks_before(sums, plan.run_cost(place)) } else { 0 };
     link.note(Moment { pc: slot, clocks });
 }

@@ -11,7 +11,7 @@ pub(super) const LOOK: u64 = HALVES | FLAG;
 
 /// What an item took before its sums were emptied.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fuse {
+pub(super) struct Fuel {
     steps: u64,
     inner_steps: u64,
     clocks: u64,
@@ -28,12 +28,12 @@ pub(super) struct Fuse {
     followed: (u32, u64),
 }
 
-impl Fuse {
+impl Fuel {
     /// At the state of an item.
-    pub(super) fn new(state: &State, seat: CoreId, origin: Origin, is_following: bool) -> Fuse {
+    pub(super) fn new(state: &State, seat: CoreId, origin: Origin, is_following: bool) -> Fuel {
         let State { steps, inner_steps, clocks, elementary, pc, .. } = *state;
         let (limit, bias, followed) = (seat.step_limit, Cost::default(), (pc, 0));
-        Fuse { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
+        Fuel { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
     }
 
     /// Whether a register holds the number of cores.

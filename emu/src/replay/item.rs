@@ -122,8 +122,8 @@ impl Link for StrandLink<'_> {
     }
 
     #[inline(always)]
-    fn glance(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
-        let found = self.memory.glance(address, octets)?;
+    fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
+        let found = self.memory.peek(address, octets)?;
         if self.strand.message.is_some() {
             return None;
         }

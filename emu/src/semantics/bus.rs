@@ -69,7 +69,7 @@ pub trait Link {
 
     /// What a read finds, where that can be had at once; then it has been read. `None` says nothing, and then nothing has happened.
     #[inline(always)]
-    fn glance(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
+    fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
         let _ = (address, octets);
         None
     }
@@ -142,8 +142,8 @@ macro_rules! hand_on {
             $to.$name($($argument),*)
         })*
 
-        fn glance(&mut $link, address: u32, octets: u32) -> Option<&[u8]> {
-            $to.glance(address, octets)
+        fn peek(&mut $link, address: u32, octets: u32) -> Option<&[u8]> {
+            $to.peek(address, octets)
         }
     };
 }
@@ -163,15 +163,15 @@ impl<L: Link + ?Sized> Link for &mut L {
     methods! { hand_on! self => (**self); }
 }
 
-/// What of a link can be had at once: [`Link::glance`].
-pub(crate) struct Glance<'a, L>(pub &'a mut L);
+/// What of a link can be had at once: [`Link::peek`].
+pub(crate) struct Peek<'a, L>(pub &'a mut L);
 
-impl<L: Link> Link for Glance<'_, L> {
+impl<L: Link> Link for Peek<'_, L> {
     methods! { refuse! }
 
     #[inline(always)]
     fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        Ok(words_of(self.0.glance(address, 4 * N as u32).ok_or(Stop::Wait)?))
+        Ok(words_of(self.0.peek(address, 4 * N as u32).ok_or(Stop::Wait)?))
     }
 }
 

@@ -18,7 +18,7 @@ mod wide;
 use isa::number::Vector;
 use isa::table::outcome;
 
-pub(crate) use bus::{Glance, hand_on, methods, refuse};
+pub(crate) use bus::{Peek, hand_on, methods, refuse};
 pub use bus::{Link, Message, Port};
 pub use control::{End, Flow, Motion};
 pub use numbers::Numbers;

@@ -117,7 +117,7 @@ impl Memory {
 
     /// `length` octets from `address` on where no pages were written; `None` also outside the memory.
     #[inline(always)]
-    pub fn glance(&self, address: u32, length: u32) -> Option<&[u8]> {
+    pub fn peek(&self, address: u32, length: u32) -> Option<&[u8]> {
         let range = self.range(address, length as usize).ok()?;
         self.pages.is_empty().then(|| &self.shared[range])
     }
@@ -298,8 +298,8 @@ mod tests {
         memory.write(5, &[1, 2, 3]).unwrap();
         drop(memory.clone());
         memory.write(PAGE as u32, &[4]).unwrap();
-        assert_eq!(memory.glance(4, 4), Some(&[memory.octets()[4], 1, 2, 3][..]));
-        assert_eq!((memory.glance(SIZE as u32 - 7, 8), memory.glance(u32::MAX, 1)), (None, None));
+        assert_eq!(memory.peek(4, 4), Some(&[memory.octets()[4], 1, 2, 3][..]));
+        assert_eq!((memory.peek(SIZE as u32 - 7, 8), memory.peek(u32::MAX, 1)), (None, None));
         assert_eq!((memory.own_octets(), memory.into_octets()[5..8].to_vec()), (0, vec![1, 2, 3]));
     }
 
@@ -327,8 +327,8 @@ mod tests {
                     let mut octets = vec![0; length];
                     prop_assert_eq!(memory.read(address, &mut octets).is_ok(), is_inside);
                     prop_assert_eq!(memory.holds(address, length as u32).is_ok(), is_inside);
-                    let glance = memory.glance(address, length as u32);
-                    prop_assert_eq!(glance, (is_inside && memory.pages.is_empty()).then(|| &model[range.clone()]));
+                    let peek = memory.peek(address, length as u32);
+                    prop_assert_eq!(peek, (is_inside && memory.pages.is_empty()).then(|| &model[range.clone()]));
                     let words: Result<[i32; 9], Fault> = memory.words(address);
                     let mut listed = [0; 9];
                     prop_assert_eq!(memory.read_words(address, &mut listed).map(|()| listed), words);

@@ -166,7 +166,7 @@ macro_rules! row {
             one_outcome!($name);
             walk.note(Place { step, sums }, now);
             if is_read(Op::$name) {
-                let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Glance(&mut *walk.link) };
+                let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Peek(&mut *walk.link) };
                 if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
                     let next = walk.go_on(Place { step, sums });
@@ -273,7 +273,7 @@ macro_rules! stamp {
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::semantics::RayRoom;
                 use crate::semantics::{
-                    BusRoom, ControlRoom, End, Flow, Glance, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
+                    BusRoom, ControlRoom, End, Flow, Peek, IntegerRoom, LocalRoom, Port, ScalarRoom, VectorRoom, WideRoom,
                     split_operands,
                 };
                 use crate::engine::plan::{Step, padded};

@@ -179,7 +179,7 @@ impl Runner<'_> {
             Some(Stopped::Halt) => Pause::Halt,
             Some(Stopped::Wait) => Pause::Wait,
             Some(Stopped::Fault(fault)) => Pause::Fault(fault),
-            Some(Stopped::Unusual) | None => {
+            Some(Stopped::Bailout) | None => {
                 interpreter::run(self.code, seat, state, arithmetic, link, tally, observer)
             }
         }

@@ -15,7 +15,7 @@ use crate::engine::taint::Mark;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Step {
-    /// Place of the row in the table, [`Step::HOP`], [`Step::UNIT`], or [`Step::UNUSUAL`].
+    /// Place of the row in the table, [`Step::HOP`], [`Step::UNIT`], or [`Step::BAILOUT`].
     pub row: u8,
     /// Number of its exits.
     pub exits: u8,
@@ -44,7 +44,7 @@ impl Step {
     /// Row of instructions whose meaning is in Rust.
     pub const UNIT: u8 = Step::HOP + 1;
     /// Row of what is for the interpreter, and of what stands behind the program.
-    pub const UNUSUAL: u8 = Step::UNIT + 1;
+    pub const BAILOUT: u8 = Step::UNIT + 1;
 }
 
 /// What a pass is called that belongs to no exit of the program: that through a hop.
@@ -210,7 +210,7 @@ impl<'a> Plan<'a> {
         let code = self.code;
         let slot = self.order.slot(place);
         let mut step = Step {
-            row: Step::UNUSUAL,
+            row: Step::BAILOUT,
             exits: 0,
             is_uneven: false,
             fields: Fields::default(),
@@ -249,7 +249,7 @@ impl<'a> Plan<'a> {
             }
         }
         (step.row, step.unit) = match op {
-            _ if is_odd => (Step::UNUSUAL, 0),
+            _ if is_odd => (Step::BAILOUT, 0),
             Op::Ext(number) => (Step::UNIT, number),
             _ => (op.index() as u8, 0),
         };

@@ -100,11 +100,11 @@ fn walk<L: Wire, O: RunObserver>(
     assert_eq!((count.runs.len(), count.exits.len()), (plan.steps().len(), plan.exits()), "they are of one plan");
     let fuel = Fuel::new(state, seat, count.origin, count.is_following);
     if state.pc as usize >= plan.slots().len() {
-        return Stopped::Unusual;
+        return Stopped::Bailout;
     }
     let from = plan.place_of(state.pc);
     let State { registers, buffer, units, .. } = &mut *state;
-    let stop = Ended { stopped: Stopped::Unusual, place: from, sums: 0, is_cut: false };
+    let stop = Ended { stopped: Stopped::Bailout, place: from, sums: 0, is_cut: false };
     let steps = plan.steps_of(fuel.is_held()).as_ptr();
     let mut walk = Walk { plan, seat, buffer, units, link, count, observer, fuel, steps, from, stop };
     let sums = walk.fuel.begin(plan);

@@ -155,7 +155,7 @@ macro_rules! row {
                 Ok(result) => {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
                 }
-                Err(_) => return walk.stop_before(Stopped::Unusual, Place { step, sums }),
+                Err(_) => return walk.stop_before(Stopped::Bailout, Place { step, sums }),
             }
             let next = walk.go_on(Place { step, sums });
             thread!(next, (registers walk L O))
@@ -202,7 +202,7 @@ macro_rules! row {
             let has_target = const { false $(|| is_relative!($kind))* };
             let goes_on = flow.next == now.slot + 1;
             if matches!(flow.end, Some(End::Trap(_))) || !has_target && !goes_on && flow.next >= walk.plan.words {
-                return walk.stop_before(Stopped::Unusual, Place { step, sums });
+                return walk.stop_before(Stopped::Bailout, Place { step, sums });
             }
             let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
             if let Some(End::Halt) = flow.end {
@@ -293,8 +293,8 @@ macro_rules! stamp {
                     walk.unit(registers, step, sums, now)
                 }}
 
-                function! { $features unusual (registers step walk sums now fields L O) {
-                    walk.stop_before(Stopped::Unusual, Place { step, sums })
+                function! { $features bailout (registers step walk sums now fields L O) {
+                    walk.stop_before(Stopped::Bailout, Place { step, sums })
                 }}
 
                 /// The rows by number.
@@ -302,7 +302,7 @@ macro_rules! stamp {
 
                 impl<L: Wire, O: RunObserver> All<L, O> {
                     /// In the order of the numbers of [`Step`].
-                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O>,)*)* hop::<L, O>, unit::<L, O>, unusual::<L, O>]);
+                    pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O>,)*)* hop::<L, O>, unit::<L, O>, bailout::<L, O>]);
                 }
             }
 

@@ -137,7 +137,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
             return Place { step: self.step(place), sums };
         }
         self.count.runs[place as usize].cut += 1;
-        self.stop(Ended { stopped: Stopped::Unusual, place, sums, is_cut: false })
+        self.stop(Ended { stopped: Stopped::Bailout, place, sums, is_cut: false })
     }
 
     /// Stops behind the program's end.
@@ -200,7 +200,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
     /// Executes an instruction with a meaning in Rust.
     pub fn unit(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
         let at = Place { step, sums };
-        let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Unusual, at) };
+        let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Bailout, at) };
         let (plan, fuel, link) = (self.plan, &self.fuel, &mut *self.link);
         let mut read = |address, words: &mut [i32]| {
             note(plan, fuel, link, (now.slot, plan.place_of(now.slot)), sums);

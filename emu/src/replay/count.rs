@@ -1,6 +1,6 @@
 //! A frame without clocks: what the work items answer and count, for those who ask nothing of time.
 
-use super::item::Keeping;
+use super::item::RecordLevel;
 use super::prerun;
 use super::recording::Reason;
 use crate::code::octets::Memory;
@@ -48,7 +48,7 @@ impl Task for Counting<'_> {
         let Counting { setup, memory } = self;
         super::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);
-        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Passes, &mut |batch| {
+        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Passes, &mut |batch| {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {

@@ -12,7 +12,7 @@ use crate::semantics::{Link, Message};
 
 /// What is kept of work items beside their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Keeping {
+pub enum RecordLevel {
     /// Passes, and the segments that replaying them takes.
     Segments,
     /// Passes; segments not, as far as that saves time.
@@ -36,14 +36,14 @@ pub(super) struct StrandLink<'s> {
     pub room: &'s Room,
     pub kinds: &'s mut Kinds,
     pub strand: &'s mut Strand,
-    pub keeping: Keeping,
+    pub level: RecordLevel,
     pub moment: Moment,
 }
 
 impl Wire for StrandLink<'_> {
     #[inline(always)]
     fn keeps_time(&self) -> bool {
-        self.keeping == Keeping::Segments
+        self.level == RecordLevel::Segments
     }
 
     #[inline(always)]
@@ -58,9 +58,9 @@ impl StrandLink<'_> {
         if self.strand.message.is_some() {
             return Err(Stop::Wait);
         }
-        match self.keeping {
-            Keeping::Passes => self.kinds.add(self.moment.pc, Some(request)),
-            Keeping::Segments => return self.keep(request),
+        match self.level {
+            RecordLevel::Passes => self.kinds.add(self.moment.pc, Some(request)),
+            RecordLevel::Segments => return self.keep(request),
         }
         Ok(())
     }
@@ -127,9 +127,9 @@ impl Link for StrandLink<'_> {
         if self.strand.message.is_some() {
             return None;
         }
-        match self.keeping {
-            Keeping::Passes => self.kinds.add_known(self.moment.pc, address, octets)?,
-            Keeping::Segments => self.keep_at_once(address, octets)?,
+        match self.level {
+            RecordLevel::Passes => self.kinds.add_known(self.moment.pc, address, octets)?,
+            RecordLevel::Segments => self.keep_at_once(address, octets)?,
         }
         Some(found)
     }

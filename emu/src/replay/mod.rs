@@ -33,7 +33,7 @@ use crate::profile::{RunObserver, Unobserved};
 use crate::semantics::Watch;
 use cursor::{Cursor, Replayer};
 use feed::{Batch, Feed};
-use item::Keeping;
+use item::RecordLevel;
 use prerun::Survey;
 use record::{Prefix, Recorder};
 
@@ -73,7 +73,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
     if extension::keeps_state(&code) {
         return Err("an instruction keeps its state from one work item to the next");
     }
-    Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), Keeping::Segments).prefix()
+    Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
 }
 
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
@@ -92,7 +92,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     std::thread::scope(|scope| {
         let own = arithmetic.clone();
         let prerun = scope.spawn(move || {
-            prerun::run::<T, O>(&setups[0], memory, own, Keeping::Segments, &mut |batch| {
+            prerun::run::<T, O>(&setups[0], memory, own, RecordLevel::Segments, &mut |batch| {
                 senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
             })
         });

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::budget::Room;
 use super::feed::Batch;
-use super::item::Keeping;
+use super::item::RecordLevel;
 use super::record::Recorder;
 use super::recording::{Reason, Recording};
 use crate::code::Code;
@@ -140,13 +140,13 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     setup: &Setup,
     memory: &Memory,
     arithmetic: T,
-    keeping: Keeping,
+    level: RecordLevel,
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
 ) -> Survey {
     let config = setup.config;
     let core_code = Code::new(setup.core, setup.isa, config.timing());
     let main_code = Code::new(setup.main, setup.isa, config.timing());
-    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), keeping);
+    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), level);
     let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
     let mut memory = memory.clone();
     let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };

@@ -1,7 +1,7 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
 use super::budget::Room;
-use super::item::{Keeping, Strand, StrandLink};
+use super::item::{RecordLevel, Strand, StrandLink};
 use super::recording::{Reason, Recording, Segment, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
@@ -117,7 +117,7 @@ pub struct Recorder<'a, T, O> {
     seat: CoreId,
     state: State,
     initial: Buffer,
-    keeping: Keeping,
+    level: RecordLevel,
     tally: Tally,
     /// Octets of all items.
     pub kinds: Kinds,
@@ -130,7 +130,7 @@ pub struct Recorder<'a, T, O> {
 
 impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// A core that has recorded nothing.
-    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, keeping: Keeping) -> Self {
+    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, level: RecordLevel) -> Self {
         let config = setup.config;
         let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
@@ -139,7 +139,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         Recorder {
             usual: 0,
             runner: choose(kind, &demand),
-            keeping,
+            level,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
             kinds: Kinds::new(&setup.kinds),
@@ -201,9 +201,9 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
 
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
     fn run_quickly(&mut self, strand: &mut Strand, room: &Room) -> Option<Stopped> {
-        let (memory, main, keeping) = (self.memory, self.seat.cores, self.keeping);
+        let (memory, main, level) = (self.memory, self.seat.cores, self.level);
         let moment = Moment { pc: 0, clocks: 0 };
-        let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, keeping, moment };
+        let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, level, moment };
         let (seat, state) = (self.seat, &mut self.state);
         let Independence { inner: observer, origin, .. } = &mut self.observer;
         match O::IS_ACTIVE {

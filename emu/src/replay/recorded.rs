@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 
 use super::feed::{Batch, Feed};
-use super::item::Keeping;
+use super::item::RecordLevel;
 use super::prerun::{self, Survey};
 use super::record::Prefix;
 use super::recording::Reason;
@@ -64,7 +64,7 @@ impl Task for Recording<'_> {
         let Recording { setup, memory } = self;
         let prefix = super::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
-        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), Keeping::Segments, &mut |batch| {
+        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Segments, &mut |batch| {
             batches.push(batch);
             true
         });

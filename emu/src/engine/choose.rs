@@ -3,7 +3,7 @@
 use super::fast::Fast;
 use super::host::HostSimd;
 use super::state::{CoreId, Pause, State};
-use super::taint::Origin;
+use super::taint::Taint;
 use super::{Engine, Refusal, Stopped, Timeless, Wire, interpreter};
 use crate::code::Code;
 use crate::code::tally::Tally;
@@ -105,11 +105,11 @@ macro_rules! engines {
                 seat: CoreId,
                 state: &mut State,
                 link: &mut L,
-                origin: &mut Origin,
+                taint: &mut Taint,
                 observer: &mut O,
             ) -> Stopped {
                 match self {
-                    $(Ready::$kind(engine) => engine.run(seat, state, link, origin, observer),)*
+                    $(Ready::$kind(engine) => engine.run(seat, state, link, taint, observer),)*
                 }
             }
 
@@ -175,7 +175,7 @@ impl Runner<'_> {
         observer: &mut O,
     ) -> Pause {
         let timed: &mut &mut dyn Wire = &mut (&mut Timeless(&mut *link) as _);
-        match self.run_ahead(seat, state, timed, &mut Origin::default(), observer) {
+        match self.run_ahead(seat, state, timed, &mut Taint::default(), observer) {
             Some(Stopped::Halt) => Pause::Halt,
             Some(Stopped::Wait) => Pause::Wait,
             Some(Stopped::Fault(fault)) => Pause::Fault(fault),
@@ -192,10 +192,10 @@ impl Runner<'_> {
         seat: CoreId,
         state: &mut State,
         link: &mut L,
-        origin: &mut Origin,
+        taint: &mut Taint,
         observer: &mut O,
     ) -> Option<Stopped> {
-        Some(self.ready.as_mut()?.run(seat, state, link, origin, observer))
+        Some(self.ready.as_mut()?.run(seat, state, link, taint, observer))
     }
 
     /// Adds the passes of words that were executed quickly to a tally of the program, and forgets them.

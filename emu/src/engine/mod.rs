@@ -16,7 +16,7 @@ pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;
 pub use state::{CoreId, Pause, State};
-pub(crate) use taint::{Independence, Origin};
+pub(crate) use taint::{TaintObserver, Taint};
 
 use crate::code::octets::Buffer;
 use crate::code::tally::Tally;
@@ -39,7 +39,7 @@ pub trait Engine<'a>: Sized {
     /// until something is for the interpreter.
     ///
     /// Afterwards `state` is that before the instruction at its program counter, with all registers, the buffer, steps, clocks and elementary
-    /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `origin` is what the item knows of the
+    /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `taint` is what the item knows of the
     /// cores, brought up to date where the demand says that it is followed. The observer is told as [`RunObserver`] says, the link before each
     /// request of when that is made.
     fn run<L: Wire, O: RunObserver>(
@@ -47,7 +47,7 @@ pub trait Engine<'a>: Sized {
         seat: CoreId,
         state: &mut State,
         link: &mut L,
-        origin: &mut Origin,
+        taint: &mut Taint,
         observer: &mut O,
     ) -> Stopped;
 

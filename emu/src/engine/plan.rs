@@ -9,7 +9,7 @@ use super::cost::{FLAG, Cost};
 use crate::code::layout::{Order, Stage};
 use crate::code::registers::Registers;
 use crate::code::{Code, ExitCost, Slot};
-use crate::engine::taint::Mark;
+use crate::engine::taint::TaintEffect;
 
 /// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +79,7 @@ pub struct Plan<'a> {
     is_in_order: bool,
     /// By exit: what it adds to the cost of its run; 0 where all exits of the slot take the same.
     extra: Vec<Cost>,
-    marks: Vec<Mark>,
+    effects: Vec<TaintEffect>,
     /// The steps, and one behind them; then, where registers may hold the number of cores, the same for an item in which one does.
     steps: Vec<Step>,
     /// By place: the end of the run that begins there, behind the next control row or in front of the end of the program.
@@ -141,20 +141,20 @@ impl<'a> Plan<'a> {
                 return None;
             }
         }
-        let mark = |stage: &Stage| match stage {
-            Stage::Slot(slot) => Mark::new(code, *slot),
-            Stage::Hop(_) => Mark::default(),
+        let effect = |stage: &Stage| match stage {
+            Stage::Slot(slot) => TaintEffect::new(code, *slot),
+            Stage::Hop(_) => TaintEffect::default(),
         };
-        let marks: Vec<Mark> = stages.iter().map(mark).collect();
-        let held = marks.iter().fold(0, |held, mark| held | mark.counts());
-        let counted = |matters: &dyn Fn(&Mark) -> bool| {
-            let places = marks.iter().scan(0, |sum, mark| {
-                *sum += u32::from(matters(mark));
+        let effects: Vec<TaintEffect> = stages.iter().map(effect).collect();
+        let held = effects.iter().fold(0, |held, effect| held | effect.counts());
+        let counted = |matters: &dyn Fn(&TaintEffect) -> bool| {
+            let places = effects.iter().scan(0, |sum, effect| {
+                *sum += u32::from(matters(effect));
                 Some(*sum)
             });
             std::iter::once(0).chain(places).collect()
         };
-        let asking = [counted(&Mark::asks), counted(&|mark| mark.asks() || mark.touches(held))];
+        let asking = [counted(&TaintEffect::asks), counted(&|effect| effect.asks() || effect.touches(held))];
         let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
         let mut plan = Plan {
@@ -166,7 +166,7 @@ impl<'a> Plan<'a> {
             has_inner_steps,
             words,
             extra,
-            marks,
+            effects,
             steps: Vec::new(),
             run_ends,
             asking,
@@ -293,8 +293,8 @@ impl<'a> Plan<'a> {
     }
 
     /// What a place does with numbers of cores.
-    pub fn mark(&self, place: u32) -> Mark {
-        self.marks[place as usize]
+    pub fn effect(&self, place: u32) -> TaintEffect {
+        self.effects[place as usize]
     }
 
     /// The steps by their places, and one behind them.

@@ -10,7 +10,7 @@ use crate::semantics::Motion;
 
 /// What an instruction does with scalar registers, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Mark {
+pub struct TaintEffect {
     reads: u64,
     writes: u64,
     /// Written with the number of the main processor, which is the number of cores.
@@ -22,29 +22,29 @@ pub struct Mark {
     tells_core: bool,
 }
 
-impl Mark {
-    /// The mark of a word.
-    pub fn new(code: &Code, pc: u32) -> Mark {
-        let mut mark = Mark::default();
-        let (Some(slot), Some(row)) = (code.slots().get(pc as usize), code.slot_row(pc)) else { return mark };
-        mark.is_send = matches!(slot.op, Some(Op::send2 | Op::send5));
-        mark.tells_core = slot.op == Some(Op::core);
+impl TaintEffect {
+    /// The effect of a word.
+    pub fn new(code: &Code, pc: u32) -> TaintEffect {
+        let mut effect = TaintEffect::default();
+        let (Some(slot), Some(row)) = (code.slots().get(pc as usize), code.slot_row(pc)) else { return effect };
+        effect.is_send = matches!(slot.op, Some(Op::send2 | Op::send5));
+        effect.tells_core = slot.op == Some(Op::core);
         for operand in row.operands.iter().filter(|operand| matches!(operand.kind, Kind::S | Kind::A)) {
             let bit = 1 << (slot.fields.get(operand.letter) & 63);
             match operand.is_read() {
-                true if mark.is_send => mark.target |= bit,
-                true => mark.reads |= bit,
+                true if effect.is_send => effect.target |= bit,
+                true => effect.reads |= bit,
                 false => {}
             }
             if operand.is_written() {
-                mark.writes |= bit;
+                effect.writes |= bit;
                 if matches!(slot.op, Some(Op::cores | Op::recv2 | Op::recv5)) {
                     // s0 stays zero.
-                    mark.counts |= bit & !1;
+                    effect.counts |= bit & !1;
                 }
             }
         }
-        mark
+        effect
     }
 
     /// Whether the instruction matters even when no register holds the number of cores.
@@ -65,7 +65,7 @@ impl Mark {
 
 /// What a work item has learned of the cores on its way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Origin {
+pub struct Taint {
     /// Registers that hold the number of cores, as far as the item's path tells.
     pub tainted: u64,
     /// Whether the item may depend on the number of cores.
@@ -74,44 +74,44 @@ pub struct Origin {
     pub depends_on_core: bool,
 }
 
-impl Origin {
+impl Taint {
     /// The item executes an instruction.
     #[inline]
-    pub fn step(&mut self, mark: Mark) {
+    pub fn step(&mut self, effect: TaintEffect) {
         // A message to a fixed number would go to another processor where there are more cores.
-        let is_fixed = mark.is_send && self.tainted & mark.target == 0;
-        self.depends_on_cores |= self.tainted & mark.reads != 0 || is_fixed;
-        self.depends_on_core |= mark.tells_core;
-        self.tainted = self.tainted & !mark.writes | mark.counts;
+        let is_fixed = effect.is_send && self.tainted & effect.target == 0;
+        self.depends_on_cores |= self.tainted & effect.reads != 0 || is_fixed;
+        self.depends_on_core |= effect.tells_core;
+        self.tainted = self.tainted & !effect.writes | effect.counts;
     }
 }
 
 /// An observer that watches for that, beside another one.
 #[derive(Clone, Debug)]
-pub struct Independence<O> {
+pub struct TaintObserver<O> {
     /// The other one.
     pub inner: O,
-    marks: Vec<Mark>,
+    effects: Vec<TaintEffect>,
     /// What the item has learned.
-    pub origin: Origin,
+    pub taint: Taint,
 }
 
-impl<O: Observer> Observer for Independence<O> {
+impl<O: Observer> Observer for TaintObserver<O> {
     const IS_ACTIVE: bool = true;
 
-    fn new(code: &Code) -> Independence<O> {
-        let marks = (0..code.slots().len() as u32).map(|pc| Mark::new(code, pc)).collect();
-        Independence { inner: O::new(code), marks, origin: Origin::default() }
+    fn new(code: &Code) -> TaintObserver<O> {
+        let effects = (0..code.slots().len() as u32).map(|pc| TaintEffect::new(code, pc)).collect();
+        TaintObserver { inner: O::new(code), effects, taint: Taint::default() }
     }
 
     fn begin(&mut self, pc: u32) {
-        self.origin = Origin::default();
+        self.taint = Taint::default();
         self.inner.begin(pc);
     }
 
     #[inline]
     fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
-        self.origin.step(self.marks[pc as usize]);
+        self.taint.step(self.effects[pc as usize]);
         if O::IS_ACTIVE {
             self.inner.step(pc, exit, units, next, motion);
         }

@@ -9,7 +9,7 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, CoreId, Demand, Independence, Moment, Pause, Runner, State, Stopped, Wish, choose, interpreter,
+    self, CoreId, Demand, TaintObserver, Moment, Pause, Runner, State, Stopped, Wish, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
@@ -122,7 +122,7 @@ pub struct Recorder<'a, T, O> {
     /// Octets of all items.
     pub kinds: Kinds,
     /// Who watches them.
-    pub observer: Independence<O>,
+    pub observer: TaintObserver<O>,
     runner: Runner<'a>,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
@@ -143,7 +143,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
             kinds: Kinds::new(&setup.kinds),
-            observer: Independence::new(code),
+            observer: TaintObserver::new(code),
             code,
             memory,
             arithmetic,
@@ -183,7 +183,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
         let mut wire = self.wire(Some(Message::new([[0; 3]])));
         match self.run(&mut wire) {
-            _ if self.observer.origin.depends_on_core || self.observer.origin.depends_on_cores => {
+            _ if self.observer.taint.depends_on_core || self.observer.taint.depends_on_cores => {
                 Err("what comes before the message depends on the core")
             }
             Pause::Wait if wire.request == Some(Request::Receive) => {
@@ -205,12 +205,12 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let moment = Moment { pc: 0, clocks: 0 };
         let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, level, moment };
         let (seat, state) = (self.seat, &mut self.state);
-        let Independence { inner: observer, origin, .. } = &mut self.observer;
+        let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         match O::IS_ACTIVE {
-            false => self.runner.run_ahead(seat, state, &mut link, origin, &mut Unobserved),
+            false => self.runner.run_ahead(seat, state, &mut link, taint, &mut Unobserved),
             true => {
                 let link: &mut &mut dyn engine::Wire = &mut (&mut link as _);
-                self.runner.run_ahead(seat, state, link, origin, observer)
+                self.runner.run_ahead(seat, state, link, taint, observer)
             }
         }
     }
@@ -267,7 +267,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         if segments.len() < segments.capacity() / 2 {
             segments.shrink_to_fit();
         }
-        if self.observer.origin.depends_on_core {
+        if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
         }
         Ok(Recording {
@@ -281,7 +281,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             end,
             steps: self.state.steps,
             elementary: self.state.elementary,
-            depends_on_cores: self.observer.origin.depends_on_cores,
+            depends_on_cores: self.observer.taint.depends_on_cores,
         })
     }
 }

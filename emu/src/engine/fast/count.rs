@@ -2,7 +2,7 @@
 
 use crate::code::tally::Tally;
 use crate::engine::plan::{Plan, Step};
-use crate::engine::taint::Origin;
+use crate::engine::taint::Taint;
 
 /// What is counted of a place beside its exits.
 #[derive(Clone, Copy, Debug, Default)]
@@ -24,7 +24,7 @@ pub struct Count {
     /// Whether it is to be found out what depends on the number of cores.
     pub(super) is_following: bool,
     /// What the item has learned of the cores.
-    pub origin: Origin,
+    pub taint: Taint,
 }
 
 impl Count {
@@ -32,7 +32,7 @@ impl Count {
     pub fn new(plan: &Plan, is_following: bool) -> Count {
         let exits = plan.exits();
         let runs = vec![Run::default(); plan.steps().len()];
-        Count { runs, exits: vec![0; exits], units: vec![0; exits], is_following, origin: Origin::default() }
+        Count { runs, exits: vec![0; exits], units: vec![0; exits], is_following, taint: Taint::default() }
     }
 
     /// A pass through an exit.

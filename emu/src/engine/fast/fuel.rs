@@ -3,7 +3,7 @@
 
 use crate::engine::cost::{FLAG, HALVES, Cost};
 use crate::engine::plan::Plan;
-use crate::engine::taint::Origin;
+use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
 
 /// The bits which say that something is to be looked at before a run begins: a sum has come to half of its room, or the run is flagged.
@@ -21,24 +21,24 @@ pub(super) struct Fuel {
     bias: Cost,
     is_following: bool,
     /// What it knows of the cores.
-    origin: Origin,
+    taint: Taint,
     /// The same at the beginning of the run that was followed last.
-    before: Origin,
+    before: Taint,
     /// Where that run began, and the steps up to its end.
     followed: (u32, u64),
 }
 
 impl Fuel {
     /// At the state of an item.
-    pub(super) fn new(state: &State, seat: CoreId, origin: Origin, is_following: bool) -> Fuel {
+    pub(super) fn new(state: &State, seat: CoreId, taint: Taint, is_following: bool) -> Fuel {
         let State { steps, inner_steps, clocks, elementary, pc, .. } = *state;
         let (limit, bias, followed) = (seat.step_limit, Cost::default(), (pc, 0));
-        Fuel { steps, inner_steps, clocks, elementary, limit, bias, is_following, origin, before: origin, followed }
+        Fuel { steps, inner_steps, clocks, elementary, limit, bias, is_following, taint, before: taint, followed }
     }
 
     /// Whether a register holds the number of cores.
     pub(super) fn is_held(&self) -> bool {
-        self.origin.tainted != 0
+        self.taint.tainted != 0
     }
 
     fn all_steps(&self) -> u64 {
@@ -70,9 +70,9 @@ impl Fuel {
         }
         let end = plan.run_end(place);
         if self.is_following && plan.asks(&(place..end), self.is_held()) {
-            (self.before, self.followed) = (self.origin, (place, after));
+            (self.before, self.followed) = (self.taint, (place, after));
             for place in place..end {
-                self.origin.step(plan.mark(place));
+                self.taint.step(plan.effect(place));
             }
         }
         (sums + run.0, true)
@@ -110,13 +110,13 @@ impl Fuel {
         sums: u64,
         place: u32,
         rest: Option<Cost>,
-    ) -> Origin {
+    ) -> Taint {
         self.empty(plan, sums);
         if let Some(rest) = rest {
             if self.followed.1 == self.all_steps() {
-                self.origin = self.before;
+                self.taint = self.before;
                 for place in self.followed.0..place {
-                    self.origin.step(plan.mark(place));
+                    self.taint.step(plan.effect(place));
                 }
             }
             self.steps -= rest.steps();
@@ -127,6 +127,6 @@ impl Fuel {
         state.pc = plan.steps()[place as usize].slot;
         (state.steps, state.inner_steps) = (self.steps, self.inner_steps);
         (state.clocks, state.elementary) = (self.clocks, self.elementary);
-        self.origin
+        self.taint
     }
 }

@@ -20,7 +20,7 @@ use count::Count;
 use super::host::{HostSimd, Present};
 use super::plan::Plan;
 use super::state::{CoreId, State};
-use super::taint::Origin;
+use super::taint::Taint;
 use super::{Demand, Engine, Refusal, Stopped, Wire};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
@@ -46,12 +46,12 @@ impl<'a> Engine<'a> for Fast<'a> {
         seat: CoreId,
         state: &mut State,
         link: &mut L,
-        origin: &mut Origin,
+        taint: &mut Taint,
         observer: &mut O,
     ) -> Stopped {
-        self.count.origin = *origin;
+        self.count.taint = *taint;
         let stopped = run(self.simd, &self.plan, seat, state, link, &mut self.count, observer);
-        *origin = self.count.origin;
+        *taint = self.count.taint;
         stopped
     }
 
@@ -98,7 +98,7 @@ fn walk<L: Wire, O: RunObserver>(
 ) -> Stopped {
     // Rows count without a look at how much there is.
     assert_eq!((count.runs.len(), count.exits.len()), (plan.steps().len(), plan.exits()), "they are of one plan");
-    let fuel = Fuel::new(state, seat, count.origin, count.is_following);
+    let fuel = Fuel::new(state, seat, count.taint, count.is_following);
     if state.pc as usize >= plan.slots().len() {
         return Stopped::Bailout;
     }
@@ -119,6 +119,6 @@ fn walk<L: Wire, O: RunObserver>(
         }
     }
     let fuel = walk.fuel;
-    count.origin = fuel.settle(plan, state, sums, place, rest);
+    count.taint = fuel.settle(plan, state, sums, place, rest);
     stopped
 }

@@ -21,7 +21,7 @@ pub enum RecordLevel {
 
 /// A work item that is recorded.
 #[derive(Debug, Default)]
-pub(super) struct Strand {
+pub(super) struct ItemRecord {
     pub message: Option<Message>,
     pub sent: Vec<Message>,
     pub segments: Vec<Segment>,
@@ -30,17 +30,17 @@ pub(super) struct Strand {
 }
 
 /// The link of a work item: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
-pub(super) struct StrandLink<'s> {
+pub(super) struct ItemRecorder<'s> {
     pub memory: &'s Memory,
     pub main: u32,
     pub room: &'s Room,
     pub kinds: &'s mut Kinds,
-    pub strand: &'s mut Strand,
+    pub record: &'s mut ItemRecord,
     pub level: RecordLevel,
     pub moment: Moment,
 }
 
-impl Wire for StrandLink<'_> {
+impl Wire for ItemRecorder<'_> {
     #[inline(always)]
     fn keeps_time(&self) -> bool {
         self.level == RecordLevel::Segments
@@ -52,10 +52,10 @@ impl Wire for StrandLink<'_> {
     }
 }
 
-impl StrandLink<'_> {
+impl ItemRecorder<'_> {
     #[inline(always)]
     fn enter(&mut self, request: Request) -> Result<(), Stop> {
-        if self.strand.message.is_some() {
+        if self.record.message.is_some() {
             return Err(Stop::Wait);
         }
         match self.level {
@@ -68,30 +68,30 @@ impl StrandLink<'_> {
     /// Keeps a read where there is a place for its segment; else nothing happens.
     #[inline(always)]
     fn keep_at_once(&mut self, address: u32, octets: u32) -> Option<()> {
-        let (strand, Moment { pc, clocks }) = (&mut *self.strand, self.moment);
+        let (record, Moment { pc, clocks }) = (&mut *self.record, self.moment);
         let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
-        let segment = Segment::new(clocks - strand.before, pc, request, 0)?;
-        let count = strand.segments.len();
-        if count == strand.segments.capacity() || (count + 1).is_multiple_of(Room::PORTION) {
+        let segment = Segment::new(clocks - record.before, pc, request, 0)?;
+        let count = record.segments.len();
+        if count == record.segments.capacity() || (count + 1).is_multiple_of(Room::PORTION) {
             return None;
         }
         self.kinds.add_known(pc, address, octets)?;
-        strand.octets += segment.octets();
-        strand.before = clocks;
-        strand.segments.push(segment);
+        record.octets += segment.octets();
+        record.before = clocks;
+        record.segments.push(segment);
         Some(())
     }
 
     fn keep(&mut self, request: Request) -> Result<(), Stop> {
-        let strand = &mut *self.strand;
-        let clocks = self.moment.clocks - strand.before;
-        let segment = Segment::new(clocks, self.moment.pc, request, strand.sent.len()).ok_or(Stop::Wait)?;
-        if (strand.segments.len() + 1).is_multiple_of(Room::PORTION) && !self.room.take(Room::PORTION) {
+        let record = &mut *self.record;
+        let clocks = self.moment.clocks - record.before;
+        let segment = Segment::new(clocks, self.moment.pc, request, record.sent.len()).ok_or(Stop::Wait)?;
+        if (record.segments.len() + 1).is_multiple_of(Room::PORTION) && !self.room.take(Room::PORTION) {
             return Err(Stop::Wait);
         }
-        strand.octets += segment.octets();
-        strand.before = self.moment.clocks;
-        strand.segments.push(segment);
+        record.octets += segment.octets();
+        record.before = self.moment.clocks;
+        record.segments.push(segment);
         self.kinds.add(self.moment.pc, Some(request));
         Ok(())
     }
@@ -103,7 +103,7 @@ impl StrandLink<'_> {
     }
 }
 
-impl Link for StrandLink<'_> {
+impl Link for ItemRecorder<'_> {
     #[inline]
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
@@ -124,7 +124,7 @@ impl Link for StrandLink<'_> {
     #[inline(always)]
     fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
         let found = self.memory.peek(address, octets)?;
-        if self.strand.message.is_some() {
+        if self.record.message.is_some() {
             return None;
         }
         match self.level {
@@ -155,14 +155,14 @@ impl Link for StrandLink<'_> {
             return Err(Stop::Wait);
         }
         self.enter(Request::Send { to: self.main, octets: Octets(message.octets().into()) })?;
-        self.strand.sent.push(message);
+        self.record.sent.push(message);
         Ok(())
     }
 
     fn receive(&mut self) -> Result<(Message, u32), Stop> {
-        let strand = &mut *self.strand;
-        let message = strand.message.take().ok_or(Stop::Wait)?;
-        strand.before = self.moment.clocks;
+        let record = &mut *self.record;
+        let message = record.message.take().ok_or(Stop::Wait)?;
+        record.before = self.moment.clocks;
         Ok((message, self.main))
     }
     fn barrier(&mut self) -> Result<(), Stop> {

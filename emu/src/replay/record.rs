@@ -1,7 +1,7 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
 use super::budget::Room;
-use super::item::{RecordLevel, Strand, StrandLink};
+use super::item::{RecordLevel, ItemRecord, ItemRecorder};
 use super::recording::{Reason, Recording, Segment, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
@@ -200,10 +200,10 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     }
 
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
-    fn run_quickly(&mut self, strand: &mut Strand, room: &Room) -> Option<Stopped> {
+    fn run_quickly(&mut self, record: &mut ItemRecord, room: &Room) -> Option<Stopped> {
         let (memory, main, level) = (self.memory, self.seat.cores, self.level);
         let moment = Moment { pc: 0, clocks: 0 };
-        let mut link = StrandLink { memory, main, room, kinds: &mut self.kinds, strand, level, moment };
+        let mut link = ItemRecorder { memory, main, room, kinds: &mut self.kinds, record, level, moment };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         match O::IS_ACTIVE {
@@ -223,10 +223,10 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
         let segments = Vec::with_capacity(self.usual);
-        let mut strand = Strand { message: Some(message), segments, ..Strand::default() };
-        let stopped = self.run_quickly(&mut strand, room);
-        let mut wire = Wire { sent: strand.sent, ..self.wire(strand.message) };
-        let (mut segments, mut octets, mut before) = (strand.segments, strand.octets, strand.before);
+        let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
+        let stopped = self.run_quickly(&mut record, room);
+        let mut wire = Wire { sent: record.sent, ..self.wire(record.message) };
+        let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
         let end = loop {
             match stopped {
                 Some(Stopped::Halt) => break Pause::Halt,

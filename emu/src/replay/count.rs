@@ -48,7 +48,7 @@ impl Task for Counting<'_> {
         let Counting { setup, memory } = self;
         super::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);
-        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Passes, &mut |batch| {
+        let totals = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Passes, &mut |batch| {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {
@@ -60,16 +60,16 @@ impl Task for Counting<'_> {
             }
             unfit.is_none()
         });
-        if survey.end != Pause::Halt {
+        if totals.end != Pause::Halt {
             unfit.get_or_insert("the main processor does not come to its end");
         }
         match unfit {
             Some(reason) => Err(reason),
             None => Ok(Count {
-                memory: survey.memory,
-                tally: survey.tally,
-                profile: survey.profile,
-                kinds: survey.kinds,
+                memory: totals.memory,
+                tally: totals.tally,
+                profile: totals.profile,
+                kinds: totals.kinds,
                 item_count,
             }),
         }

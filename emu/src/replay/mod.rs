@@ -34,7 +34,7 @@ use crate::semantics::Watch;
 use cursor::{Cursor, Replayer};
 use feed::{Batch, Feed};
 use item::RecordLevel;
-use prerun::Survey;
+use prerun::PrerunTotals;
 use record::{Prefix, Recorder};
 
 /// Batches that may wait for a machine.
@@ -56,11 +56,11 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
         Ok(prefix) => prefix,
         Err(why) => return setups.iter().map(|setup| step(setup, why, progress)).collect(),
     };
-    let (survey, endings) = replay::<T, O>(setups, prefix, memory, arithmetic, progress);
+    let (totals, endings) = replay::<T, O>(setups, prefix, memory, arithmetic, progress);
     let mut results = Vec::with_capacity(setups.len());
     for (setup, ending) in setups.iter().zip(endings) {
         results.push(match ending {
-            Ok(frame) => frame.map(|frame| with_counts(frame, setup, &survey)),
+            Ok(frame) => frame.map(|frame| with_counts(frame, setup, &totals)),
             Err(why) => step(setup, why, progress),
         });
     }
@@ -83,7 +83,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> (Survey, Vec<Result<Result<RunOutcome, Failure>, Reason>>) {
+) -> (PrerunTotals, Vec<Result<Result<RunOutcome, Failure>, Reason>>) {
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
     let recorded_cores = setups[0].config.cores;
@@ -141,17 +141,17 @@ fn on_clock<T: Watch, O: RunObserver>(
 }
 
 /// The frame with what the cores counted, which the replay does not know.
-pub fn with_counts(frame: RunOutcome, setup: &Setup, survey: &Survey) -> RunOutcome {
+pub fn with_counts(frame: RunOutcome, setup: &Setup, totals: &PrerunTotals) -> RunOutcome {
     let timing = setup.config.timing();
     let code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
-    let counts = survey.tally.counts(&code) + frame.main_tally.counts(&main_code);
-    let mut kinds = survey.kinds.clone();
+    let counts = totals.tally.counts(&code) + frame.main_tally.counts(&main_code);
+    let mut kinds = totals.kinds.clone();
     kinds.merge(&frame.kinds);
     RunOutcome {
         method: Method::Replayed,
-        tally: survey.tally.clone(),
-        profile: survey.profile.clone(),
+        tally: totals.tally.clone(),
+        profile: totals.profile.clone(),
         asked: Octets(counts[Class::Octet]),
         kinds: kinds.into_totals(),
         ..frame

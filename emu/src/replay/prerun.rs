@@ -22,7 +22,7 @@ use crate::semantics::{Link, Message, Watch};
 
 /// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
 /// were hardly faster than one, because a thread takes its time to begin.
-const LANES: u32 = 1024;
+const CORES: u32 = 1024;
 
 /// Segments in a batch, at most; 128 MiB of them. What is longer is stepped.
 const MOST_SEGMENTS: usize = 1 << 23;
@@ -36,13 +36,13 @@ const TOO_LONG: Reason = "the work items make too many transfers to be recorded"
 const MOST_STEPS: u64 = 1 << 32;
 
 /// The main processor's link: cores that take everything and answer in the order of their work.
-struct Desk<'a> {
+struct InstantCores<'a> {
     memory: &'a mut Memory,
     work: Vec<(u32, Message)>,
     answers: VecDeque<(Message, u32)>,
 }
 
-impl Link for Desk<'_> {
+impl Link for InstantCores<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         Ok(self.memory.read(from, buffer.slice_mut(to, octets)?)?)
     }
@@ -66,9 +66,9 @@ impl Link for Desk<'_> {
     }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
-        let core = u32::try_from(to).ok().filter(|&to| to < LANES);
-        let core = core.ok_or(Fault::NoSuchCore { number: to, largest: LANES })?;
-        if self.work.len() >= 2 * LANES as usize {
+        let core = u32::try_from(to).ok().filter(|&to| to < CORES);
+        let core = core.ok_or(Fault::NoSuchCore { number: to, largest: CORES })?;
+        if self.work.len() >= 2 * CORES as usize {
             return Err(Stop::Wait);
         }
         self.work.push((core, message));
@@ -122,7 +122,7 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
 }
 
 /// What all work items together counted.
-pub struct Survey {
+pub struct PrerunTotals {
     /// Their passes.
     pub tally: Tally,
     /// Their octets by kind.
@@ -142,14 +142,14 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     arithmetic: T,
     level: RecordLevel,
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
-) -> Survey {
+) -> PrerunTotals {
     let config = setup.config;
     let core_code = Code::new(setup.core, setup.isa, config.timing());
     let main_code = Code::new(setup.main, setup.isa, config.timing());
     let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), level);
     let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
     let mut memory = memory.clone();
-    let mut desk = Desk { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
+    let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
     let mut tally = Tally::new(&main_code);
     let Wish { kind, simd } = setup.options.wish();
@@ -157,34 +157,34 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut runner = choose(kind, &demand);
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
-        let seat = CoreId { core: LANES, cores: LANES, step_limit };
+        let seat = CoreId { core: CORES, cores: CORES, step_limit };
         let nobody = &mut Unobserved;
-        let pause = runner.run(seat, &mut state, &arithmetic, &mut desk, &mut tally, nobody);
-        if desk.work.is_empty() {
+        let pause = runner.run(seat, &mut state, &arithmetic, &mut cores, &mut tally, nobody);
+        if cores.work.is_empty() {
             break pause;
         }
-        let batch = record(&mut recorders, &desk.work);
+        let batch = record(&mut recorders, &cores.work);
         if let Ok(batch) = &batch {
-            for (&(core, _), recording) in desk.work.iter().zip(batch) {
-                desk.answers.extend(recording.sent.iter().map(|&message| (message, core)));
+            for (&(core, _), recording) in cores.work.iter().zip(batch) {
+                cores.answers.extend(recording.sent.iter().map(|&message| (message, core)));
             }
         }
-        desk.work.clear();
+        cores.work.clear();
         let is_over = batch.is_err() || pause != Pause::Wait;
         if !hand_over(Arc::new(batch)) || is_over {
             break pause;
         }
     };
-    let mut survey =
-        Survey { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None, memory, end };
+    let mut totals =
+        PrerunTotals { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None, memory, end };
     for mut recorder in recorders {
         let tally = recorder.take_tally();
-        survey.tally.merge(&tally);
-        survey.kinds.merge(recorder.kinds.totals());
-        match (&mut survey.profile, recorder.observer.into_profile(&core_code, &tally)) {
+        totals.tally.merge(&tally);
+        totals.kinds.merge(recorder.kinds.totals());
+        match (&mut totals.profile, recorder.observer.into_profile(&core_code, &tally)) {
             (Some(profile), Some(more)) => profile.merge(&more),
             (profile, more) => *profile = more,
         }
     }
-    survey
+    totals
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::channel;
 
 use super::feed::{Batch, Feed};
 use super::item::RecordLevel;
-use super::prerun::{self, Survey};
+use super::prerun::{self, PrerunTotals};
 use super::record::Prefix;
 use super::recording::Reason;
 use crate::code::octets::Memory;
@@ -20,7 +20,7 @@ pub struct Recorded {
     prefix: Prefix,
     cores: u32,
     batches: Vec<Arc<Batch>>,
-    survey: Survey,
+    totals: PrerunTotals,
 }
 
 impl Recorded {
@@ -46,7 +46,7 @@ impl Recorded {
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, Failure> {
         check(setup)?;
         match on_arithmetic(setup, Replaying { recorded: self, setup, memory }) {
-            Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.survey))),
+            Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.totals))),
             Err(reason) => Ok(Err(reason)),
         }
     }
@@ -64,14 +64,14 @@ impl Task for Recording<'_> {
         let Recording { setup, memory } = self;
         let prefix = super::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
-        let survey = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Segments, &mut |batch| {
+        let totals = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Segments, &mut |batch| {
             batches.push(batch);
             true
         });
         if let Some(Err(reason)) = batches.last().map(AsRef::as_ref) {
             return Err(reason);
         }
-        Ok(Recorded { prefix, cores: setup.config.cores, batches, survey })
+        Ok(Recorded { prefix, cores: setup.config.cores, batches, totals })
     }
 }
 

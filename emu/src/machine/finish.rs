@@ -5,7 +5,7 @@ use isa::Class;
 use super::Failure;
 use super::cache::Cache;
 use super::outcome::{RunOutcome, Method};
-use super::processor::Standing;
+use super::processor::ProcessorState;
 use super::schedule::Machine;
 use super::trace::Spans;
 use super::worker::Worker;
@@ -32,10 +32,10 @@ impl<W: Worker> Machine<'_, W> {
     pub(super) fn check_end(&self) -> Result<(), Failure> {
         let is_stuck = |number: usize| {
             let processor = &self.processors[number];
-            match processor.standing {
-                Standing::Rests | Standing::Asleep => false,
+            match processor.state {
+                ProcessorState::Rests | ProcessorState::Asleep => false,
                 // A core that waits without having received anything is out of work once the main processor is done.
-                Standing::Listens | Standing::Blocked { .. } if number != self.main() => {
+                ProcessorState::Listens | ProcessorState::Blocked { .. } if number != self.main() => {
                     !self.has_main_halted || processor.work.subject.is_some()
                 }
                 _ => true,

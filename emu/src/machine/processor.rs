@@ -33,7 +33,7 @@ pub enum Act {
 
 /// What a processor is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
+pub enum ProcessorState {
     /// Between two work items, the first thing of the next one being a receive: a message wakes it.
     Asleep,
     /// It waits for the bus.
@@ -87,7 +87,7 @@ pub struct Processor<'a, W> {
     /// How far it has come.
     pub clock: Clocks,
     /// What it is at.
-    pub standing: Standing,
+    pub state: ProcessorState,
     /// What it asked for last.
     pub request: Option<Request>,
     /// Why its engine stopped, while a block load that it does not wait for is on its way: what comes next begins when
@@ -115,7 +115,7 @@ impl<'a, W: Worker> Processor<'a, W> {
             core,
             worker,
             clock: Clocks(0),
-            standing: Standing::Asleep,
+            state: ProcessorState::Asleep,
             request: None,
             held: None,
             cache: None,
@@ -190,7 +190,7 @@ impl<'a, W: Worker> Processor<'a, W> {
 
     /// Something is next that needs no bus, at its clock.
     pub fn act(&mut self, act: Act) {
-        self.standing = Standing::Acts { at: self.clock, act };
+        self.state = ProcessorState::Acts { at: self.clock, act };
     }
 
     /// It went wrong at its clock.
@@ -201,10 +201,10 @@ impl<'a, W: Worker> Processor<'a, W> {
 
     /// What it waits for, for a message about a deadlock.
     pub fn waits_for(&self) -> String {
-        let what = match self.standing {
-            Standing::Blocked { to } => format!("waits until core {to} takes its last message"),
-            Standing::Listens => "waits for a message".to_owned(),
-            Standing::Meets => "waits at a barrier".to_owned(),
+        let what = match self.state {
+            ProcessorState::Blocked { to } => format!("waits until core {to} takes its last message"),
+            ProcessorState::Listens => "waits for a message".to_owned(),
+            ProcessorState::Meets => "waits at a barrier".to_owned(),
             _ => "has more to do".to_owned(),
         };
         let place = self

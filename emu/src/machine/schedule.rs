@@ -9,7 +9,7 @@ use super::cache::Cache;
 use super::kinds::Kinds;
 use super::outcome::{RunOutcome, Item};
 use super::port::Shared;
-use super::processor::{Act, Processor, Standing, Work};
+use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, Progress, Worker};
@@ -163,7 +163,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     pub(super) fn start(&mut self, number: usize) {
         let processor = &mut self.processors[number];
         if processor.begins_by_receiving && self.shared.mailboxes.next(number as u32).is_none() {
-            processor.standing = Standing::Asleep;
+            processor.state = ProcessorState::Asleep;
             return;
         }
         processor.work = Work::new(processor.clock);
@@ -234,15 +234,15 @@ impl<'a, W: Worker> Machine<'a, W> {
         let processor = &mut self.processors[number];
         match processor.request {
             Some(Request::Send { to, .. }) if self.shared.mailboxes.is_full(to, number as u32) => {
-                processor.standing = Standing::Blocked { to };
+                processor.state = ProcessorState::Blocked { to };
             }
             Some(Request::Transfer { .. } | Request::Send { .. }) => self.ask_for_transfer(number),
             Some(Request::Receive) => {
-                processor.standing = Standing::Listens;
+                processor.state = ProcessorState::Listens;
                 self.listen(number);
             }
             Some(Request::Barrier) => {
-                processor.standing = Standing::Meets;
+                processor.state = ProcessorState::Meets;
                 self.meeting += 1;
             }
             None => unreachable!("a link that says wait has noted what for"),
@@ -270,7 +270,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             }
             is_ahead = self.setup.config.bus.overlap && number != main && access == Access::Load;
         }
-        processor.standing = Standing::Asks;
+        processor.state = ProcessorState::Asks;
         if let Some(watch) = &mut self.bus_watch {
             watch.ask(number as u32, processor.request);
         }
@@ -300,8 +300,8 @@ impl<'a, W: Worker> Machine<'a, W> {
         if self.meeting != 0 {
             self.leave_barrier();
         }
-        let acts = self.processors.iter().enumerate().filter_map(|(number, processor)| match processor.standing {
-            Standing::Acts { at, act } => Some((at, act, number)),
+        let acts = self.processors.iter().enumerate().filter_map(|(number, processor)| match processor.state {
+            ProcessorState::Acts { at, act } => Some((at, act, number)),
             _ => None,
         });
         let act = acts.min();
@@ -386,7 +386,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             Act::Receive | Act::Leave => self.advance(number, true),
             Act::Halt if number == main => {
                 processor.worker.end();
-                processor.standing = Standing::Rests;
+                processor.state = ProcessorState::Rests;
                 self.has_main_halted = true;
             }
             Act::Halt => self.end_item(number),
@@ -419,7 +419,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         if has_letter || is_going_on {
             self.start(number);
         } else {
-            processor.standing = Standing::Rests;
+            processor.state = ProcessorState::Rests;
         }
     }
 }

@@ -105,7 +105,7 @@ pub struct RunOutcome {
     /// Octets that instructions asked to move, from the counts of the instructions.
     pub asked: Octets,
     /// Octets that were moved beside the bus because the main processor's traffic is off.
-    pub aside: Octets,
+    pub bypassed: Octets,
     /// Octets by kind, in the order in which the loader named them, then `messages`, then `other`.
     pub kinds: Vec<KindUse>,
     /// Global memory at the end.

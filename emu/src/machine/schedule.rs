@@ -70,7 +70,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     /// Who watches the bus, where somebody does.
     pub bus_watch: Option<BusWatch>,
     pub kinds: Kinds,
-    pub aside: Octets,
+    pub bypassed: Octets,
     /// Clock of the last thing that concerned others.
     pub now: Clocks,
     pub items: Vec<Item>,
@@ -255,7 +255,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         let processor = &mut self.processors[number];
         let is_to_main = matches!(processor.request, Some(Request::Send { to, .. }) if to as usize == main);
         if !self.setup.config.main.traffic && (number == main || is_to_main) {
-            processor.act(Act::Aside);
+            processor.act(Act::Bypass);
             return;
         }
         let mut octets = processor.asked_octets();
@@ -374,8 +374,8 @@ impl<'a, W: Worker> Machine<'a, W> {
         let processor = &mut self.processors[number];
         processor.idle_until(at);
         match act {
-            Act::Aside => {
-                self.aside += processor.asked_octets();
+            Act::Bypass => {
+                self.bypassed += processor.asked_octets();
                 self.account(number);
                 self.advance(number, true);
             }

@@ -1,6 +1,6 @@
 //! The shared bus: one burst at a time, to its end. Who comes next is the arbiter's choice.
 
-use super::arbiter::{Arbiter, Claims, NEVER, Ranking, Verdict};
+use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
 use super::waits::Waits;
 use crate::code::quantity::{Clocks, Octets};
@@ -157,7 +157,7 @@ pub struct Bus {
     arbiter: Box<dyn Arbiter>,
     pub(crate) free_at: Clocks,
     not_before: Clocks,
-    pub(crate) claims: Claims,
+    pub(crate) requests: BusRequests,
     used: BusUse,
     waits: Vec<Waits>,
     /// The masters twice round the circle, and more: from each one on, the ranks of all.
@@ -172,7 +172,7 @@ impl Bus {
             arbiter: config.arbiter.build(config, masters),
             free_at: Clocks(0),
             not_before: Clocks(0),
-            claims: Claims::new(masters),
+            requests: BusRequests::new(masters),
             used: BusUse::default(),
             waits: vec![Waits::default(); masters as usize],
             circle: (0..u64::from(masters)).cycle().take(4 * masters as usize).collect(),
@@ -182,38 +182,38 @@ impl Bus {
     /// A master begins to ask; each has at most one transfer at a time.
     #[inline]
     pub fn request(&mut self, master: u32, arrival: Clocks, octets: Octets) {
-        debug_assert_eq!(self.claims.arrival(master), NEVER, "one transfer a master");
+        debug_assert_eq!(self.requests.arrival(master), NEVER, "one transfer a master");
         self.not_before = self.not_before.min(arrival);
-        self.claims.ask(master, arrival, self.lengths.burst(octets));
+        self.requests.ask(master, arrival, self.lengths.burst(octets));
     }
 
     /// When the arbiter has something to decide, if nobody else begins to ask before.
     #[inline]
     pub fn next_decision(&self) -> Option<Clocks> {
-        self.claims.first_at(self.free_at.max(self.not_before))
+        self.requests.first_at(self.free_at.max(self.not_before))
     }
 
     /// Lets the arbiter decide at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
     #[inline]
     pub fn decide(&mut self, clock: Clocks) -> Option<Grant> {
-        let master = match self.arbiter.choose(clock, &self.claims) {
+        let master = match self.arbiter.choose(clock, &self.requests) {
             Verdict::Grant(master) => master,
             Verdict::Later(later) => {
-                let others = (0..self.claims.masters()).map(|master| self.claims.arrival(master));
+                let others = (0..self.requests.masters()).map(|master| self.requests.arrival(master));
                 let next = others.filter(|&arrival| arrival > clock).min().map_or(later, |arrival| arrival.min(later));
                 self.not_before = next.max(clock + Clocks(1));
                 return None;
             }
         };
-        let waited = clock - self.claims.arrival(master);
-        let Burst { octets, rest, length } = self.claims.bursts[master as usize];
+        let waited = clock - self.requests.arrival(master);
+        let Burst { octets, rest, length } = self.requests.bursts[master as usize];
         let (end, is_last) = (clock + length, rest == Octets(0));
         self.free_at = end;
         self.not_before = Clocks(0);
         if is_last {
-            self.claims.withdraw(master);
+            self.requests.withdraw(master);
         } else {
-            self.claims.ask(master, end, self.lengths.burst(rest));
+            self.requests.ask(master, end, self.lengths.burst(rest));
         }
         let grant = Grant { master, start: clock, end, waited, octets, is_last };
         self.used.add(&grant);
@@ -225,8 +225,8 @@ impl Bus {
     /// who has something else to do then.
     pub fn serve(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
         let is_ranked =
-            self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.claims.are_before(1 << 57);
-        match (is_ranked, self.claims.masters()) {
+            self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.requests.are_before(1 << 57);
+        match (is_ranked, self.requests.masters()) {
             (true, 0..=2) => self.serve_ranked::<2, _>(masters, until),
             (true, 3) => self.serve_ranked::<3, _>(masters, until),
             (true, 4..=5) => self.serve_ranked::<5, _>(masters, until),
@@ -244,7 +244,7 @@ impl Bus {
             master.note_wait(grant.waited);
             if grant.is_last {
                 let Some((computing, burst)) = master.next_transfer(&self.lengths) else { return Some(grant) };
-                self.claims.ask(grant.master, grant.end + computing, burst);
+                self.requests.ask(grant.master, grant.end + computing, burst);
             }
         }
         None
@@ -258,9 +258,9 @@ impl Bus {
         until: Clocks,
     ) -> Option<Grant> {
         const RANK: u32 = 6;
-        let masters = self.claims.masters() as usize;
+        let masters = self.requests.masters() as usize;
         let (lengths, waits, all_masters) = (self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
-        let (all, bursts) = (&mut self.claims.arrivals[..masters], &mut self.claims.bursts[..masters]);
+        let (all, bursts) = (&mut self.requests.arrivals[..masters], &mut self.requests.bursts[..masters]);
         let mut arrivals = [NEVER.0; SIZE];
         for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
             *arrival = *known;

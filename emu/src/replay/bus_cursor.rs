@@ -188,7 +188,7 @@ mod tests {
             for (master, pause, segments, time, is_stopped) in items {
                 let master = master % masters;
                 let arrival = now + Clocks(pause);
-                if quick.claims.arrival(master) == NEVER {
+                if quick.requests.arrival(master) == NEVER {
                     let item = recording(&segments);
                     for (bus, cursors) in [(&mut quick, &mut cursors), (&mut plain, &mut plain_cursors)] {
                         let cursor = &mut cursors[master as usize];
@@ -208,7 +208,7 @@ mod tests {
                     prop_assert_eq!((quick.waits(), quick.free_at), (plain.waits(), plain.free_at));
                     prop_assert_eq!(format!("{:?}", cursors), format!("{:?}", plain_cursors));
                     for master in 0..masters {
-                        prop_assert_eq!(quick.claims.arrival(master), plain.claims.arrival(master));
+                        prop_assert_eq!(quick.requests.arrival(master), plain.requests.arrival(master));
                     }
                     if grant.is_none() {
                         break;

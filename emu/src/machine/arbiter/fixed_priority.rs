@@ -1,6 +1,6 @@
 //! By number: the lowest master first, so the main processor last. A busy low master can make others wait for ever.
 
-use super::{Arbiter, Claims, Ranking, Verdict, grant};
+use super::{Arbiter, BusRequests, Ranking, Verdict, grant};
 use crate::code::quantity::Clocks;
 
 /// Fixed priority.
@@ -8,8 +8,8 @@ use crate::code::quantity::Clocks;
 pub struct FixedPriority;
 
 impl Arbiter for FixedPriority {
-    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
-        grant(claims.first_from(0, clock), clock)
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
+        grant(requests.first_from(0, clock), clock)
     }
 
     fn ranking(&mut self) -> Option<Ranking<'_>> {

@@ -20,7 +20,7 @@ use crate::code::quantity::Clocks;
 
 /// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
 #[derive(Clone, Debug)]
-pub struct Claims {
+pub struct BusRequests {
     /// When each begins to ask.
     pub(super) arrivals: Vec<Clocks>,
     /// Its burst.
@@ -30,10 +30,10 @@ pub struct Claims {
 /// When a master begins to ask that does not ask.
 pub const NEVER: Clocks = Clocks(u64::MAX);
 
-impl Claims {
+impl BusRequests {
     /// Nobody asks.
-    pub fn new(masters: u32) -> Claims {
-        Claims { arrivals: vec![NEVER; masters as usize], bursts: vec![Burst::default(); masters as usize] }
+    pub fn new(masters: u32) -> BusRequests {
+        BusRequests { arrivals: vec![NEVER; masters as usize], bursts: vec![Burst::default(); masters as usize] }
     }
 
     /// A master asks for a burst from a clock on.
@@ -106,7 +106,7 @@ pub enum Verdict {
 /// Chooses among the masters that ask for a free bus. A grant lasts to the end of the burst.
 pub trait Arbiter: Send {
     /// Decides at `clock`, when the bus is free and at least one master asks.
-    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict;
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict;
 
     /// The order of those that ask, where that says all; what it does not say is asked turn by turn.
     fn ranking(&mut self) -> Option<Ranking<'_>> {
@@ -180,22 +180,22 @@ impl ArbiterKind {
     }
 }
 
-/// Claims of these masters, each from a clock on, for that long.
+/// BusRequests of these masters, each from a clock on, for that long.
 #[cfg(test)]
-fn claims(masters: u32, asking: impl IntoIterator<Item = (u32, u64, u64)>) -> Claims {
-    let mut claims = Claims::new(masters);
+fn requests(masters: u32, asking: impl IntoIterator<Item = (u32, u64, u64)>) -> BusRequests {
+    let mut requests = BusRequests::new(masters);
     for (master, arrival, length) in asking {
-        claims.ask(master, Clocks(arrival), Burst { length: Clocks(length), ..Burst::default() });
+        requests.ask(master, Clocks(arrival), Burst { length: Clocks(length), ..Burst::default() });
     }
-    claims
+    requests
 }
 
 /// The masters that get the bus, turn by turn, with these of four masters asking for one clock each.
 #[cfg(test)]
 fn turns(arbiter: &mut dyn Arbiter, asking: &[&[u32]]) -> Vec<u32> {
     let turn = |masters: &&[u32]| {
-        let claims = claims(4, masters.iter().map(|&master| (master, 0, 1)));
-        match arbiter.choose(Clocks(0), &claims) {
+        let requests = requests(4, masters.iter().map(|&master| (master, 0, 1)));
+        match arbiter.choose(Clocks(0), &requests) {
             Verdict::Grant(chosen) => chosen,
             Verdict::Later(clock) => panic!("the bus stays idle until {clock:?}"),
         }

@@ -1,7 +1,7 @@
 //! In turn: the master after the one that had the bus last comes first. Nobody waits for more than one burst of each
 //! other master.
 
-use super::{Arbiter, Claims, Ranking, Verdict, grant};
+use super::{Arbiter, BusRequests, Ranking, Verdict, grant};
 use crate::code::quantity::Clocks;
 
 /// Round-robin; the first turn is master 0's.
@@ -18,10 +18,10 @@ impl RoundRobin {
 }
 
 impl Arbiter for RoundRobin {
-    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
-        let chosen = claims.first_from(self.turn, clock);
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
+        let chosen = requests.first_from(self.turn, clock);
         let next = chosen.map_or(self.turn, |master| master + 1);
-        self.turn = if next == claims.masters() { 0 } else { next };
+        self.turn = if next == requests.masters() { 0 } else { next };
         grant(chosen, clock)
     }
 

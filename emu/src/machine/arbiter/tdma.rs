@@ -1,6 +1,6 @@
 //! By the clock: each master has its slot of a frame, whether it uses it or not. What the others do cannot be felt.
 
-use super::{Arbiter, Claims, Verdict};
+use super::{Arbiter, BusRequests, Verdict};
 use crate::code::quantity::Clocks;
 
 /// Time division: slot n of each frame is master n's. A burst begins where it ends within a slot of its own, so a
@@ -31,9 +31,9 @@ impl Tdma {
 }
 
 impl Arbiter for Tdma {
-    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
-        let next = |master| (self.next(clock, master, claims.length(master)), master);
-        match claims.asking(clock).map(next).min() {
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
+        let next = |master| (self.next(clock, master, requests.length(master)), master);
+        match requests.asking(clock).map(next).min() {
             Some((time, master)) if time == clock => Verdict::Grant(master),
             Some((time, _)) => Verdict::Later(time),
             None => Verdict::Later(clock + Clocks(1)),
@@ -44,7 +44,7 @@ impl Arbiter for Tdma {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::arbiter::claims;
+    use crate::machine::arbiter::requests;
 
     #[test]
     fn a_burst_begins_where_it_ends_within_its_masters_slot() {
@@ -52,7 +52,7 @@ mod tests {
         let mut arbiter = Tdma::new(3, Clocks(10));
         for (clock, length, expected) in [(0, 4, 10), (10, 4, 10), (16, 4, 16), (17, 4, 40), (20, 4, 40), (39, 10, 40)]
         {
-            let verdict = arbiter.choose(Clocks(clock), &claims(3, [(1, 0, length)]));
+            let verdict = arbiter.choose(Clocks(clock), &requests(3, [(1, 0, length)]));
             let wanted = if expected == clock { Verdict::Grant(1) } else { Verdict::Later(Clocks(expected)) };
             assert_eq!(verdict, wanted, "{length} clocks at {clock}");
         }
@@ -61,8 +61,8 @@ mod tests {
     #[test]
     fn a_free_slot_is_no_use_to_others() {
         let mut arbiter = Tdma::new(3, Clocks(10));
-        let claims = claims(3, [(1, 0, 10), (2, 0, 10)]);
-        assert_eq!(arbiter.choose(Clocks(0), &claims), Verdict::Later(Clocks(10)));
-        assert_eq!(arbiter.choose(Clocks(20), &claims), Verdict::Grant(2));
+        let requests = requests(3, [(1, 0, 10), (2, 0, 10)]);
+        assert_eq!(arbiter.choose(Clocks(0), &requests), Verdict::Later(Clocks(10)));
+        assert_eq!(arbiter.choose(Clocks(20), &requests), Verdict::Grant(2));
     }
 }

@@ -1,7 +1,7 @@
 //! In turn, with weights: a master of weight n keeps its turn for n bursts, as long as it asks for them one right after
 //! the other.
 
-use super::{Arbiter, Claims, Verdict};
+use super::{Arbiter, BusRequests, Verdict};
 use crate::code::quantity::Clocks;
 
 /// Weighted round-robin; the first turn is master 0's. With equal weights of 1 it is round-robin.
@@ -24,8 +24,8 @@ impl Weighted {
 }
 
 impl Arbiter for Weighted {
-    fn choose(&mut self, clock: Clocks, claims: &Claims) -> Verdict {
-        let Some(master) = claims.first_from(self.turn, clock) else { return Verdict::Later(clock + Clocks(1)) };
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
+        let Some(master) = requests.first_from(self.turn, clock) else { return Verdict::Later(clock + Clocks(1)) };
         if master != self.turn {
             (self.turn, self.left) = (master, self.weights[master as usize]);
         }

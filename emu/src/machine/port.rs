@@ -36,31 +36,31 @@ impl Shared {
     }
 }
 
-/// The link of one core while its engine runs. An instruction is tried twice: without leave it only says what it asks
-/// for, so that range errors show at once; with leave it happens.
+/// The link of one core while its engine runs. An instruction is tried twice: without permission it only says what it asks
+/// for, so that range errors show at once; with permission it happens.
 #[derive(Debug)]
 pub struct CorePort<'a> {
     /// What it shares with the others.
     pub shared: &'a mut Shared,
     /// Number of the processor.
     pub processor: u32,
-    /// Leave for one instruction, with the clock at which it is done.
-    pub leave: Option<Clocks>,
+    /// Permission for one instruction, with the clock at which it is done.
+    pub permission: Option<Clocks>,
     /// What the core waits for, set when it stops to wait.
     pub request: Option<Request>,
-    /// The message that was taken with this leave, and its sender.
+    /// The message that was taken with this permission, and its sender.
     pub taken: Option<(Message, u32)>,
 }
 
 impl<'a> CorePort<'a> {
-    /// A link with or without leave.
-    pub fn new(shared: &'a mut Shared, processor: u32, leave: Option<Clocks>) -> CorePort<'a> {
-        CorePort { shared, processor, leave, request: None, taken: None }
+    /// A link with or without permission.
+    pub fn new(shared: &'a mut Shared, processor: u32, permission: Option<Clocks>) -> CorePort<'a> {
+        CorePort { shared, processor, permission, request: None, taken: None }
     }
 
-    /// Uses up the leave, or notes what is asked for.
+    /// Uses up the permission, or notes what is asked for.
     fn enter(&mut self, request: Request) -> Result<Clocks, Stop> {
-        self.leave.take().ok_or_else(|| {
+        self.permission.take().ok_or_else(|| {
             self.request = Some(request);
             Stop::Wait
         })

@@ -22,7 +22,7 @@ struct Wire<'a> {
     memory: &'a Memory,
     main: u32,
     message: Option<Message>,
-    has_leave: bool,
+    is_permitted: bool,
     request: Option<Request>,
     sent: Vec<Message>,
     unfit: Option<Reason>,
@@ -30,7 +30,7 @@ struct Wire<'a> {
 
 impl Wire<'_> {
     fn enter(&mut self, request: Request) -> Result<(), Stop> {
-        if std::mem::take(&mut self.has_leave) {
+        if std::mem::take(&mut self.is_permitted) {
             return Ok(());
         }
         self.request = Some(request);
@@ -169,7 +169,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             memory: self.memory,
             main: self.seat.cores,
             message,
-            has_leave: false,
+            is_permitted: false,
             request: None,
             sent: Vec::new(),
             unfit: None,
@@ -256,7 +256,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 }
             }
             before = self.state.clocks;
-            wire.has_leave = true;
+            wire.is_permitted = true;
         };
         if wire.message.is_some() {
             return Err(BEGINS);

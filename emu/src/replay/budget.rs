@@ -2,19 +2,19 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Room for the segments of work items that are recorded at the same time.
-pub struct Room {
+/// Budget for the segments of work items that are recorded at the same time.
+pub struct Budget {
     taken: AtomicUsize,
     most: usize,
 }
 
-impl Room {
-    /// Segments that a long work item takes room for at once.
+impl Budget {
+    /// Segments that a long work item takes budget for at once.
     pub(super) const PORTION: usize = 4096;
 
     /// For that many segments.
-    pub fn new(most: usize) -> Room {
-        Room { taken: AtomicUsize::new(0), most }
+    pub fn new(most: usize) -> Budget {
+        Budget { taken: AtomicUsize::new(0), most }
     }
 
     /// Whether more was wanted than there is.
@@ -22,7 +22,7 @@ impl Room {
         self.taken.load(Ordering::Relaxed) > self.most
     }
 
-    /// Takes room for segments; false when there is none.
+    /// Takes budget for segments; false when there is none.
     pub(super) fn take(&self, segments: usize) -> bool {
         self.taken.fetch_add(segments, Ordering::Relaxed) + segments <= self.most
     }

@@ -1,6 +1,6 @@
 //! The links of work items that are recorded by the fast engine, and what they do.
 
-use super::budget::Room;
+use super::budget::Budget;
 use super::recording::Segment;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -33,7 +33,7 @@ pub(super) struct ItemRecord {
 pub(super) struct ItemRecorder<'s> {
     pub memory: &'s Memory,
     pub main: u32,
-    pub room: &'s Room,
+    pub budget: &'s Budget,
     pub kinds: &'s mut Kinds,
     pub record: &'s mut ItemRecord,
     pub level: RecordLevel,
@@ -72,7 +72,7 @@ impl ItemRecorder<'_> {
         let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
         let segment = Segment::new(clocks - record.before, pc, request, 0)?;
         let count = record.segments.len();
-        if count == record.segments.capacity() || (count + 1).is_multiple_of(Room::PORTION) {
+        if count == record.segments.capacity() || (count + 1).is_multiple_of(Budget::PORTION) {
             return None;
         }
         self.kinds.add_known(pc, address, octets)?;
@@ -86,7 +86,7 @@ impl ItemRecorder<'_> {
         let record = &mut *self.record;
         let clocks = self.moment.clocks - record.before;
         let segment = Segment::new(clocks, self.moment.pc, request, record.sent.len()).ok_or(Stop::Wait)?;
-        if (record.segments.len() + 1).is_multiple_of(Room::PORTION) && !self.room.take(Room::PORTION) {
+        if (record.segments.len() + 1).is_multiple_of(Budget::PORTION) && !self.budget.take(Budget::PORTION) {
             return Err(Stop::Wait);
         }
         record.octets += segment.octets();

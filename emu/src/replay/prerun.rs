@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::budget::Room;
+use super::budget::Budget;
 use super::feed::Batch;
 use super::item::RecordLevel;
 use super::record::Recorder;
@@ -89,16 +89,16 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
     recorders: &mut [Recorder<T, O>],
     work: &[(u32, Message)],
 ) -> Result<Vec<Arc<Recording>>, Reason> {
-    let (next, room) = (AtomicUsize::new(0), Room::new(MOST_SEGMENTS));
+    let (next, budget) = (AtomicUsize::new(0), Budget::new(MOST_SEGMENTS));
     let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
     let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Recording, Reason>)>| {
-        while !room.is_full()
+        while !budget.is_full()
             && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
             && let Some(rest) = work.get(at..).filter(|rest| !rest.is_empty())
         {
             let portion = rest.iter().take(AT_ONCE);
-            found.extend((at..).zip(portion).map(|(at, (_, message))| (at, recorder.record(*message, &room))));
+            found.extend((at..).zip(portion).map(|(at, (_, message))| (at, recorder.record(*message, &budget))));
         }
     };
     // Threads of their own: this may itself be a thread of a pool in which all others wait.
@@ -113,7 +113,7 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
         }
     });
     // Whether they are too many does not depend on who recorded what first; so this reason comes before others.
-    if room.is_full() {
+    if budget.is_full() {
         return Err(TOO_LONG);
     }
     let mut found: Vec<_> = found.into_iter().flatten().collect();

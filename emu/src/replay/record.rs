@@ -1,6 +1,6 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
-use super::budget::Room;
+use super::budget::Budget;
 use super::item::{RecordLevel, ItemRecord, ItemRecorder};
 use super::recording::{Reason, Recording, Segment, reads};
 use crate::code::Code;
@@ -200,10 +200,10 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     }
 
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
-    fn run_quickly(&mut self, record: &mut ItemRecord, room: &Room) -> Option<Stopped> {
+    fn run_quickly(&mut self, record: &mut ItemRecord, budget: &Budget) -> Option<Stopped> {
         let (memory, main, level) = (self.memory, self.seat.cores, self.level);
         let moment = Moment { pc: 0, clocks: 0 };
-        let mut link = ItemRecorder { memory, main, room, kinds: &mut self.kinds, record, level, moment };
+        let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, moment };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         match O::IS_ACTIVE {
@@ -219,12 +219,12 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     ///
     /// # Errors
     /// Why it cannot be replayed.
-    pub fn record(&mut self, message: Message, room: &Room) -> Result<Recording, Reason> {
+    pub fn record(&mut self, message: Message, budget: &Budget) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
         let segments = Vec::with_capacity(self.usual);
         let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
-        let stopped = self.run_quickly(&mut record, room);
+        let stopped = self.run_quickly(&mut record, budget);
         let mut wire = Wire { sent: record.sent, ..self.wire(record.message) };
         let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
         let end = loop {
@@ -251,8 +251,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 octets += segment.octets();
                 self.kinds.add(self.state.pc, Some(request));
                 segments.push(segment);
-                if segments.len().is_multiple_of(Room::PORTION) && !room.take(Room::PORTION) {
-                    return Err("there is no room for it");
+                if segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
+                    return Err("there is no budget for it");
                 }
             }
             before = self.state.clocks;
@@ -262,8 +262,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             return Err(BEGINS);
         }
         self.observer.end();
-        room.take(segments.len() % Room::PORTION);
-        self.usual = segments.len().min(Room::PORTION);
+        budget.take(segments.len() % Budget::PORTION);
+        self.usual = segments.len().min(Budget::PORTION);
         if segments.len() < segments.capacity() / 2 {
             segments.shrink_to_fit();
         }

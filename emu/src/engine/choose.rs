@@ -4,7 +4,7 @@ use super::fast::Fast;
 use super::host::HostSimd;
 use super::state::{CoreId, Pause, State};
 use super::taint::Taint;
-use super::{Engine, Refusal, Stopped, Timeless, Wire, interpreter};
+use super::{Engine, Refusal, Stopped, Timeless, TimedLink, interpreter};
 use crate::code::Code;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
@@ -100,7 +100,7 @@ macro_rules! engines {
             }
 
             #[inline(always)]
-            fn run<L: Wire, O: RunObserver>(
+            fn run<L: TimedLink, O: RunObserver>(
                 &mut self,
                 seat: CoreId,
                 state: &mut State,
@@ -174,7 +174,7 @@ impl Runner<'_> {
         tally: &mut Tally,
         observer: &mut O,
     ) -> Pause {
-        let timed: &mut &mut dyn Wire = &mut (&mut Timeless(&mut *link) as _);
+        let timed: &mut &mut dyn TimedLink = &mut (&mut Timeless(&mut *link) as _);
         match self.run_ahead(seat, state, timed, &mut Taint::default(), observer) {
             Some(Stopped::Halt) => Pause::Halt,
             Some(Stopped::Wait) => Pause::Wait,
@@ -187,7 +187,7 @@ impl Runner<'_> {
 
     /// As far as an engine comes that is faster than the interpreter, as [`Engine::run`]; `None` where there is none.
     #[inline]
-    pub(crate) fn run_ahead<L: Wire, O: RunObserver>(
+    pub(crate) fn run_ahead<L: TimedLink, O: RunObserver>(
         &mut self,
         seat: CoreId,
         state: &mut State,

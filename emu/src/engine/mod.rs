@@ -42,7 +42,7 @@ pub trait Engine<'a>: Sized {
     /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `taint` is what the item knows of the
     /// cores, brought up to date where the demand says that it is followed. The observer is told as [`RunObserver`] says, the link before each
     /// request of when that is made.
-    fn run<L: Wire, O: RunObserver>(
+    fn run<L: TimedLink, O: RunObserver>(
         &mut self,
         seat: CoreId,
         state: &mut State,
@@ -56,12 +56,12 @@ pub trait Engine<'a>: Sized {
 }
 
 /// The machine as a work item sees it.
-pub trait Wire: Link {
+pub trait TimedLink: Link {
     /// Whether it wants to know when it is asked.
     fn keeps_time(&self) -> bool;
 
     /// When and where it is asked next; the time only where it is kept.
-    fn note(&mut self, moment: Moment);
+    fn note(&mut self, time: RequestTime);
 }
 
 /// A link to which the time does not matter.
@@ -82,7 +82,7 @@ pub enum Stopped {
 
 /// When and where a work item asks the machine for something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Moment {
+pub struct RequestTime {
     /// Word of the instruction.
     pub pc: u32,
     /// Clocks that the item has computed so far.
@@ -93,20 +93,20 @@ impl Link for Timeless<'_> {
     methods! { hand_on! self => self.0; }
 }
 
-impl Wire for Timeless<'_> {
+impl TimedLink for Timeless<'_> {
     fn keeps_time(&self) -> bool {
         false
     }
 
-    fn note(&mut self, _: Moment) {}
+    fn note(&mut self, _: RequestTime) {}
 }
 
-impl Wire for &mut dyn Wire {
+impl TimedLink for &mut dyn TimedLink {
     fn keeps_time(&self) -> bool {
         (**self).keeps_time()
     }
 
-    fn note(&mut self, moment: Moment) {
-        (**self).note(moment);
+    fn note(&mut self, time: RequestTime) {
+        (**self).note(time);
     }
 }

@@ -5,7 +5,7 @@ use super::recording::Segment;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
-use crate::engine::{Moment, Wire};
+use crate::engine::{RequestTime, TimedLink};
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
 use crate::semantics::{Link, Message};
@@ -37,18 +37,18 @@ pub(super) struct ItemRecorder<'s> {
     pub kinds: &'s mut Kinds,
     pub record: &'s mut ItemRecord,
     pub level: RecordLevel,
-    pub moment: Moment,
+    pub time: RequestTime,
 }
 
-impl Wire for ItemRecorder<'_> {
+impl TimedLink for ItemRecorder<'_> {
     #[inline(always)]
     fn keeps_time(&self) -> bool {
         self.level == RecordLevel::Segments
     }
 
     #[inline(always)]
-    fn note(&mut self, moment: Moment) {
-        self.moment = moment;
+    fn note(&mut self, time: RequestTime) {
+        self.time = time;
     }
 }
 
@@ -59,7 +59,7 @@ impl ItemRecorder<'_> {
             return Err(Stop::Wait);
         }
         match self.level {
-            RecordLevel::Passes => self.kinds.add(self.moment.pc, Some(request)),
+            RecordLevel::Passes => self.kinds.add(self.time.pc, Some(request)),
             RecordLevel::Segments => return self.keep(request),
         }
         Ok(())
@@ -68,7 +68,7 @@ impl ItemRecorder<'_> {
     /// Keeps a read where there is a place for its segment; else nothing happens.
     #[inline(always)]
     fn keep_at_once(&mut self, address: u32, octets: u32) -> Option<()> {
-        let (record, Moment { pc, clocks }) = (&mut *self.record, self.moment);
+        let (record, RequestTime { pc, clocks }) = (&mut *self.record, self.time);
         let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
         let segment = Segment::new(clocks - record.before, pc, request, 0)?;
         let count = record.segments.len();
@@ -84,15 +84,15 @@ impl ItemRecorder<'_> {
 
     fn keep(&mut self, request: Request) -> Result<(), Stop> {
         let record = &mut *self.record;
-        let clocks = self.moment.clocks - record.before;
-        let segment = Segment::new(clocks, self.moment.pc, request, record.sent.len()).ok_or(Stop::Wait)?;
+        let clocks = self.time.clocks - record.before;
+        let segment = Segment::new(clocks, self.time.pc, request, record.sent.len()).ok_or(Stop::Wait)?;
         if (record.segments.len() + 1).is_multiple_of(Budget::PORTION) && !self.budget.take(Budget::PORTION) {
             return Err(Stop::Wait);
         }
         record.octets += segment.octets();
-        record.before = self.moment.clocks;
+        record.before = self.time.clocks;
         record.segments.push(segment);
-        self.kinds.add(self.moment.pc, Some(request));
+        self.kinds.add(self.time.pc, Some(request));
         Ok(())
     }
 
@@ -128,7 +128,7 @@ impl Link for ItemRecorder<'_> {
             return None;
         }
         match self.level {
-            RecordLevel::Passes => self.kinds.add_known(self.moment.pc, address, octets)?,
+            RecordLevel::Passes => self.kinds.add_known(self.time.pc, address, octets)?,
             RecordLevel::Segments => self.keep_at_once(address, octets)?,
         }
         Some(found)
@@ -162,7 +162,7 @@ impl Link for ItemRecorder<'_> {
     fn receive(&mut self) -> Result<(Message, u32), Stop> {
         let record = &mut *self.record;
         let message = record.message.take().ok_or(Stop::Wait)?;
-        record.before = self.moment.clocks;
+        record.before = self.time.clocks;
         Ok((message, self.main))
     }
     fn barrier(&mut self) -> Result<(), Stop> {

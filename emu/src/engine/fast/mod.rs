@@ -21,7 +21,7 @@ use super::host::{HostSimd, Present};
 use super::plan::Plan;
 use super::state::{CoreId, State};
 use super::taint::Taint;
-use super::{Demand, Engine, Refusal, Stopped, Wire};
+use super::{Demand, Engine, Refusal, Stopped, TimedLink};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
@@ -41,7 +41,7 @@ impl<'a> Engine<'a> for Fast<'a> {
         Ok(Fast { count: Count::new(&plan, demand.follows_cores), plan, simd: demand.simd.present() })
     }
 
-    fn run<L: Wire, O: RunObserver>(
+    fn run<L: TimedLink, O: RunObserver>(
         &mut self,
         seat: CoreId,
         state: &mut State,
@@ -63,7 +63,7 @@ impl<'a> Engine<'a> for Fast<'a> {
 const TOO_LONG: Refusal = "an instruction takes more clocks than the sums of the fast engine have room for";
 
 /// Runs until the program halts, waits or comes to something unusual, with the features given. The results are the same with all of them.
-fn run<L: Wire, O: RunObserver>(
+fn run<L: TimedLink, O: RunObserver>(
     Present(simd): Present,
     plan: &Plan,
     seat: CoreId,
@@ -82,12 +82,12 @@ fn run<L: Wire, O: RunObserver>(
     }
     let _ = simd;
     // Hosts without vector instructions are few: one function serves all links there.
-    let mut link: &mut dyn Wire = link;
-    let run = rows::baseline::run::<&mut dyn Wire, O>;
+    let mut link: &mut dyn TimedLink = link;
+    let run = rows::baseline::run::<&mut dyn TimedLink, O>;
     walk::<_, O>(plan, seat, state, &mut link, count, observer, run)
 }
 
-fn walk<L: Wire, O: RunObserver>(
+fn walk<L: TimedLink, O: RunObserver>(
     plan: &Plan,
     seat: CoreId,
     state: &mut State,

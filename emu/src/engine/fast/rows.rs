@@ -109,7 +109,7 @@ macro_rules! function {
         # $features
         #[inline(never)]
         #[allow(unused_variables, clippy::extra_unused_type_parameters, reason = "rows differ in what they need")]
-        unsafe fn $name<$L: Wire, $O: RunObserver>(
+        unsafe fn $name<$L: TimedLink, $O: RunObserver>(
             $registers: &mut Registers,
             $step: *const Step,
             $walk: &mut Walk<$L, $O>,
@@ -254,7 +254,7 @@ macro_rules! stamp {
         })*
     ) => {
         pub(super) mod $module {
-            use crate::engine::Wire;
+            use crate::engine::TimedLink;
             use super::super::walk::{Place, Walk};
             use crate::profile::RunObserver;
             use crate::code::registers::Registers;
@@ -268,7 +268,7 @@ macro_rules! stamp {
                 use super::super::super::fuel::LOOK;
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Place, Walk, Way};
-                use crate::engine::{Stopped, Wire};
+                use crate::engine::{Stopped, TimedLink};
                 use super::super::{RowFunction, goes_back, is_read};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::semantics::RayRoom;
@@ -300,7 +300,7 @@ macro_rules! stamp {
                 /// The rows by number.
                 pub struct All<L, O>(std::marker::PhantomData<(L, O)>);
 
-                impl<L: Wire, O: RunObserver> All<L, O> {
+                impl<L: TimedLink, O: RunObserver> All<L, O> {
                     /// In the order of the numbers of [`Step`].
                     pub const FUNCTIONS: [RowFunction<L, O>; 256] = padded([$($($name::<L, O>,)*)* hop::<L, O>, unit::<L, O>, bailout::<L, O>]);
                 }
@@ -308,7 +308,7 @@ macro_rules! stamp {
 
             /// Walks from a step, of which the run has begun, until it stops.
             # $features
-            pub fn run<L: Wire, O: RunObserver>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
+            pub fn run<L: TimedLink, O: RunObserver>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
                 while !place.step.is_null() {
                     // SAFETY: rows yield a step of the plan, and the host has the features that this function is compiled for, as the
                     // rows are. `crate::engine::interpreter::run` is the safe twin.

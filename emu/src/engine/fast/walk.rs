@@ -8,10 +8,10 @@ use crate::code::octets::Buffer;
 use crate::code::registers::Registers;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::CoreId;
-use crate::engine::Moment;
+use crate::engine::RequestTime;
 use crate::engine::cost::FLAG;
 use crate::engine::plan::{Plan, Step};
-use crate::engine::{Stopped, Wire};
+use crate::engine::{Stopped, TimedLink};
 use crate::extension::{Numbers, Units};
 use crate::profile::RunObserver;
 use crate::semantics::{Flow, Motion};
@@ -57,7 +57,7 @@ pub(super) struct Walk<'a, L, O> {
     pub stop: Ended,
 }
 
-impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
+impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     #[cold]
     fn stop(&mut self, stop: Ended) -> Place {
         self.stop = stop;
@@ -283,7 +283,7 @@ impl<L: Wire, O: RunObserver> Walk<'_, L, O> {
 
 /// Tells a link when it is asked by a slot at a place.
 #[inline(always)]
-fn note(plan: &Plan, fuel: &Fuel, link: &mut impl Wire, (slot, place): (u32, u32), sums: u64) {
+fn note(plan: &Plan, fuel: &Fuel, link: &mut impl TimedLink, (slot, place): (u32, u32), sums: u64) {
     let clocks = if link.keeps_time() { fuel.clocks_before(sums, plan.run_cost(place)) } else { 0 };
-    link.note(Moment { pc: slot, clocks });
+    link.note(RequestTime { pc: slot, clocks });
 }

@@ -9,7 +9,7 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, CoreId, Demand, TaintObserver, Moment, Pause, Runner, State, Stopped, Wish, choose, interpreter,
+    self, CoreId, Demand, TaintObserver, RequestTime, Pause, Runner, State, Stopped, Wish, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
@@ -18,7 +18,7 @@ use crate::profile::{Observer, RunObserver, Unobserved};
 use crate::semantics::{Link, Message, Watch};
 
 /// The link of a work item that is recorded: it says what it asks for, then gets it at once.
-struct Wire<'a> {
+struct CheckedLink<'a> {
     memory: &'a Memory,
     main: u32,
     message: Option<Message>,
@@ -28,7 +28,7 @@ struct Wire<'a> {
     unfit: Option<Reason>,
 }
 
-impl Wire<'_> {
+impl CheckedLink<'_> {
     fn enter(&mut self, request: Request) -> Result<(), Stop> {
         if std::mem::take(&mut self.is_permitted) {
             return Ok(());
@@ -48,7 +48,7 @@ impl Wire<'_> {
     }
 }
 
-impl Link for Wire<'_> {
+impl Link for CheckedLink<'_> {
     fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
         let place = buffer.slice_mut(to, octets)?;
         self.ask(Access::Load, from, octets)?;
@@ -152,20 +152,20 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
     }
 
-    fn run(&mut self, wire: &mut Wire) -> Pause {
+    fn run(&mut self, link: &mut CheckedLink) -> Pause {
         interpreter::run(
             self.code,
             self.seat,
             &mut self.state,
             &self.arithmetic,
-            wire,
+            link,
             &mut self.tally,
             &mut self.observer,
         )
     }
 
-    fn wire(&self, message: Option<Message>) -> Wire<'a> {
-        Wire {
+    fn link(&self, message: Option<Message>) -> CheckedLink<'a> {
+        CheckedLink {
             memory: self.memory,
             main: self.seat.cores,
             message,
@@ -181,12 +181,12 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// # Errors
     /// Something else comes first.
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
-        let mut wire = self.wire(Some(Message::new([[0; 3]])));
-        match self.run(&mut wire) {
+        let mut link = self.link(Some(Message::new([[0; 3]])));
+        match self.run(&mut link) {
             _ if self.observer.taint.depends_on_core || self.observer.taint.depends_on_cores => {
                 Err("what comes before the message depends on the core")
             }
-            Pause::Wait if wire.request == Some(Request::Receive) => {
+            Pause::Wait if link.request == Some(Request::Receive) => {
                 Ok(Prefix { clocks: self.state.clocks, pc: self.state.pc })
             }
             _ => Err(BEGINS),
@@ -202,14 +202,14 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
     fn run_quickly(&mut self, record: &mut ItemRecord, budget: &Budget) -> Option<Stopped> {
         let (memory, main, level) = (self.memory, self.seat.cores, self.level);
-        let moment = Moment { pc: 0, clocks: 0 };
-        let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, moment };
+        let time = RequestTime { pc: 0, clocks: 0 };
+        let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, time };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         match O::IS_ACTIVE {
             false => self.runner.run_ahead(seat, state, &mut link, taint, &mut Unobserved),
             true => {
-                let link: &mut &mut dyn engine::Wire = &mut (&mut link as _);
+                let link: &mut &mut dyn engine::TimedLink = &mut (&mut link as _);
                 self.runner.run_ahead(seat, state, link, taint, observer)
             }
         }
@@ -225,7 +225,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let segments = Vec::with_capacity(self.usual);
         let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
         let stopped = self.run_quickly(&mut record, budget);
-        let mut wire = Wire { sent: record.sent, ..self.wire(record.message) };
+        let mut link = CheckedLink { sent: record.sent, ..self.link(record.message) };
         let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
         let end = loop {
             match stopped {
@@ -233,20 +233,20 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 Some(Stopped::Fault(fault)) => break Pause::Fault(fault),
                 _ => {}
             }
-            let pause = self.run(&mut wire);
+            let pause = self.run(&mut link);
             if pause != Pause::Wait {
                 break pause;
             }
-            if let Some(reason) = wire.unfit {
+            if let Some(reason) = link.unfit {
                 return Err(reason);
             }
-            let request = wire.request.take().ok_or(BEGINS)?;
+            let request = link.request.take().ok_or(BEGINS)?;
             if request != Request::Receive {
-                if wire.message.is_some() {
+                if link.message.is_some() {
                     return Err(BEGINS);
                 }
                 let clocks = self.state.clocks - before;
-                let segment = Segment::new(clocks, self.state.pc, request, wire.sent.len());
+                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len());
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 octets += segment.octets();
                 self.kinds.add(self.state.pc, Some(request));
@@ -256,9 +256,9 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 }
             }
             before = self.state.clocks;
-            wire.is_permitted = true;
+            link.is_permitted = true;
         };
-        if wire.message.is_some() {
+        if link.message.is_some() {
             return Err(BEGINS);
         }
         self.observer.end();
@@ -275,7 +275,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             reads: reads(&segments),
             segments,
             octets,
-            sent: wire.sent,
+            sent: link.sent,
             last_clocks: self.state.clocks - before,
             last_pc: self.state.pc,
             end,

@@ -345,7 +345,7 @@ impl Render {
                 busy: frame.bus.busy.0,
                 moved: frame.bus.moved.0,
                 asked: frame.asked.0,
-                aside: frame.aside.0,
+                aside: frame.bypassed.0,
                 utilisation: frame.utilisation(),
                 transfers: frame.bus.transfers,
                 bursts: frame.bus.bursts,

@@ -77,7 +77,7 @@ pub enum Stopped {
     /// The instruction at the program counter asked the machine for something and went wrong.
     Fault(Fault),
     /// The instruction at the program counter is for the interpreter.
-    Unusual,
+    Bailout,
 }
 
 /// When and where a work item asks the machine for something.

@@ -85,7 +85,7 @@ impl<W: Worker> Machine<'_, W> {
             waits: self.bus.waits().to_vec(),
             cache,
             asked: Octets(asked),
-            aside: self.bypassed,
+            bypassed: self.bypassed,
             kinds: self.kinds.into_totals(),
             memory: self.shared.memory,
             tally,

@@ -18,7 +18,7 @@ use crate::engine::{CoreId, Pause};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Act {
     /// It moves octets beside the bus.
-    Aside,
+    Bypass,
     /// It reads what its cache holds.
     Hit,
     /// It takes a message.

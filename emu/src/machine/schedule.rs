@@ -120,7 +120,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             kinds: Kinds::new(&setup.kinds),
-            aside: Octets(0),
+            bypassed: Octets(0),
             now: Clocks(0),
             items: Vec::new(),
             item_count: 0,

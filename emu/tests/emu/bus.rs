@@ -14,7 +14,7 @@ use super::builder::program;
 use super::machine::{dispatch, run, worker};
 
 fn check_accounts(frame: &RunOutcome) {
-    let uncached = frame.bus.moved - frame.cache.filled + frame.aside;
+    let uncached = frame.bus.moved - frame.cache.filled + frame.bypassed;
     assert_eq!(frame.asked, uncached + frame.cache.asked);
     assert_eq!(frame.asked, frame.kinds.iter().map(|kind| kind.octets).sum());
     assert_eq!(frame.asked, frame.processors.iter().map(|used| used.octets).sum());

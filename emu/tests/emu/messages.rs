@@ -26,7 +26,7 @@ fn frame(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Bui
     for used in &frame.processors {
         assert_eq!(used.busy + used.waiting + used.idle, frame.clocks);
     }
-    assert_eq!(frame.asked, frame.bus.moved + frame.aside);
+    assert_eq!(frame.asked, frame.bus.moved + frame.bypassed);
     frame
 }
 
@@ -161,7 +161,7 @@ fn a_message_beside_the_bus_overtakes_one_that_is_still_on_it() {
     // Core 1's message is on the bus from its one comparison at 1 on to 121; the main processor's comes at 50.
     assert_eq!((word(&frame, 0), word(&frame, 1)), (2, 1));
     assert_eq!(frame.clocks, Clocks(121 + 2 * 8));
-    assert_eq!(frame.aside.0, 60);
+    assert_eq!(frame.bypassed.0, 60);
     let core = frame.processors[0];
     assert_eq!((core.busy, core.idle, core.waiting), (Clocks(1 + 30), Clocks(49 + 41), Clocks(16)));
 }

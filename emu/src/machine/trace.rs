@@ -90,7 +90,7 @@ pub enum Cargo {
 
 /// A burst on the bus, with the whole of its times even where they reach out of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Burst {
+pub struct TracedBurst {
     /// Who has the bus: a core, or the main processor after the last core.
     pub master: u32,
     /// When it asked for it.
@@ -113,7 +113,7 @@ pub struct Trace {
     /// Spans of each core, then of the main processor.
     pub processors: Vec<Vec<Span>>,
     /// Bursts that were asked for, or not yet over, in it, in the order of their grants.
-    pub bursts: Vec<Burst>,
+    pub bursts: Vec<TracedBurst>,
 }
 
 /// Watches the bus.
@@ -122,7 +122,7 @@ pub struct BusWatch {
     window: Window,
     /// What each master's transfer carries, and octets of it that were moved.
     carried: Vec<Option<(Cargo, Octets)>>,
-    bursts: Vec<Burst>,
+    bursts: Vec<TracedBurst>,
 }
 
 impl BusWatch {
@@ -154,7 +154,7 @@ impl BusWatch {
         let asked = grant.start - grant.waited;
         if self.window.touches(asked, grant.end) {
             let Grant { master, start, end, octets, .. } = *grant;
-            self.bursts.push(Burst { master, asked, start, end, cargo, octets });
+            self.bursts.push(TracedBurst { master, asked, start, end, cargo, octets });
         }
     }
 

@@ -4,7 +4,7 @@
 mod perfetto;
 mod wave;
 
-use emu::machine::trace::{Burst, Cargo, Doing, Span, Trace};
+use emu::machine::trace::{TracedBurst, Cargo, Doing, Span, Trace};
 use emu::machine::{RunOutcome, Item};
 use emu::quantity::Clocks;
 
@@ -56,7 +56,7 @@ impl<'a> Scene<'a> {
     /// Clocks that the bus was busy, from the window's start to `end`.
     pub fn bus_busy(&self, end: Clocks) -> u64 {
         let start = self.trace.window.start;
-        let clip = |burst: &Burst| (burst.start.clamp(start, end), burst.end.clamp(start, end));
+        let clip = |burst: &TracedBurst| (burst.start.clamp(start, end), burst.end.clamp(start, end));
         self.trace.bursts.iter().map(clip).map(|(start, end)| (end - start).0).sum()
     }
 

@@ -6,7 +6,7 @@ use crate::engine::taint::Taint;
 
 /// What is counted of a place beside its exits.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Run {
+pub(super) struct RunFlow {
     /// How often a run was begun here that no exit led to whose target is known.
     pub begun: u64,
     /// How often a run ended before this place.
@@ -15,9 +15,9 @@ pub(super) struct Run {
 
 /// Passes of a program, counted by the ways between its runs.
 #[derive(Clone, Debug)]
-pub struct Count {
+pub struct FlowCounts {
     /// By place, and one behind the last one.
-    pub(super) runs: Vec<Run>,
+    pub(super) runs: Vec<RunFlow>,
     /// By exit: those of rows with several, the first one of branches left out, and of what always leads to the same place.
     pub(super) exits: Vec<u64>,
     units: Vec<u64>,
@@ -27,12 +27,12 @@ pub struct Count {
     pub taint: Taint,
 }
 
-impl Count {
+impl FlowCounts {
     /// Nothing yet, for a program; `is_following` where it is to be found out what depends on the number of cores.
-    pub fn new(plan: &Plan, is_following: bool) -> Count {
+    pub fn new(plan: &Plan, is_following: bool) -> FlowCounts {
         let exits = plan.exits();
-        let runs = vec![Run::default(); plan.steps().len()];
-        Count { runs, exits: vec![0; exits], units: vec![0; exits], is_following, taint: Taint::default() }
+        let runs = vec![RunFlow::default(); plan.steps().len()];
+        FlowCounts { runs, exits: vec![0; exits], units: vec![0; exits], is_following, taint: Taint::default() }
     }
 
     /// A pass through an exit.

@@ -13,9 +13,9 @@ mod rows;
 mod walk;
 
 use fuel::Fuel;
-use walk::{Ended, Place, Walk};
+use walk::{Ended, Position, Walk};
 
-use count::Count;
+use count::FlowCounts;
 
 use super::host::{HostSimd, Present};
 use super::plan::Plan;
@@ -30,7 +30,7 @@ use crate::profile::RunObserver;
 #[derive(Clone, Debug)]
 pub struct Fast<'a> {
     plan: Plan<'a>,
-    count: Count,
+    count: FlowCounts,
     simd: Present,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Engine<'a> for Fast<'a> {
     fn new(demand: &Demand<'a>) -> Result<Fast<'a>, Refusal> {
         let plan = Plan::new(demand.code).ok_or(TOO_LONG)?;
         let plan = if demand.follows_cores { plan } else { plan.regardless_of_cores() };
-        Ok(Fast { count: Count::new(&plan, demand.follows_cores), plan, simd: demand.simd.present() })
+        Ok(Fast { count: FlowCounts::new(&plan, demand.follows_cores), plan, simd: demand.simd.present() })
     }
 
     fn run<L: TimedLink, O: RunObserver>(
@@ -69,12 +69,12 @@ fn run<L: TimedLink, O: RunObserver>(
     seat: CoreId,
     state: &mut State,
     link: &mut L,
-    count: &mut Count,
+    count: &mut FlowCounts,
     observer: &mut O,
 ) -> Stopped {
     #[cfg(target_arch = "x86_64")]
     if simd >= HostSimd::Avx2 {
-        let run = |registers: &mut Registers, first: Place, walk: &mut Walk<L, O>| {
+        let run = |registers: &mut Registers, first: Position, walk: &mut Walk<L, O>| {
             // SAFETY: the host has the features that the function is compiled for. `rows::baseline::run` is its safe twin.
             unsafe { rows::avx2::run::<L, O>(registers, first, walk) }
         };
@@ -92,9 +92,9 @@ fn walk<L: TimedLink, O: RunObserver>(
     seat: CoreId,
     state: &mut State,
     link: &mut L,
-    count: &mut Count,
+    count: &mut FlowCounts,
     observer: &mut O,
-    run: impl FnOnce(&mut Registers, Place, &mut Walk<L, O>),
+    run: impl FnOnce(&mut Registers, Position, &mut Walk<L, O>),
 ) -> Stopped {
     // Rows count without a look at how much there is.
     assert_eq!((count.runs.len(), count.exits.len()), (plan.steps().len(), plan.exits()), "they are of one plan");

@@ -3,13 +3,13 @@
 
 use isa::Op;
 
-use super::walk::{Place, Walk};
+use super::walk::{Position, Walk};
 use crate::code::registers::Registers;
 use crate::engine::plan::Step;
 
 /// A row: it does what the step says, goes on with the rows behind it unless it [goes back](goes_back), and yields where that led to.
-/// The last number is that of [`Place::sums`].
-type RowFunction<L, O> = unsafe fn(&mut Registers, *const Step, &mut Walk<L, O>, u64) -> Place;
+/// The last number is that of [`Position::sums`].
+type RowFunction<L, O> = unsafe fn(&mut Registers, *const Step, &mut Walk<L, O>, u64) -> Position;
 
 /// Rows whose functions keep much on the stack for what they call, so that a call in their last place does not become a jump: they go back to the
 /// loop. `is_wide` for a host with vectors, where fewer do. What other rows leave there, as some do with debug assertions, is given back when a
@@ -47,7 +47,7 @@ const fn is_read(op: Op) -> bool {
 /// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
 macro_rules! thread {
     ($place:expr, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
-        let place: Place = $place;
+        let place: Position = $place;
         #[cfg(threaded)]
         {
             // SAFETY: the step is one of the plan's, and the host has the features that all rows of this module are compiled for.
@@ -64,12 +64,12 @@ macro_rules! thread {
 /// On to another run.
 macro_rules! turn {
     ($way:expr, $sums:ident, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
-        let way: Way = $way;
+        let way: Turn = $way;
         let after = $sums.wrapping_add(way.cost);
         if after & LOOK != 0 {
             return $walk.look(way.step, way.cost, $sums);
         }
-        thread!(Place { step: way.step, sums: after }, ($registers $walk $L $O))
+        thread!(Position { step: way.step, sums: after }, ($registers $walk $L $O))
     }};
 }
 
@@ -114,7 +114,7 @@ macro_rules! function {
             $step: *const Step,
             $walk: &mut Walk<$L, $O>,
             $sums: u64,
-        ) -> Place {
+        ) -> Position {
             // SAFETY: it points to a step of the plan, which nobody changes.
             let $now = unsafe { &*$step };
             let $fields = &$now.fields;
@@ -129,7 +129,7 @@ macro_rules! row {
         function! { $features $name (registers step walk sums now fields L O) {
             let exit: outcome::$name::Outcome = $ray!($name registers fields $written $((read!(registers, fields, $letter $kind)))*);
             let sums = walk.pass::<outcome::$name::Outcome>(now, sums, exit);
-            let next = walk.go_on(Place { step, sums });
+            let next = walk.go_on(Position { step, sums });
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
             }
@@ -141,7 +141,7 @@ macro_rules! row {
             one_outcome!($name);
             let result = $trait::$name(&Nearest32 $(, read!(registers, fields, $letter $kind))*);
             let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
-            let next = walk.go_on(Place { step, sums });
+            let next = walk.go_on(Position { step, sums });
             if goes_back(Op::$name, IS_WIDE) {
                 return next;
             }
@@ -155,21 +155,21 @@ macro_rules! row {
                 Ok(result) => {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
                 }
-                Err(_) => return walk.stop_before(Stopped::Bailout, Place { step, sums }),
+                Err(_) => return walk.stop_before(Stopped::Bailout, Position { step, sums }),
             }
-            let next = walk.go_on(Place { step, sums });
+            let next = walk.go_on(Position { step, sums });
             thread!(next, (registers walk L O))
         }}
     };
     ({ $features:tt $ray:ident bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         function! { $features $name (registers step walk sums now fields L O) {
             one_outcome!($name);
-            walk.note(Place { step, sums }, now);
+            walk.note(Position { step, sums }, now);
             if is_read(Op::$name) {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Peek(&mut *walk.link) };
                 if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
-                    let next = walk.go_on(Place { step, sums });
+                    let next = walk.go_on(Position { step, sums });
                     return thread!(next, (registers walk L O));
                 }
             }
@@ -179,10 +179,10 @@ macro_rules! row {
                     Ok(result) => {
                         let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
                         let sums = walk.pass::<outcome::$name::Outcome>(now, sums, exit);
-                        walk.go_on(Place { step, sums })
+                        walk.go_on(Position { step, sums })
                     }
-                    Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Place { step, sums }),
-                    Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Place { step, sums }),
+                    Err(Stop::Wait) => walk.stop_before(Stopped::Wait, Position { step, sums }),
+                    Err(Stop::Fault(fault)) => walk.stop_before(Stopped::Fault(fault), Position { step, sums }),
                 }
             }}
             // SAFETY: the step and the host are those of this function; the safe twin is `crate::engine::interpreter::run`.
@@ -202,11 +202,11 @@ macro_rules! row {
             let has_target = const { false $(|| is_relative!($kind))* };
             let goes_on = flow.next == now.slot + 1;
             if matches!(flow.end, Some(End::Trap(_))) || !has_target && !goes_on && flow.next >= walk.plan.words {
-                return walk.stop_before(Stopped::Bailout, Place { step, sums });
+                return walk.stop_before(Stopped::Bailout, Position { step, sums });
             }
             let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
             if let Some(End::Halt) = flow.end {
-                return walk.halt(Place { step, sums });
+                return walk.halt(Position { step, sums });
             }
             turn!(walk.turn::<outcome::$name::Outcome>(has_target, now, step, flow, exit), sums, (registers walk L O))
         }}
@@ -255,7 +255,7 @@ macro_rules! stamp {
     ) => {
         pub(super) mod $module {
             use crate::engine::TimedLink;
-            use super::super::walk::{Place, Walk};
+            use super::super::walk::{Position, Walk};
             use crate::profile::RunObserver;
             use crate::code::registers::Registers;
 
@@ -267,7 +267,7 @@ macro_rules! stamp {
 
                 use super::super::super::fuel::LOOK;
                 use super::super::super::operands::put;
-                use super::super::super::walk::{Place, Walk, Way};
+                use super::super::super::walk::{Position, Walk, Turn};
                 use crate::engine::{Stopped, TimedLink};
                 use super::super::{RowFunction, goes_back, is_read};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
@@ -294,7 +294,7 @@ macro_rules! stamp {
                 }}
 
                 function! { $features bailout (registers step walk sums now fields L O) {
-                    walk.stop_before(Stopped::Bailout, Place { step, sums })
+                    walk.stop_before(Stopped::Bailout, Position { step, sums })
                 }}
 
                 /// The rows by number.
@@ -308,7 +308,7 @@ macro_rules! stamp {
 
             /// Walks from a step, of which the run has begun, until it stops.
             # $features
-            pub fn run<L: TimedLink, O: RunObserver>(registers: &mut Registers, mut place: Place, walk: &mut Walk<L, O>) {
+            pub fn run<L: TimedLink, O: RunObserver>(registers: &mut Registers, mut place: Position, walk: &mut Walk<L, O>) {
                 while !place.step.is_null() {
                     // SAFETY: rows yield a step of the plan, and the host has the features that this function is compiled for, as the
                     // rows are. `crate::engine::interpreter::run` is the safe twin.

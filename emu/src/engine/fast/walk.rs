@@ -2,7 +2,7 @@
 
 use isa::table::AnyOutcome;
 
-use super::count::Count;
+use super::count::FlowCounts;
 use super::fuel::Fuel;
 use crate::code::octets::Buffer;
 use crate::code::registers::Registers;
@@ -18,14 +18,14 @@ use crate::semantics::{Flow, Motion};
 
 /// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuel was looked at.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct Position {
     pub step: *const Step,
     pub sums: u64,
 }
 
 /// Where control goes from one run to the next, and what that and the next run take.
 #[derive(Clone, Copy)]
-pub(super) struct Way {
+pub(super) struct Turn {
     pub step: *const Step,
     pub cost: u64,
 }
@@ -47,7 +47,7 @@ pub(super) struct Walk<'a, L, O> {
     pub buffer: &'a mut Buffer,
     pub units: &'a mut Units,
     pub link: &'a mut L,
-    pub count: &'a mut Count,
+    pub count: &'a mut FlowCounts,
     pub observer: &'a mut O,
     pub fuel: Fuel,
     /// The plan's steps for what the fuel knows of the cores.
@@ -59,15 +59,15 @@ pub(super) struct Walk<'a, L, O> {
 
 impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     #[cold]
-    fn stop(&mut self, stop: Ended) -> Place {
+    fn stop(&mut self, stop: Ended) -> Position {
         self.stop = stop;
-        Place { step: std::ptr::null(), sums: 0 }
+        Position { step: std::ptr::null(), sums: 0 }
     }
 
     /// Stops before a step of the current run.
     #[cold]
     #[inline(never)]
-    pub fn stop_before(&mut self, stopped: Stopped, at: Place) -> Place {
+    pub fn stop_before(&mut self, stopped: Stopped, at: Position) -> Position {
         self.stop(Ended { stopped, place: self.place(at.step), sums: at.sums, is_cut: true })
     }
 
@@ -94,19 +94,19 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
 
     /// On to the next step of the run.
     #[inline(always)]
-    pub fn go_on(&mut self, at: Place) -> Place {
+    pub fn go_on(&mut self, at: Position) -> Position {
         if O::IS_ACTIVE {
             let place = self.place(at.step);
             if self.observer.is_border(place) {
                 self.tell(place, place + 1, Motion::Jump);
             }
         }
-        Place { step: at.step.wrapping_add(1), sums: at.sums }
+        Position { step: at.step.wrapping_add(1), sums: at.sums }
     }
 
     /// The way to a place to which no exit leads whose target is known.
     #[inline(always)]
-    pub fn way_to(&mut self, place: u32) -> Way {
+    pub fn way_to(&mut self, place: u32) -> Turn {
         let step = self.step(place);
         let cost = match self.count.runs.get_mut(place as usize) {
             Some(run) => {
@@ -116,11 +116,11 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
             }
             None => FLAG,
         };
-        Way { step, cost }
+        Turn { step, cost }
     }
 
     /// Begins at a place.
-    pub fn begin(&mut self, place: u32, sums: u64) -> Place {
+    pub fn begin(&mut self, place: u32, sums: u64) -> Position {
         self.from = place;
         let way = self.way_to(place);
         self.look(way.step, way.cost, sums)
@@ -129,12 +129,12 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     /// Looks at what is to be looked at before a run begins, which is counted already.
     #[cold]
     #[inline(never)]
-    pub fn look(&mut self, step: *const Step, cost: u64, sums: u64) -> Place {
+    pub fn look(&mut self, step: *const Step, cost: u64, sums: u64) -> Position {
         let place = self.place(step);
         let (sums, begins) = self.fuel.look(self.plan, place, sums, cost);
         self.steps = self.plan.steps_of(self.fuel.is_held()).as_ptr();
         if begins {
-            return Place { step: self.step(place), sums };
+            return Position { step: self.step(place), sums };
         }
         self.count.runs[place as usize].cut += 1;
         self.stop(Ended { stopped: Stopped::Bailout, place, sums, is_cut: false })
@@ -143,7 +143,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     /// Stops behind the program's end.
     #[cold]
     #[inline(never)]
-    pub fn halt(&mut self, at: Place) -> Place {
+    pub fn halt(&mut self, at: Position) -> Position {
         let place = self.place(at.step);
         if O::IS_ACTIVE {
             self.tell(place, place, Motion::Jump);
@@ -153,7 +153,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a control row: one that its step knows, or to any word.
     #[inline(always)]
-    pub fn turn<E: AnyOutcome>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Way {
+    pub fn turn<E: AnyOutcome>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Turn {
         let number = now.exit as usize + exit.index();
         let is_falling = E::OUTCOMES > 1 && exit.index() == 0;
         if O::IS_ACTIVE {
@@ -169,11 +169,11 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
             self.tell(place, next, flow.motion);
         }
         if is_falling {
-            return Way { step: step.wrapping_add(1), cost: now.edges[0] };
+            return Turn { step: step.wrapping_add(1), cost: now.edges[0] };
         }
         if has_target {
             self.count.take_exit(number);
-            return Way { step: self.step(now.target), cost: now.edges[1] };
+            return Turn { step: self.step(now.target), cost: now.edges[1] };
         }
         self.way_to(self.next_place(step, now, flow))
     }
@@ -186,7 +186,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a hop.
     #[inline(always)]
-    pub fn hop(&mut self, now: &Step, step: *const Step) -> Way {
+    pub fn hop(&mut self, now: &Step, step: *const Step) -> Turn {
         if O::IS_ACTIVE {
             let place = self.place(step);
             self.observer.walked(self.from..place);
@@ -194,12 +194,12 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
             self.from = now.target;
         }
         self.count.take_exit(now.exit as usize);
-        Way { step: self.step(now.target), cost: now.edges[1] }
+        Turn { step: self.step(now.target), cost: now.edges[1] }
     }
 
     /// Executes an instruction with a meaning in Rust.
-    pub fn unit(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Place {
-        let at = Place { step, sums };
+    pub fn unit(&mut self, registers: &mut Registers, step: *const Step, sums: u64, now: &Step) -> Position {
+        let at = Position { step, sums };
         let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Bailout, at) };
         let (plan, fuel, link) = (self.plan, &self.fuel, &mut *self.link);
         let mut read = |address, words: &mut [i32]| {
@@ -219,7 +219,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
         let next = if ending.is_taken && has_target { now.target } else { place + 1 };
         let strays = ending.is_taken && next == self.plan.end();
         if !has_target && !strays {
-            return self.go_on(Place { step, sums });
+            return self.go_on(Position { step, sums });
         }
         if O::IS_ACTIVE {
             self.tell(place, next, Motion::Jump);
@@ -234,7 +234,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
 
     /// Tells the link when it is asked.
     #[inline(always)]
-    pub fn note(&mut self, at: Place, now: &Step) {
+    pub fn note(&mut self, at: Position, now: &Step) {
         let place = self.place(at.step);
         note(self.plan, &self.fuel, self.link, (now.slot, place), at.sums);
     }

@@ -11,7 +11,7 @@ use isa::{Fields, Isa, Op};
 
 /// Where a slot of a splice leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+pub(crate) enum SpliceTarget {
     /// To another slot of the splice.
     Inside(usize),
     /// Behind the extension instruction.
@@ -35,10 +35,10 @@ pub(crate) enum Passing {
 
 /// A slot of a splice.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
+pub(crate) struct SpliceSlot {
     pub op: Op,
     pub fields: Fields,
-    pub way: Way,
+    pub way: SpliceTarget,
     /// Where it branches to: the operand's letter and the slot of the splice.
     pub branch: Option<(u8, usize)>,
     pub passing: Passing,
@@ -49,7 +49,7 @@ pub(crate) struct Piece {
 }
 
 /// The registers of one operand of an instance.
-struct Place {
+struct InstanceOperand {
     operand: Operand,
     file: char,
     /// Its first register in the program.
@@ -58,7 +58,7 @@ struct Place {
     inner: u8,
 }
 
-impl Place {
+impl InstanceOperand {
     fn outer_bits(&self) -> u64 {
         ((1 << self.operand.kind.registers()) - 1) << self.outer
     }
@@ -73,7 +73,7 @@ impl Place {
 }
 
 /// The slots of a body for an instruction with these fields.
-pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<Piece> {
+pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<SpliceSlot> {
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
     let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
@@ -84,11 +84,11 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
         Some(*at)
     }));
     let leave = |jumps: bool| match row.operands.iter().find(|operand| jumps && operand.kind == Kind::Rel) {
-        Some(operand) => Way::Away(fields.get(operand.letter) as i32),
-        None => Way::Behind,
+        Some(operand) => SpliceTarget::Away(fields.get(operand.letter) as i32),
+        None => SpliceTarget::Behind,
     };
-    let mut pieces: Vec<Piece> = Vec::with_capacity(starts[body.steps.len()]);
-    let plain = |(op, fields): (Op, Fields), way, passing, step| Piece {
+    let mut pieces: Vec<SpliceSlot> = Vec::with_capacity(starts[body.steps.len()]);
+    let plain = |(op, fields): (Op, Fields), way, passing, step| SpliceSlot {
         op,
         fields,
         way,
@@ -98,7 +98,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
         step,
     };
     for made in before {
-        pieces.push(plain(made, Way::Inside(pieces.len() + 1), Passing::Move, 0));
+        pieces.push(plain(made, SpliceTarget::Inside(pieces.len() + 1), Passing::Move, 0));
     }
     for (number, step) in body.steps.iter().enumerate() {
         let (instruction, immediates) = match step.act {
@@ -109,7 +109,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
                 for (at, &moved) in made.iter().enumerate() {
                     let (way, passing) = match at + 1 == made.len() {
                         true => (leave(jumps), Passing::Exit(exit)),
-                        false => (Way::Inside(pieces.len() + 1), Passing::Move),
+                        false => (SpliceTarget::Inside(pieces.len() + 1), Passing::Move),
                     };
                     pieces.push(plain(moved, way, passing, number as u32));
                 }
@@ -122,12 +122,12 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
             inner.operands.iter().find(|operand| operand.kind == Kind::Rel).map(|operand| {
                 (operand.letter, starts[(number as i64 + instruction.fields.get(operand.letter)) as usize])
             });
-        let mut piece = plain((instruction.op, filled), Way::Inside(starts[number + 1]), Passing::Step, number as u32);
+        let mut piece = plain((instruction.op, filled), SpliceTarget::Inside(starts[number + 1]), Passing::Step, number as u32);
         match (target, body.steps.get(number + 1).map(|next| next.act)) {
             // A jump inside is where its slot leads to.
             (Some((_, target)), _) if instruction.op == Op::jump => {
                 (piece.op, piece.fields) = copy('s', 0, 0);
-                piece.way = Way::Inside(target);
+                piece.way = SpliceTarget::Inside(target);
             }
             (None, Some(Act::End { outcome: exit, jumps }))
                 if after.is_empty() && inner.outcomes.len() == 1 && instruction.op != Op::trap =>
@@ -143,11 +143,11 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
 }
 
 /// Where each register operand is while the body runs.
-fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<Place> {
-    let mut places: Vec<Place> = (row.operands.iter())
+fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<InstanceOperand> {
+    let mut places: Vec<InstanceOperand> = (row.operands.iter())
         .filter_map(|&operand| {
             let outer = fields.get(operand.letter) as u8;
-            operand.kind.register_file().map(|file| Place { operand, file, outer, inner: outer })
+            operand.kind.register_file().map(|file| InstanceOperand { operand, file, outer, inner: outer })
         })
         .collect();
     let mut ends = [64u8, 64, 16];
@@ -168,7 +168,7 @@ fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<
 }
 
 /// Whether a destination may be written before the body has ended.
-fn is_safe(place: &Place, places: &[Place], body: &Body, isa: &Isa) -> bool {
+fn is_safe(place: &InstanceOperand, places: &[InstanceOperand], body: &Body, isa: &Isa) -> bool {
     let others = places.iter().filter(|other| {
         other.operand.letter != place.operand.letter
             && other.file == place.file
@@ -180,7 +180,7 @@ fn is_safe(place: &Place, places: &[Place], body: &Body, isa: &Isa) -> bool {
 }
 
 /// Copies of hidden operands: into their registers before the body, out of them behind it, in the order of the row.
-fn moves(places: &[Place], is_entry: bool) -> Vec<(Op, Fields)> {
+fn moves(places: &[InstanceOperand], is_entry: bool) -> Vec<(Op, Fields)> {
     let mut moves = Vec::new();
     for place in places.iter().filter(|place| place.inner != place.outer) {
         let (from, to, is_moved) = match is_entry {
@@ -209,7 +209,7 @@ fn filled(
     step: &Fields,
     immediates: [Immediate; 2],
     outer: &Fields,
-    places: &[Place],
+    places: &[InstanceOperand],
 ) -> Fields {
     let mut filled = *step;
     for operand in inner.operands.iter() {

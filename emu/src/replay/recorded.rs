@@ -30,7 +30,7 @@ impl Recorded {
     /// Why they cannot be replayed; a machine that cannot be used is one of the reasons.
     pub fn new(setup: &Setup, memory: &Memory) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
-        on_arithmetic(setup, Recording { setup, memory })
+        on_arithmetic(setupRecordTask { setup, memory })
     }
 
     /// Segments of all work items: computing, then a transfer or a message.
@@ -45,23 +45,23 @@ impl Recorded {
     /// As [`crate::run()`]; the inner error says why this machine would not do what was recorded.
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, Failure> {
         check(setup)?;
-        match on_arithmetic(setup, Replaying { recorded: self, setup, memory }) {
+        match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory }) {
             Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.totals))),
             Err(reason) => Ok(Err(reason)),
         }
     }
 }
 
-struct Recording<'a> {
+struct RecordTask<'a> {
     setup: &'a Setup<'a>,
     memory: &'a Memory,
 }
 
-impl Task for Recording<'_> {
+impl Task for RecordTask<'_> {
     type Result = Result<Recorded, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
-        let Recording { setup, memory } = self;
+        let RecordTask { setup, memory } = self;
         let prefix = super::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
         let totals = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Segments, &mut |batch| {
@@ -75,13 +75,13 @@ impl Task for Recording<'_> {
     }
 }
 
-struct Replaying<'a> {
+struct ReplayTask<'a> {
     recorded: &'a Recorded,
     setup: &'a Setup<'a>,
     memory: Memory,
 }
 
-impl Task for Replaying<'_> {
+impl Task for ReplayTask<'_> {
     type Result = Result<Result<RunOutcome, Failure>, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {

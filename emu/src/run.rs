@@ -29,7 +29,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
 /// As [`run`].
 pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, Failure> {
     check(setup)?;
-    on_arithmetic(setup, Stepping { setup, memory, progress })
+    on_arithmetic(setup, StepTask { setup, memory, progress })
 }
 
 /// Runs the same frame on several machines. Those that compute alike (in the same clocks, with the same arithmetic and
@@ -72,16 +72,16 @@ fn at_once(memory: &Memory) -> usize {
 /// Runs machines that compute alike.
 fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<RunOutcome, Failure>> {
     let Some(first) = setups.first() else { return Vec::new() };
-    on_arithmetic(first, Replaying { setups, memory, progress })
+    on_arithmetic(first, RunTask { setups, memory, progress })
 }
 
-struct Stepping<'a> {
+struct StepTask<'a> {
     setup: &'a Setup<'a>,
     memory: Memory,
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl Task for Stepping<'_> {
+impl Task for StepTask<'_> {
     type Result = Result<RunOutcome, Failure>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
@@ -89,13 +89,13 @@ impl Task for Stepping<'_> {
     }
 }
 
-struct Replaying<'a> {
+struct RunTask<'a> {
     setups: &'a [Setup<'a>],
     memory: &'a Memory,
     progress: &'a mut dyn FnMut(u64),
 }
 
-impl Task for Replaying<'_> {
+impl Task for RunTask<'_> {
     type Result = Vec<Result<RunOutcome, Failure>>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {

@@ -13,7 +13,7 @@ use crate::semantics::Watch;
 
 /// What a frame computes and counts, whatever the time it takes.
 #[derive(Clone, Debug)]
-pub struct Count {
+pub struct FrameTotals {
     /// Global memory at the end.
     pub memory: Memory,
     /// Passes of all cores.
@@ -31,21 +31,21 @@ pub struct Count {
 /// # Errors
 /// A machine out of its ranges, or a program whose initial buffer does not fit. The inner error says why there is no such
 /// result: the frame traps, or what its work items do depends on time, which [`crate::run()`] finds out about.
-pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<Count, Reason>, Failure> {
+pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<FrameTotals, Reason>, Failure> {
     check(setup)?;
-    Ok(on_arithmetic(setup, Counting { setup, memory }))
+    Ok(on_arithmetic(setup, CountTask { setup, memory }))
 }
 
-struct Counting<'a> {
+struct CountTask<'a> {
     setup: &'a Setup<'a>,
     memory: &'a Memory,
 }
 
-impl Task for Counting<'_> {
-    type Result = Result<Count, Reason>;
+impl Task for CountTask<'_> {
+    type Result = Result<FrameTotals, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
-        let Counting { setup, memory } = self;
+        let CountTask { setup, memory } = self;
         super::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);
         let totals = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Passes, &mut |batch| {
@@ -65,7 +65,7 @@ impl Task for Counting<'_> {
         }
         match unfit {
             Some(reason) => Err(reason),
-            None => Ok(Count {
+            None => Ok(FrameTotals {
                 memory: totals.memory,
                 tally: totals.tally,
                 profile: totals.profile,

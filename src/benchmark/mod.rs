@@ -95,7 +95,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let modes = job.machine.arithmetic.modes();
     let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
     let crop = load.build.crop;
-    let count = |setup: &Setup| -> Result<emu::replay::Count, Failure> {
+    let count = |setup: &Setup| -> Result<emu::replay::FrameTotals, Failure> {
         let count = emu::count(setup, &load.memory)?;
         count.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };

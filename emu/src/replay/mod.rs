@@ -18,7 +18,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use isa::Class;
 
-pub use count::{Count, count};
+pub use count::{FrameTotals, count};
 pub use recorded::Recorded;
 pub use recording::Reason;
 

@@ -30,7 +30,7 @@ use isa::table::Op;
 use messages::{Diagnostic, did_you_mean};
 
 pub use call::{Call, Operands};
-use units::Runner;
+use units::TypedUnit;
 pub(crate) use units::{Unit, Units};
 
 pub use crate::semantics::Numbers;
@@ -145,7 +145,7 @@ pub fn attach(isa: &mut Isa, name: &str, meaning: impl Meaning + Clone) -> Resul
         let message = format!("`{name}` costs what its body does, but its meaning in Rust would be executed instead");
         return Err(Box::new(Diagnostic::error(message).hint("declare what its exits cost, such as `[Done(add 3)]`")));
     }
-    let unit = Runner::new(isa.definition(op), meaning);
+    let unit = TypedUnit::new(isa.definition(op), meaning);
     isa.set_semantics(op, Some(Arc::new(Attached(Box::new(unit)))));
     Ok(())
 }

@@ -60,7 +60,7 @@ dyn_clone::clone_trait_object!(Unit);
 
 /// The unit for one type of meaning: the compiler makes one piece of its parts.
 #[derive(Clone, Debug)]
-pub(super) struct Runner<M> {
+pub(super) struct TypedUnit<M> {
     meaning: M,
     shape: Shape,
     exits: u8,
@@ -70,15 +70,15 @@ pub(super) struct Runner<M> {
     words: Vec<i32>,
 }
 
-impl<M> Runner<M> {
+impl<M> TypedUnit<M> {
     /// The unit for an instruction of a row.
-    pub fn new(row: &InstructionDef, meaning: M) -> Runner<M> {
+    pub fn new(row: &InstructionDef, meaning: M) -> TypedUnit<M> {
         let mut kinds = [None; 9];
         for operand in row.operands.iter() {
             kinds[place(operand.letter as char)] = Some(operand.kind);
         }
         let written = row.operands.iter().filter(|operand| operand.is_written());
-        Runner {
+        TypedUnit {
             meaning,
             shape: Shape { kinds, name: row.name.to_string() },
             exits: row.outcomes.len() as u8,
@@ -130,7 +130,7 @@ impl<M> Runner<M> {
     }
 }
 
-impl<M: Meaning + Clone> Unit for Runner<M> {
+impl<M: Meaning + Clone> Unit for TypedUnit<M> {
     fn execute(
         &mut self,
         fields: &Fields,

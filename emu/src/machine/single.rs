@@ -91,16 +91,16 @@ pub fn run_with(single: &Single, memory: Memory, wish: Wish) -> Result<SingleRun
     check_buffer("a core", single.program, single.config.buffer_octets)?;
     check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
     let watching = single.config.arithmetic.watching(single.has_losses);
-    Ok(dispatch(watching, single.has_profile, Run { single, memory, wish }))
+    Ok(dispatch(watching, single.has_profileOneCoreTask { single, memory, wish }))
 }
 
-struct Run<'a> {
+struct OneCoreTask<'a> {
     single: &'a Single<'a>,
     memory: Memory,
     wish: Wish,
 }
 
-impl Task for Run<'_> {
+impl Task for OneCoreTask<'_> {
     type Result = SingleRun;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> SingleRun {

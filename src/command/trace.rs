@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use emu::machine::trace::Window;
-use emu::machine::{Config, RunOutcome, Options};
+use emu::machine::{Config, Options, RunOutcome};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 

@@ -7,7 +7,7 @@ mod demand;
 #[cfg(feature = "cli")]
 mod text;
 
-use emu::machine::{self, Config, RunOutcome, Options};
+use emu::machine::{self, Config, Options, RunOutcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -4,8 +4,8 @@
 mod perfetto;
 mod wave;
 
-use emu::machine::trace::{TracedBurst, Cargo, Doing, Span, Trace};
-use emu::machine::{RunOutcome, Item};
+use emu::machine::trace::{Cargo, Doing, Span, Trace, TracedBurst};
+use emu::machine::{Item, RunOutcome};
 use emu::quantity::Clocks;
 
 pub use perfetto::perfetto;

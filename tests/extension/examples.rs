@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::engine::EngineKind;
-use emu::machine::{RunOutcome, Options};
+use emu::machine::{Options, RunOutcome};
 use kernels::{Function, KernelSet};
 use lancer::job::{Job, SHIFT};
 use lancer::load::Load;

@@ -21,7 +21,7 @@ use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, Program};
 use messages::{Diagnostic, Place};
 
 use quantity::Clocks;
-use splice::{Passing, Way, splice};
+use splice::{Passing, SpliceTarget, splice};
 use timing::Timing;
 
 /// Most slots of all bodies of a program.
@@ -217,9 +217,9 @@ impl<'a> Code<'a> {
                 Passing::Exit(exit) | Passing::StepAndExit(exit) => outer.first_exit + u32::from(exit),
             };
             let next = match piece.way {
-                Way::Inside(to) => place(to),
-                Way::Behind => word + 1,
-                Way::Away(distance) => word.wrapping_add_signed(distance).min(self.words()),
+                SpliceTarget::Inside(to) => place(to),
+                SpliceTarget::Behind => word + 1,
+                SpliceTarget::Away(distance) => word.wrapping_add_signed(distance).min(self.words()),
             };
             let mut fields = piece.fields;
             if let Some((letter, to)) = piece.branch {

@@ -122,7 +122,8 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
             inner.operands.iter().find(|operand| operand.kind == Kind::Rel).map(|operand| {
                 (operand.letter, starts[(number as i64 + instruction.fields.get(operand.letter)) as usize])
             });
-        let mut piece = plain((instruction.op, filled), SpliceTarget::Inside(starts[number + 1]), Passing::Step, number as u32);
+        let mut piece =
+            plain((instruction.op, filled), SpliceTarget::Inside(starts[number + 1]), Passing::Step, number as u32);
         match (target, body.steps.get(number + 1).map(|next| next.act)) {
             // A jump inside is where its slot leads to.
             (Some((_, target)), _) if instruction.op == Op::jump => {

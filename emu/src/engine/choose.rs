@@ -4,7 +4,7 @@ use super::fast::Fast;
 use super::host::HostSimd;
 use super::state::{CoreId, Pause, State};
 use super::taint::Taint;
-use super::{Engine, Refusal, Stopped, Timeless, TimedLink, interpreter};
+use super::{Engine, Refusal, Stopped, TimedLink, Timeless, interpreter};
 use crate::code::Code;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;

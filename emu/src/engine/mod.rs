@@ -16,7 +16,7 @@ pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;
 pub use state::{CoreId, Pause, State};
-pub(crate) use taint::{TaintObserver, Taint};
+pub(crate) use taint::{Taint, TaintObserver};
 
 use crate::code::octets::Buffer;
 use crate::code::tally::Tally;

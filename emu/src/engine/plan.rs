@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use isa::{Fields, InstructionDef, Kind, Op};
 
-use super::cost::{FLAG, Cost};
+use super::cost::{Cost, FLAG};
 use crate::code::layout::{Order, Stage};
 use crate::code::registers::Registers;
 use crate::code::{Code, ExitCost, Slot};

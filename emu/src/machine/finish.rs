@@ -4,7 +4,7 @@ use isa::Class;
 
 use super::Failure;
 use super::cache::Cache;
-use super::outcome::{RunOutcome, Method};
+use super::outcome::{Method, RunOutcome};
 use super::processor::ProcessorState;
 use super::schedule::Machine;
 use super::trace::Spans;

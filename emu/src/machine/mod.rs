@@ -27,7 +27,7 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
-pub use outcome::{RunOutcome, Item, KindUse, Method, ProcessorUse};
+pub use outcome::{Item, KindUse, Method, ProcessorUse, RunOutcome};
 
 use trace::Window;
 

@@ -7,7 +7,7 @@ use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
 use super::kinds::Kinds;
-use super::outcome::{RunOutcome, Item};
+use super::outcome::{Item, RunOutcome};
 use super::port::Shared;
 use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};

@@ -91,7 +91,7 @@ pub fn run_with(single: &Single, memory: Memory, wish: Wish) -> Result<SingleRun
     check_buffer("a core", single.program, single.config.buffer_octets)?;
     check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
     let watching = single.config.arithmetic.watching(single.has_losses);
-    Ok(dispatch(watching, single.has_profileOneCoreTask { single, memory, wish }))
+    Ok(dispatch(watching, single.has_profile, OneCoreTask { single, memory, wish }))
 }
 
 struct OneCoreTask<'a> {

@@ -45,7 +45,9 @@ impl<W: Worker> Machine<'_, W> {
         let is_here = |processor: &Processor<W>| match processor.state {
             ProcessorState::Meets | ProcessorState::Rests => true,
             // Nobody but the main processor begins work.
-            ProcessorState::Asleep | ProcessorState::Listens => self.has_main_halted && processor.work.subject.is_none(),
+            ProcessorState::Asleep | ProcessorState::Listens => {
+                self.has_main_halted && processor.work.subject.is_none()
+            }
             _ => false,
         };
         if !self.processors.iter().all(is_here) {

@@ -1,7 +1,7 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
 use super::budget::Budget;
-use super::item::{RecordLevel, ItemRecord, ItemRecorder};
+use super::item::{ItemRecord, ItemRecorder, RecordLevel};
 use super::recording::{Reason, Recording, Segment, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
@@ -9,7 +9,7 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, CoreId, Demand, TaintObserver, RequestTime, Pause, Runner, State, Stopped, Wish, choose, interpreter,
+    self, CoreId, Demand, Pause, RequestTime, Runner, State, Stopped, TaintObserver, Wish, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;

@@ -30,7 +30,7 @@ impl Recorded {
     /// Why they cannot be replayed; a machine that cannot be used is one of the reasons.
     pub fn new(setup: &Setup, memory: &Memory) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
-        on_arithmetic(setupRecordTask { setup, memory })
+        on_arithmetic(setup, RecordTask { setup, memory })
     }
 
     /// Segments of all work items: computing, then a transfer or a message.

@@ -18,8 +18,8 @@ mod wide;
 use isa::number::Vector;
 use isa::table::outcome;
 
-pub(crate) use bus::{Peek, hand_on, methods, refuse};
 pub use bus::{Link, Message, Port};
+pub(crate) use bus::{Peek, hand_on, methods, refuse};
 pub use control::{End, Flow, Motion};
 pub use numbers::Numbers;
 pub use watch::{Watch, Watching};

@@ -3,7 +3,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{Config, Failure, RunOutcome, Options, Setup};
+use emu::machine::{Config, Failure, Options, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
 use random::SplitMix64;
@@ -24,7 +24,12 @@ const ITEMS: i32 = 45;
 const FREE: i64 = 19;
 const NUMBER: i64 = 22;
 
-fn frame(engine: EngineKind, features: Option<HostSimd>, core: &Program, step_limit: u64) -> Result<RunOutcome, Failure> {
+fn frame(
+    engine: EngineKind,
+    features: Option<HostSimd>,
+    core: &Program,
+    step_limit: u64,
+) -> Result<RunOutcome, Failure> {
     let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
     let options = Options { has_items: true, engine, simd: features, ..Options::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];

@@ -1,6 +1,6 @@
 //! Cores, messages and the bus together.
 
-use emu::machine::{Config, RunOutcome, Options, Setup};
+use emu::machine::{Config, Options, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 

@@ -1,7 +1,7 @@
 //! Messages, barriers and the atomic counter between processors, and who waits for whom.
 
 use emu::machine::mailbox::Mailboxes;
-use emu::machine::{Config, Failure, RunOutcome, Options, Setup};
+use emu::machine::{Config, Failure, Options, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use emu::semantics::Message;

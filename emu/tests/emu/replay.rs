@@ -3,7 +3,7 @@
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::{BusConfig, CacheConfig};
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, RunOutcome, Method, Options, Setup};
+use emu::machine::{Config, Method, Options, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 use proptest::prelude::*;

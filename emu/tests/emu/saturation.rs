@@ -1,7 +1,7 @@
 //! Where the bus saturates: the report's estimate of a pixel as a load, against the closed form.
 
 use emu::machine::config::MainConfig;
-use emu::machine::{Config, RunOutcome, Options, Setup};
+use emu::machine::{Config, Options, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use isa::{Isa, Op, Program};

@@ -1,7 +1,7 @@
 //! What an item took so far, and when it is to be looked at: four sums in one number of 64 bits, which are emptied before one of them is full
 //! or the step limit is reached.
 
-use crate::engine::cost::{FLAG, HALVES, Cost};
+use crate::engine::cost::{Cost, FLAG, HALVES};
 use crate::engine::plan::Plan;
 use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
@@ -103,14 +103,7 @@ impl Fuel {
     }
 
     /// Brings the state up to date at a place; `rest` is what of the run was not executed.
-    pub(super) fn settle(
-        mut self,
-        plan: &Plan,
-        state: &mut State,
-        sums: u64,
-        place: u32,
-        rest: Option<Cost>,
-    ) -> Taint {
+    pub(super) fn settle(mut self, plan: &Plan, state: &mut State, sums: u64, place: u32, rest: Option<Cost>) -> Taint {
         self.empty(plan, sums);
         if let Some(rest) = rest {
             if self.followed.1 == self.all_steps() {

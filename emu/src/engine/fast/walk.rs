@@ -153,7 +153,14 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
 
     /// The way on from a control row: one that its step knows, or to any word.
     #[inline(always)]
-    pub fn turn<E: AnyOutcome>(&mut self, has_target: bool, now: &Step, step: *const Step, flow: Flow, exit: E) -> Turn {
+    pub fn turn<E: AnyOutcome>(
+        &mut self,
+        has_target: bool,
+        now: &Step,
+        step: *const Step,
+        flow: Flow,
+        exit: E,
+    ) -> Turn {
         let number = now.exit as usize + exit.index();
         let is_falling = E::OUTCOMES > 1 && exit.index() == 0;
         if O::IS_ACTIVE {

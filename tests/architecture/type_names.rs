@@ -5,19 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{files, members};
 
 /// Names that still stand for two types of a crate: crate and name. The list may only become shorter.
-const TWICE: [(&str, &str); 11] = [
-    ("emu", "Burst"),
-    ("emu", "Count"),
-    ("emu", "Piece"),
-    ("emu", "Place"),
-    ("emu", "Recording"),
-    ("emu", "Replaying"),
-    ("emu", "Run"),
-    ("emu", "Runner"),
-    ("emu", "Way"),
-    ("emu", "Wire"),
-    ("scenes", "FaceColours"),
-];
+const TWICE: [(&str, &str); 1] = [("scenes", "FaceColours")];
 
 /// The name that a line of a source defines as a type, if it does.
 ///

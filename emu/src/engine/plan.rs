@@ -268,7 +268,7 @@ impl<'a> Plan<'a> {
         if self.is_in_order { slot.min(self.words) } else { self.order.place(slot) }
     }
 
-    /// What an exit adds to the cost of its run.
+    /// Cost that an outcome adds to that of its run.
     #[inline(always)]
     pub fn extra(&self, exit: usize) -> Cost {
         self.extra[exit]

@@ -163,7 +163,7 @@ impl<L: Link + ?Sized> Link for &mut L {
     methods! { hand_on! self => (**self); }
 }
 
-/// What of a link can be had at once: [`Link::peek`].
+/// Part of a link that can be had at once: [`Link::peek`].
 pub(crate) struct Peek<'a, L>(pub &'a mut L);
 
 impl<L: Link> Link for Peek<'_, L> {

@@ -16,7 +16,7 @@ use crate::extension::{Numbers, Units};
 use crate::profile::RunObserver;
 use crate::semantics::{Flow, Motion};
 
-/// Where a walk is: the step that comes next, a null pointer when it stops, and what the item took since the fuel was looked at.
+/// Position of a walk: the step that comes next, a null pointer when it stops, and what the item took since the fuel was looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Position {
     pub step: *const Step,

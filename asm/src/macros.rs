@@ -267,7 +267,7 @@ impl Assembler<'_> {
             let text = value.unwrap_or_else(|| parameter.default.clone());
             substitution.arguments.insert(parameter.name.clone(), text);
         }
-        // `loop` of call 7 is `loop$7`, which nobody can write.
+        // `loop` of call 7 is `loop$7`, which no other call has.
         for name in &definition.locals {
             substitution.locals.insert(name.clone(), format!("{name}${number}").into());
         }

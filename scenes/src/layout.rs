@@ -19,9 +19,9 @@ pub struct Field {
     pub elements: u32,
     /// Octets of one integer: 1, 2 or 4.
     pub width: u32,
-    /// Whether the integers are two's complement.
+    /// The integers are two's complement.
     pub is_signed: bool,
-    /// What the field holds, with its format.
+    /// Description of the field, with its format.
     pub holds: &'static str,
 }
 
@@ -111,7 +111,7 @@ impl Structure {
 }
 
 impl Field {
-    /// Whether each integer of the field can be `value`.
+    /// Each integer of the field can be `value`.
     pub fn fits(&self, value: i64) -> bool {
         let bits = 8 * self.width;
         let (low, high) = if self.is_signed { (-(1 << (bits - 1)), 1 << (bits - 1)) } else { (0, 1 << bits) };
@@ -119,7 +119,7 @@ impl Field {
     }
 }
 
-/// How triangles and tree are stored.
+/// Layout of triangles and tree in memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Layout {
     /// The report's structures bit for bit (Annex I): coordinates of 16 bits, nodes with box and `next`, references as linked lists.

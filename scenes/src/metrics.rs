@@ -1,4 +1,4 @@
-//! How far one picture is from another. All figures are over the linear components of all pixels, before any quantization to 8 bits, after
+//! Distance of one picture from another. All figures are over the linear components of all pixels, before any quantization to 8 bits, after
 //! clamping both pictures to [0, 1].
 
 use schemars::JsonSchema;
@@ -20,7 +20,7 @@ pub struct PictureError {
     pub max: f64,
     /// Pixels with any component off by [`STEP`] or more.
     pub off_pixels: u64,
-    /// The same per million pixels.
+    /// Such pixels per million.
     pub off_per_million: f64,
     /// The ratio over the pixels that are not off; `None` when they are equal, or when all are off.
     pub psnr_others_db: Option<f64>,

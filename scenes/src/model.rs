@@ -28,9 +28,9 @@ impl Material {
 /// A point light without fall-off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// Where it stands, in scene units.
+    /// Position of the light, in scene units.
     pub position: Vec3,
-    /// Its colour, components in [0, 1].
+    /// The light's colour, components in [0, 1].
     pub colour: Vec3,
 }
 
@@ -70,7 +70,7 @@ impl Scene {
         }))
     }
 
-    /// What makes the scene unusable, wherever it came from: numbers of vertices and materials that do not exist, values that are not
+    /// Defects that make the scene unusable, wherever it came from: numbers of vertices and materials that do not exist, values that are not
     /// finite, material coefficients outside [0, 1]. At most one message a kind.
     pub fn check(&self) -> Report {
         let mut messages = Vec::new();
@@ -119,7 +119,7 @@ impl Scene {
     }
 }
 
-/// How the scene is looked at.
+/// The view of a scene: camera, size and light of the surroundings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Camera {
     /// Parallel rays along -z, centred on the scene's box; the pixel pitch is max(box width / W, box height / H).
@@ -135,7 +135,7 @@ pub enum Camera {
     },
 }
 
-/// What a user may say about a picture beside the scene.
+/// Wishes of a user for a picture beside the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     /// Width and height in pixels.
@@ -158,7 +158,7 @@ impl View {
         View { size, camera: Camera::Orthographic, shift: [0.0; 2], ambient: 0.1, background: [0.0; 3], bounces: 5 }
     }
 
-    /// What makes the view unusable: an empty picture, values that are not finite, shifts beyond 65536 pixels, negative light. At most one message a kind.
+    /// Defects that make the view unusable: an empty picture, values that are not finite, shifts beyond 65536 pixels, negative light. At most one message a kind.
     pub fn check(&self) -> Report {
         let mut messages = Vec::new();
         if self.size.0 == 0 || self.size.1 == 0 {

@@ -20,7 +20,7 @@ pub enum Rays {
         first: [f64; 2],
         /// Distance of neighbouring samples.
         pitch: f64,
-        /// Where all rays start, in front of the box.
+        /// The point at which all rays start, in front of the box.
         z: f64,
     },
     /// Rays from one point. Pixel (c, r) looks along base + c column - r row, which has no particular length.
@@ -29,9 +29,9 @@ pub enum Rays {
         eye: Vec3,
         /// Direction of pixel (0, 0).
         base: Vec3,
-        /// What a step to the right adds.
+        /// The difference of a step to the right.
         column: Vec3,
-        /// What a step up adds.
+        /// The difference of a step up.
         row: Vec3,
     },
 }
@@ -98,7 +98,7 @@ impl Rays {
     }
 }
 
-/// Where the eye stands, `None` for parallel rays: as given, or at (cx, cy, zmax + 1.2 max(box width, box height)).
+/// The position of the eye, `None` for parallel rays: as given, or at (cx, cy, zmax + 1.2 max(box width, box height)).
 pub fn eye((low, high): Corners, camera: &Camera) -> Option<Vec3> {
     let Camera::Perspective { eye, .. } = camera else { return None };
     Some(eye.unwrap_or_else(|| {
@@ -110,7 +110,7 @@ pub fn eye((low, high): Corners, camera: &Camera) -> Option<Vec3> {
     }))
 }
 
-/// The same camera with its points moved into other units.
+/// This camera with its points moved into other units.
 pub fn mapped(camera: &Camera, map: impl Fn(Vec3) -> Vec3) -> Camera {
     match *camera {
         Camera::Orthographic => Camera::Orthographic,
@@ -157,9 +157,9 @@ pub enum RawCamera {
         extra: u32,
         /// Direction of pixel (0, 0).
         base: [i64; 3],
-        /// What a step to the right adds.
+        /// The difference of a step to the right.
         column: [i64; 3],
-        /// What a step up adds.
+        /// The difference of a step up.
         row: [i64; 3],
     },
 }

@@ -1,4 +1,4 @@
-//! Where the rays of small pictures have to be, and how far the raw ones are from them.
+//! Places of the rays of small pictures, and the distance of the raw ones from them.
 
 use super::*;
 use crate::grid::Grid;

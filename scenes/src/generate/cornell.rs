@@ -8,11 +8,11 @@ use crate::model::{Scene, Vec3};
 
 /// Half of the opening's width and height.
 const OPENING: [f64; 2] = [4.0, 3.0];
-/// How large the back wall is against the opening.
+/// Size of the back wall against the opening.
 const BACK: f64 = 0.58;
 /// Distance from the opening to the back wall.
 const DEPTH: f64 = 6.0;
-/// Where the lines from the opening's corners would meet: a little above the middle.
+/// The point at which the lines from the opening's corners would meet: a little above the middle.
 const VANISHING: [f64; 2] = [0.03, 0.22];
 
 /// The room, its blocks and two lights under the ceiling; `level` is the number of tiles along each edge of a wall.

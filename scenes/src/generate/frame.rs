@@ -64,7 +64,7 @@ pub(super) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The same direction with length 1.
+/// The direction with length 1.
 pub(super) fn unit(a: Vec3) -> Vec3 {
     let length = (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt();
     a.map(|x| x / length)

@@ -8,7 +8,7 @@ use crate::model::{Light, Material, Scene, Triangle, Vec3};
 
 /// A scene that grows.
 pub(super) struct MeshBuilder {
-    /// What there is so far.
+    /// The scene so far.
     pub scene: Scene,
 }
 

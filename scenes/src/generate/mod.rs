@@ -17,7 +17,7 @@ use messages::{Diagnostic, Report, did_you_mean};
 
 use crate::model::Scene;
 
-/// What a user may ask of a generated scene; `None` leaves the scene's own default.
+/// Wishes of a user for a generated scene; `None` leaves the scene's own default.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GenerateOptions {
     /// Fineness; what it counts is said by [`Generator::level`].
@@ -37,11 +37,11 @@ impl Default for GenerateOptions {
 /// A number that a generator takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// What it counts, such as "tiles along each edge of a wall".
+    /// The quantity that it counts, such as "tiles along each edge of a wall".
     pub meaning: &'static str,
-    /// Its value when the user says nothing.
+    /// The default.
     pub default: u32,
-    /// What is possible.
+    /// The range of possible values.
     pub range: RangeInclusive<u32>,
 }
 
@@ -54,13 +54,13 @@ impl Setting {
 /// A scene that can be generated.
 #[derive(Debug)]
 pub struct Generator {
-    /// What the user types.
+    /// The name that the user types.
     pub name: &'static str,
     /// One line on what it shows.
     pub description: &'static str,
-    /// Its option `level`, where it has one.
+    /// The option `level`, for scenes that have one.
     pub level: Option<Setting>,
-    /// Its option `triangles`, where it has one.
+    /// The option `triangles`, for scenes that have one.
     pub triangles: Option<Setting>,
     build: fn(&Sizes) -> Scene,
 }

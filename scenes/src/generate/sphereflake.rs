@@ -32,7 +32,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
     mesh.scene
 }
 
-/// What is the same for all spheres of a flake.
+/// Settings of all spheres of a flake.
 struct Flake {
     generations: u32,
     /// Surfaces by generation (later ones repeat the last) and by kind of place.

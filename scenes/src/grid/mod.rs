@@ -17,7 +17,7 @@ use crate::vector::{AXES, exponent, largest, nearest, shifted, sub};
 /// Fewest bits of a coordinate that the scene's box may keep, in words that can hold as many.
 pub const FEWEST_BITS: u32 = 8;
 
-/// Where a scene lies on the integers.
+/// Place and scale of a scene on the integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Bits of a raw coordinate, with its sign.
@@ -36,7 +36,7 @@ pub struct Grid {
     middle: Vec3,
 }
 
-/// What a grid has to hold, with a name for messages.
+/// A thing that a grid has to hold, with a name for messages.
 struct Point {
     name: &'static str,
     number: usize,

@@ -1,4 +1,4 @@
-//! What has to hold for any scene on its grid, and what is said when one does not fit.
+//! Laws of any scene on its grid, and messages for one that does not fit.
 
 use proptest::prelude::*;
 

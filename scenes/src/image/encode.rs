@@ -156,7 +156,7 @@ fn packet(content: Content<'_>) -> &[u32] {
     }
 }
 
-/// Where structures lie, by number.
+/// Addresses of structures, by number.
 struct Addresses {
     nodes: u32,
     references: u32,

@@ -21,16 +21,16 @@ pub use decode::{DecodedImage, StoredTriangle};
 /// Octets from address 0 that are never used, so that 0 is no structure's address.
 pub const HEADER: u32 = 16;
 
-/// What a user may choose of an image.
+/// Choices of a user for an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryOptions {
     /// Bits of a register: 8 to 32.
     pub word: u32,
-    /// How triangles and tree are stored.
+    /// The layout of triangles and tree.
     pub layout: Layout,
-    /// How high the kd tree may be.
+    /// The height that the kd tree may have.
     pub kd_depth: kdtree::Depth,
-    /// How the kd tree is built.
+    /// The method by which the kd tree is built.
     pub kd_method: kdtree::BuildMethod,
     /// Fraction bits set by the user.
     pub formats: Overrides,
@@ -48,7 +48,7 @@ impl Default for MemoryOptions {
     }
 }
 
-/// What a range of addresses holds.
+/// The contents of a range of addresses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum MemoryKind {
     /// Nothing: no address in it is valid.
@@ -101,7 +101,7 @@ pub type Regions = [(MemoryKind, Range<u32>); 7];
 pub struct MemoryImage {
     /// Global memory from address 0; the frame at its end is zero.
     pub bytes: Vec<u8>,
-    /// How triangles and tree are stored.
+    /// The layout of triangles and tree.
     pub layout: Layout,
     /// Addresses of each kind, in the order of [`MemoryKind::ALL`]; they start at multiples of 8, and may be empty.
     pub regions: Regions,
@@ -113,9 +113,9 @@ pub struct MemoryImage {
     pub size: (u32, u32),
     /// Fraction bits of all quantities.
     pub formats: Formats,
-    /// Where the scene lies on the integers.
+    /// The grid, which says where the scene lies on the integers.
     pub grid: Grid,
-    /// Where the rays of the pixels start and go.
+    /// The camera, which says where the rays of the pixels start and go.
     pub camera: RawCamera,
     /// Ambient intensity in the colour format.
     pub ambient: i32,
@@ -127,7 +127,7 @@ pub struct MemoryImage {
     pub tree: Statistics,
 }
 
-/// How many structures an image holds.
+/// Numbers of structures in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Triangles.
@@ -144,7 +144,7 @@ impl MemoryImage {
         self.regions.iter().find(|(k, _)| *k == kind).map_or(0..0, |(_, range)| range.clone())
     }
 
-    /// What an address holds, `None` beyond the end and in the gaps between the regions.
+    /// The contents of an address, `None` beyond the end and in the gaps between the regions.
     pub fn kind(&self, address: u32) -> Option<MemoryKind> {
         self.regions.iter().find(|(_, range)| range.contains(&address)).map(|(kind, _)| *kind)
     }

@@ -1,4 +1,4 @@
-//! What is known about a scene before it is drawn: its parts, its tree, its octets in memory, and what the grid costs.
+//! Facts about a scene before it is drawn: its parts, its tree, its octets in memory, and what the grid costs.
 //! How it is printed is not decided here; it serializes as the JSON of `lancer scene info`.
 
 mod precision;
@@ -44,9 +44,9 @@ pub struct SceneInfo {
     pub materials: Vec<MaterialInfo>,
     /// Lights.
     pub lights: usize,
-    /// Whether a triangle's material reflects.
+    /// Some triangle's material reflects.
     pub has_mirror: bool,
-    /// Whether a triangle's material is transparent.
+    /// Some triangle's material is transparent.
     pub has_glass: bool,
     /// The kd tree.
     pub tree: Statistics,
@@ -54,7 +54,7 @@ pub struct SceneInfo {
     pub memory: Memory,
     /// Bits of a word, and fraction bits of each quantity.
     pub formats: Named<i32>,
-    /// What the grid costs.
+    /// The cost of the grid in precision.
     pub precision: Precision,
 }
 

@@ -1,4 +1,4 @@
-//! What a scene loses on the grid: how far its vertices move, and which triangles lose their area.
+//! Losses of a scene on the grid: how far its vertices move, and which triangles lose their area.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -7,7 +7,7 @@ use crate::image::MemoryImage;
 use crate::model::{Scene, Vec3};
 use crate::read::mesh::is_flat;
 
-/// How far vertices move when they are stored.
+/// Distances by which vertices move when they are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Precision {
     /// Distance of neighbouring stored coordinates, in scene units.
@@ -74,7 +74,7 @@ fn square_of_distance(a: Vec3, b: Vec3) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
-/// Whether a stored triangle has no area, exactly.
+/// A stored triangle has no area, exactly.
 fn is_flat_raw([a, b, c]: [[i32; 3]; 3]) -> bool {
     let edge = |p: [i32; 3]| [0, 1, 2].map(|k| i128::from(p[k]) - i128::from(a[k]));
     let (e, f) = (edge(b), edge(c));

@@ -30,7 +30,7 @@ const _: () = assert!(size_of::<BuildNode>() == 8);
 
 /// A node and its place.
 pub(crate) struct NumberedNode<'a> {
-    /// Its number, level by level and from left to right.
+    /// The node's number, level by level and from left to right.
     pub(crate) number: u32,
     /// References of the leaves with lower numbers.
     pub(crate) first: u32,

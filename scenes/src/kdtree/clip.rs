@@ -1,4 +1,4 @@
-//! What of a triangle lies in a box.
+//! Clipping: the part of a triangle that lies in a box.
 
 use super::Bounds;
 
@@ -13,7 +13,7 @@ const MOST_CORNERS: usize = 9;
 #[derive(Clone, Copy, Default)]
 struct Corner {
     at: [f64; 3],
-    /// How far off it may be: 0 for the triangle's own vertices.
+    /// Bound on its error: 0 for the triangle's own vertices.
     margin: f64,
 }
 

@@ -34,7 +34,7 @@ pub(super) struct ByPart<'a, T: ?Sized> {
     pub(super) triangles: &'a T,
 }
 
-/// What of a triangle lies in a node.
+/// The part of a triangle that lies in a node.
 #[derive(Clone, Copy)]
 pub(super) struct Part {
     index: u32,

@@ -80,7 +80,7 @@ impl Bounds {
     }
 }
 
-/// How high a tree may be.
+/// The height that a tree may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
     /// At most so many levels below the root, capped at [`DEEPEST`].
@@ -118,7 +118,7 @@ pub enum BuildMethod {
 }
 
 impl BuildMethod {
-    /// All methods.
+    /// Every method.
     pub const ALL: [BuildMethod; 2] = [BuildMethod::Report, BuildMethod::Exact];
 
     /// Name on the command line.
@@ -132,7 +132,7 @@ impl BuildMethod {
 
 /// Triangles by number: a list of them, or a mesh of which they share the vertices.
 pub trait Triangles: Sync {
-    /// How many there are.
+    /// The number of triangles.
     fn count(&self) -> usize;
 
     /// The vertices of one, raw.

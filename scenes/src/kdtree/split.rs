@@ -1,4 +1,4 @@
-//! Where a node is divided: the report's cost model (5.3.2) on exact integers. Builders share this rule; it does not know in which order
+//! The choice of a node's plane: the report's cost model (5.3.2) on exact integers. Builders share this rule; it does not know in which order
 //! nodes are visited.
 //!
 //! The cost of a plane is C = 1 + (SA(left) n_left + SA(right) n_right) / SA(node) against n for not dividing. Both are compared after
@@ -30,14 +30,14 @@ impl Side {
 pub struct Division {
     /// Axis of the plane, 0 to 2.
     pub axis: usize,
-    /// Its coordinate, raw.
+    /// The plane's coordinate, raw.
     pub at: i32,
     /// The child that takes the triangles lying in the plane.
     pub flat: Side,
 }
 
 impl Division {
-    /// Whether a triangle belongs to the child `side`: it does when it reaches beyond the plane on that side, or lies in the plane and
+    /// A triangle belongs to the child `side`: it does when it reaches beyond the plane on that side, or lies in the plane and
     /// flat triangles go there.
     pub fn reaches(&self, triangle: &Bounds, side: Side) -> bool {
         let (low, high) = (triangle.low[self.axis], triangle.high[self.axis]);

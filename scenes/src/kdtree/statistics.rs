@@ -9,7 +9,7 @@ use super::{Content, KdTree, Node};
 /// Size and shape of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Statistics {
-    /// All nodes.
+    /// Number of nodes.
     pub nodes: usize,
     /// Nodes that are not divided.
     pub leaves: usize,
@@ -23,7 +23,7 @@ pub struct Statistics {
     pub mean_triangles: f64,
     /// Largest number of triangles of a leaf.
     pub most_triangles: usize,
-    /// What the cost model expects of a ray that crosses the whole tree: nodes visited plus triangles tested, each weighted with its
+    /// Expected cost, by the cost model, of a ray that crosses the whole tree: nodes visited plus triangles tested, each weighted with its
     /// node's share of the root's surface (report 5.3.2). 0 for a root without surface.
     pub expected_cost: f64,
 }

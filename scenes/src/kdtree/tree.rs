@@ -8,15 +8,15 @@ use super::Bounds;
 /// A node of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Node<'a> {
-    /// Its part of space.
+    /// The node's part of space.
     pub bounds: Bounds,
     /// Next node of the same level, from left to right; `None` for the last.
     pub next: Option<u32>,
-    /// What it holds.
+    /// The node's content.
     pub content: Content<'a>,
 }
 
-/// What a node holds.
+/// Content of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content<'a> {
     /// A node divided at the plane `axis = at`; the right child's number is that of the left one plus 1.
@@ -49,7 +49,7 @@ pub struct KdTree {
 pub(super) enum StoredNode {
     /// A plane, and the number of the left child.
     Inner { axis: u8, at: i32, left: u32 },
-    /// Where the packet lies in the list of all.
+    /// Place of the packet in the list of all.
     Leaf { first: u32, count: u32 },
 }
 
@@ -94,7 +94,7 @@ impl KdTree {
         self.triangles.len()
     }
 
-    /// What node `number` holds.
+    /// Content of node `number`.
     ///
     /// # Panics
     /// When there is no such node.
@@ -131,9 +131,9 @@ impl KdTree {
 pub(crate) enum UnlinkedNode<P> {
     /// A plane.
     Inner {
-        /// Its axis.
+        /// The plane's axis.
         axis: usize,
-        /// Its coordinate, raw.
+        /// The plane's coordinate, raw.
         at: i32,
     },
     /// A packet.

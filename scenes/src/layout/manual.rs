@@ -84,7 +84,7 @@ fn line(text: &mut String, line: &str) {
     text.push('\n');
 }
 
-/// What an integer of a field is.
+/// Description of an integer of a field.
 fn kind(field: &Field) -> String {
     let sign = if field.is_signed { "signed" } else { "unsigned" };
     let bits = 8 * field.width;

@@ -13,7 +13,7 @@ const INTENSITY: f64 = 0.9;
 /// A face's colour as the file gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Spec {
-    /// None.
+    /// No colour.
     Default,
     /// A number in a colour map that is not part of the file.
     Index(f64),
@@ -21,7 +21,7 @@ pub(super) enum Spec {
     Components(Vec3, Writing),
 }
 
-/// How the numbers of a colour were written.
+/// The scale in which the numbers of a colour were written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Writing {
     /// Without a decimal point.

@@ -55,7 +55,7 @@ impl Faces {
         true
     }
 
-    /// What each drawn face has, in their order, for each triangle.
+    /// Attributes of each drawn face, in their order, for each triangle.
     pub(super) fn spread(&self, of_faces: &[u32]) -> Vec<u32> {
         self.origins.iter().map(|&face| of_faces[face as usize]).collect()
     }

@@ -1,4 +1,4 @@
-//! What every mesh format is read into, and the account of what is odd in it. Nothing here knows of a file format.
+//! The mesh that every format is read into, and the account of what is odd in it. Nothing here knows of a file format.
 
 use messages::{Diagnostic, Place, Report};
 
@@ -18,9 +18,9 @@ pub struct Mesh {
     pub surfaces: Vec<u32>,
     /// Faces of the file that were drawn, whatever their number of corners.
     pub faces: usize,
-    /// Where the number of faces stands, in formats that give it.
+    /// Place of the number of faces, in formats that give it.
     pub count: Option<Place>,
-    /// What is likely a mistake.
+    /// Warnings: what is likely a mistake.
     pub warnings: Report,
 }
 
@@ -68,7 +68,7 @@ fn which(first: usize, more: usize) -> String {
     if more == 0 { format!("triangle {first}") } else { format!("the first is triangle {first}") }
 }
 
-/// Whether a triangle has no area. Edges are scaled first, so that small coordinates do not vanish in the product.
+/// A triangle has no area. Edges are scaled first, so that small coordinates do not vanish in the product.
 pub(crate) fn is_flat([a, b, c]: [Vec3; 3]) -> bool {
     let edge = |p: Vec3| {
         let edge = [0, 1, 2].map(|k| p[k] / 2.0 - a[k] / 2.0);

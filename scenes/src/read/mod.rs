@@ -26,7 +26,7 @@ use crate::model::Scene;
 /// A scene and what is likely a mistake in its files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// What is drawn.
+    /// The scene that is drawn.
     pub scene: Scene,
     /// Warnings, in the order of the files' texts; never errors.
     pub warnings: Report,

@@ -89,7 +89,7 @@ impl Cutter {
     }
 }
 
-/// Whether triangles have the edges of an outline of `count` corners, and otherwise edges that are theirs alone and
+/// Triangles have the edges of an outline of `count` corners, and otherwise edges that are theirs alone and
 /// cancel: outlines that cross themselves are cut by the library at will.
 fn keeps_outline(triangles: &[u32], count: u32) -> bool {
     let edges = triangles.chunks_exact(3).flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
@@ -122,7 +122,7 @@ fn split(ear: &[u32], outer: &[usize], count: u32, out: &mut Vec<u32>) {
     split(&left, rest, count, out);
 }
 
-/// Whether every corner of a counter-clockwise outline turns strictly left, and the outline turns once.
+/// Every corner of a counter-clockwise outline turns strictly left, and the outline turns once.
 fn is_convex(flat: &[[f64; 2]]) -> bool {
     let count = flat.len();
     let at = |n: usize| flat[n % count];

@@ -32,7 +32,7 @@ pub(super) struct Word<'a> {
 }
 
 impl Word<'_> {
-    /// Its octets in the text.
+    /// The word's octets in the text.
     pub(super) fn span(&self) -> Range<usize> {
         self.start..self.start + self.text.len()
     }
@@ -68,17 +68,17 @@ fn comment(input: &[u8]) -> IResult<&[u8], &[u8]> {
     recognize(preceded(char('#'), take_till(is_line_end))).parse(input)
 }
 
-/// What stands between words of one line.
+/// Octets that stand between words of one line.
 fn gap_in_line(input: &[u8]) -> IResult<&[u8], usize> {
     many0_count(alt((take_while1(is_blank), comment))).parse(input)
 }
 
-/// What stands between words.
+/// Octets that stand between words.
 fn gap(input: &[u8]) -> IResult<&[u8], usize> {
     many0_count(alt((take_while1(|octet| is_blank(octet) || is_line_end(octet)), comment))).parse(input)
 }
 
-/// Whether an octet belongs to a word.
+/// An octet belongs to a word.
 fn is_inner(octet: u8) -> bool {
     !(is_blank(octet) || is_line_end(octet) || octet == b'#')
 }
@@ -137,7 +137,7 @@ impl<'a> Words<'a> {
         self.take(gap_in_line)
     }
 
-    /// How many words follow on the line, `word` included, and where they end; they stay unread.
+    /// Number of the words that follow on the line, `word` included, and their end; they stay unread.
     pub(super) fn rest_of_line(&mut self, word: Word<'a>) -> (usize, usize) {
         let at = self.at;
         let (mut count, mut end) = (1, word.span().end);
@@ -171,7 +171,7 @@ impl<'a> Words<'a> {
         };
     }
 
-    /// What follows octet `at` on its line, without the blanks at both ends; `#` is nothing special in it.
+    /// The rest of a line behind octet `at`, without the blanks at both ends; `#` is nothing special in it.
     pub(super) fn line_from(&self, at: usize) -> Word<'a> {
         let rest = &self.source.text[at..];
         let rest = &rest[..rest.bytes().position(is_line_end).unwrap_or(rest.len())];
@@ -189,7 +189,7 @@ impl<'a> Words<'a> {
         self.place(end..end)
     }
 
-    /// Whether no word follows.
+    /// No word follows.
     pub(super) fn is_at_end(&mut self) -> bool {
         let at = self.at;
         let is_at_end = self.next().is_none();
@@ -197,7 +197,7 @@ impl<'a> Words<'a> {
         is_at_end
     }
 
-    /// Whether nothing but blanks stands before `word` on its line.
+    /// Nothing but blanks stands before `word` on its line.
     pub(super) fn starts_line(&self, word: Word<'_>) -> bool {
         let before = self.source.text.as_bytes()[..word.start].iter().rev().find(|&&octet| !is_blank(octet));
         before.is_none_or(|&octet| is_line_end(octet))
@@ -222,12 +222,12 @@ impl<'a> Words<'a> {
         self.complain(Diagnostic::error(message).at(place, label));
     }
 
-    /// Whether anything was an error.
+    /// Some message was an error.
     pub(super) fn has_errors(&self) -> bool {
         self.hidden_errors > 0 || self.messages.iter().any(|message| message.severity == Severity::Error)
     }
 
-    /// Whether there is no point in reading on: words are separated by something else than blanks, so that nothing can
+    /// There is no point in reading on: words are separated by something else than blanks, so that nothing can
     /// be counted, or everything seems to be wrong.
     pub(super) fn is_lost(&self) -> bool {
         self.is_lost
@@ -262,7 +262,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Whether the rest of the text may hold `count` things of at least `octets` each. A count that is only somewhat
+    /// The rest of the text may hold `count` things of at least `octets` each. A count that is only somewhat
     /// too large passes: that is a file cut short, which is better said where it ends. What the rest can really hold.
     pub(super) fn room(&mut self, count: u32, word: Word<'_>, what: &str, octets: usize) -> Option<usize> {
         let most = (self.remaining() + 1) / octets;
@@ -317,7 +317,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// What a word is that is no number.
+/// Description of a word that is no number.
 fn kind(text: &str, otherwise: &'static str) -> &'static str {
     if text.contains('\u{fffd}') { "not UTF-8 text" } else { otherwise }
 }
@@ -338,7 +338,7 @@ pub(super) fn refuse_utf16(bytes: &[u8], name: &str) -> Result<(), Report> {
     Ok(())
 }
 
-/// Where the text of a file starts: behind the byte order mark, if there is one.
+/// Start of the text of a file: behind the byte order mark, if there is one.
 pub(super) fn start(bytes: &[u8]) -> usize {
     if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }
 }

@@ -19,7 +19,7 @@ pub struct Hierarchy<'a> {
 
 #[derive(Clone, Copy, Debug)]
 struct BoxNode {
-    /// Its box in single precision, rounded outwards.
+    /// The node's box in single precision, rounded outwards.
     low: [f32; 3],
     high: [f32; 3],
     /// Of a leaf the place of its first triangle in the list, else the left child; the right child follows it.
@@ -138,7 +138,7 @@ impl<'a> Hierarchy<'a> {
     }
 }
 
-/// Where the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
+/// Distance at which the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
 /// in the test of a triangle, so that no hit is lost.
 fn enters(node: &BoxNode, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
     const SLACK: f64 = 1e-12;

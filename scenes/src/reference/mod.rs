@@ -22,7 +22,7 @@ use triangle::Shapes;
 /// Pixels of the largest picture that is rendered.
 pub const MOST_PIXELS: u64 = 1 << 27;
 
-/// How many rays were sent.
+/// Number of rays that were sent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RayCounts {
     /// From the camera, one a pixel.
@@ -56,7 +56,7 @@ pub struct Rendering {
     pub rays: RayCounts,
 }
 
-/// How the triangle that a ray meets is found.
+/// The way in which the triangle that a ray meets is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SearchMethod {
     /// By a hierarchy of boxes.
@@ -84,7 +84,7 @@ impl<'a> Reference<'a> {
         Reference::framed(scene, scene.bounds(), view, method)
     }
 
-    /// The same with a camera that looks at another box than the scene's own, as where its vertices were rounded; `None` is that from -1 to 1.
+    /// A reference with a camera that looks at another box than the scene's own, as where its vertices were rounded; `None` is that from -1 to 1.
     ///
     /// # Errors
     /// As [`Reference::new`].
@@ -159,7 +159,7 @@ pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
     Ok(Reference::new(scene, view, SearchMethod::Hierarchy)?.picture())
 }
 
-/// The same picture, each ray tried against all triangles.
+/// The picture of a scene, each ray tried against all triangles.
 ///
 /// # Errors
 /// See [`Reference::new`].

@@ -20,14 +20,14 @@ pub trait Search: Sync {
     /// The hit with the smallest distance; of equal ones that of the triangle with the lowest number.
     fn nearest(&self, ray: &Ray) -> Option<Hit>;
 
-    /// Whether any triangle is hit at a distance less than `end`.
+    /// Some triangle is hit at a distance less than `end`.
     fn is_blocked(&self, ray: &Ray, end: f64) -> bool;
 }
 
 /// Tries all triangles.
 #[derive(Debug)]
 pub struct Exhaustive<'a> {
-    /// Where the triangles are.
+    /// The places of the triangles.
     pub shapes: Shapes<'a>,
     /// The numbers of those that are tried.
     pub indices: Vec<u32>,

@@ -9,9 +9,9 @@ use crate::vector::{cross, sub, unit};
 /// A ray, with the shear that makes it the z axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it starts.
+    /// The ray's origin.
     pub origin: Vec3,
-    /// Where it goes; length 1.
+    /// The ray's direction, of length 1.
     pub direction: Vec3,
     /// The axes in the order x, y, z of the sheared space: z is the direction's largest component.
     axes: [usize; 3],
@@ -64,7 +64,7 @@ impl Shapes<'_> {
 /// A triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedTriangle {
-    /// Its vertices.
+    /// The triangle's vertices.
     pub vertices: [Vec3; 3],
 }
 

@@ -1,4 +1,4 @@
-//! What a ray brings back: Whitted's model as the report has it (4.1 to 4.3), with reflection, refraction, total reflection and one shadow
+//! Light that a ray brings back: Whitted's model as the report has it (4.1 to 4.3), with reflection, refraction, total reflection and one shadow
 //! ray a light. Which triangle a ray meets is found by [`super::search`].
 
 use super::RayCounts;
@@ -7,7 +7,7 @@ use super::triangle::{PreparedTriangle, Ray};
 use crate::model::{self, Light, Material, Scene, Vec3, View};
 use crate::vector::{add, dot, scale, sub, unit};
 
-/// How far the origins of secondary rays are moved off the surface along its normal, as part of the scene's box (which is 1 to 2 long here).
+/// Distance by which the origins of secondary rays are moved off the surface along its normal, as part of the scene's box (which is 1 to 2 long here).
 /// A hit point lies off its plane by some 10^-16 of the coordinates, so this is five orders above the noise, and as far below the steps of
 /// the finest grid, which are 2^-30 of the box.
 const OFFSET: f64 = 1e-10;
@@ -31,7 +31,7 @@ struct Branch {
     weight: f64,
     /// 0 for the camera's ray.
     level: u32,
-    /// Whether it runs inside a body; a refracted ray changes it, a reflected one does not.
+    /// The ray runs inside a body; a refracted ray changes it, a reflected one does not.
     is_inside: bool,
 }
 

@@ -26,7 +26,7 @@ impl MeshFormat {
     /// All of them.
     pub const ALL: [MeshFormat; 4] = [MeshFormat::Off, MeshFormat::Obj, MeshFormat::Ply, MeshFormat::Stl];
 
-    /// Its name, which is the extension of its files.
+    /// The format's name, which is the extension of its files.
     pub const fn name(self) -> &'static str {
         match self {
             MeshFormat::Off => "off",

@@ -1,4 +1,4 @@
-//! What of a scene a format of meshes cannot hold: what would be different if the mesh were read again.
+//! Parts of a scene that a format of meshes cannot hold: what would be different if the mesh were read again.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use crate::model::{Material, Scene};
 use crate::read::join;
 use crate::read::mesh::GREY;
 
-/// What of a scene is not in its mesh when that stands alone: warnings, none where reading it gives the same picture.
+/// Parts of a scene that are not in its mesh when that stands alone: warnings, none where reading it gives the same picture.
 pub fn losses(scene: &Scene, format: MeshFormat) -> Report {
     let mut lost = Vec::new();
     if scene.size != join::SIZE {
@@ -26,7 +26,7 @@ pub fn losses(scene: &Scene, format: MeshFormat) -> Report {
     warning(format, &lost, has_hint)
 }
 
-/// What of a scene is not in its mesh when a `.dsc` stands beside that, which holds all the rest.
+/// Parts of a scene that are not in its mesh when a `.dsc` stands beside that, which holds all the rest.
 pub fn losses_beside_description(scene: &Scene, format: MeshFormat) -> Report {
     warning(format, &Vec::from_iter(lost_digits(scene, format)), false)
 }

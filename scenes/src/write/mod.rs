@@ -25,7 +25,7 @@ pub fn off(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     off_with(scene, |_| Ok(String::new()), out)
 }
 
-/// The same with the colour of each triangle's material behind it, for a mesh without a `.dsc`; without colours where
+/// Writes the mesh of a scene with the colour of each triangle's material behind it, for a mesh without a `.dsc`; without colours where
 /// all are the grey that such a mesh has anyway.
 ///
 /// Errors: see [`off`].

@@ -182,7 +182,7 @@ fn the_room_of_the_cornell_box_is_open_only_to_the_front() {
     assert!(open.iter().all(|(a, b)| f64::from_bits(a[2]) == 0.0 && f64::from_bits(b[2]) == 0.0));
 }
 
-/// Whether the segment from p to q goes through the inside of a triangle.
+/// The segment from p to q goes through the inside of a triangle.
 fn pierces(p: Vec3, q: Vec3, [a, b, c]: [Vec3; 3]) -> bool {
     let volume = |x: Vec3, y: Vec3, z: Vec3, w: Vec3| dot(sub(y, x), cross(sub(z, x), sub(w, x)));
     let (from, to) = (volume(a, b, c, p), volume(a, b, c, q));

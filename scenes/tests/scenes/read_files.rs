@@ -45,7 +45,7 @@ fn every_broken_dsc_is_refused() {
     insta::assert_snapshot!(text);
 }
 
-/// What loading says, without the folder's path.
+/// The messages of loading, without the folder's path.
 fn said(path: &str, mesh: Option<&str>) -> String {
     let folder = folder("pairs");
     let mesh = mesh.map(|mesh| folder.join(mesh));

@@ -35,7 +35,7 @@ fn parse(extension: &str, bytes: &[u8]) -> Result<Mesh, Report> {
     }
 }
 
-/// What is read must hold together, what is refused must say why.
+/// Input that is read must hold together, input that is refused must have a message.
 fn survives(extension: &str, bytes: &[u8]) {
     match parse(extension, bytes) {
         Ok(mesh) => {

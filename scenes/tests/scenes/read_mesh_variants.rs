@@ -7,7 +7,7 @@ use proptest::test_runner::RngSeed;
 use scenes::read::mesh::Mesh;
 use scenes::read::{obj, ply, stl};
 
-/// What is written: whole and half coordinates, so that all formats hold them.
+/// Coordinates that are written: whole and half ones, so that all formats hold them.
 #[derive(Clone, Debug)]
 struct MeshModel {
     vertices: Vec<[f64; 3]>,
@@ -41,7 +41,7 @@ fn number(x: f64, way: usize) -> String {
     }
 }
 
-/// How an OBJ file is written.
+/// Variants of an OBJ file.
 #[derive(Clone, Debug)]
 struct ObjStyle {
     gaps: Vec<&'static str>,
@@ -241,7 +241,7 @@ fn stl_binary(model: &MeshModel) -> Vec<u8> {
     out
 }
 
-/// How a PLY file is written.
+/// Variants of a PLY file.
 #[derive(Clone, Debug)]
 struct PlyStyle {
     encoding: &'static str,

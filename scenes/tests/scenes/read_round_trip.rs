@@ -1,4 +1,4 @@
-//! What is written reads back as the same scene, bit for bit.
+//! Scenes that are written read back as the same ones, bit for bit.
 
 use std::fmt::Write;
 use std::fs;
@@ -132,7 +132,7 @@ fn corners(scene: &Scene, f: fn(f64) -> f64) -> Vec<[[u64; 3]; 3]> {
     scene.triangles.iter().map(|triangle| triangle.vertices.map(place)).collect()
 }
 
-/// What a material does to light without counting ambient light: colour times kd, ks, kt and the index where it shows.
+/// Effect of a material on light without ambient light: colour times kd, ks, kt and the index where it shows.
 fn effect(material: &Material) -> [f64; 6] {
     let kt = material.transmission();
     let [red, green, blue] = material.colour.map(|c| c * material.intensity);

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use scenes::read::{dsc, off};
 
-/// How the colours of all faces of a file are written.
+/// Variants of the colours of all faces of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ColourStyle {
     None,
@@ -19,7 +19,7 @@ enum ColourStyle {
     Decimals,
 }
 
-/// How a file is written.
+/// Variants of a file.
 #[derive(Clone, Debug)]
 struct Style {
     has_header: bool,
@@ -37,7 +37,7 @@ struct Style {
     is_glued: bool,
 }
 
-/// What is written.
+/// The scene that is written.
 #[derive(Clone, Debug)]
 struct SceneModel {
     vertices: Vec<[f64; 3]>,

@@ -50,7 +50,7 @@ pub fn shown(mesh: &Mesh) -> String {
     text
 }
 
-/// What is read of each good file of a folder.
+/// The scenes that each good file of a folder is read as.
 pub fn all_read(name: &str, extension: &str, parse: impl Fn(&str, &[u8]) -> Result<Mesh, Report>) -> String {
     let mut text = String::new();
     for (name, bytes) in files(name, extension) {
@@ -60,7 +60,7 @@ pub fn all_read(name: &str, extension: &str, parse: impl Fn(&str, &[u8]) -> Resu
     text
 }
 
-/// What is said about each bad file of a folder.
+/// The messages about each bad file of a folder.
 pub fn all_refused(name: &str, extension: &str, parse: impl Fn(&str, &[u8]) -> Result<Mesh, Report>) -> String {
     let mut text = String::new();
     for (name, bytes) in files(name, extension) {

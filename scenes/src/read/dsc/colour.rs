@@ -4,7 +4,7 @@ use messages::Diagnostic;
 
 use super::super::words::{Word, Words};
 
-/// What has been seen of a file's colours.
+/// The colours of a file so far.
 #[derive(Default)]
 pub(super) struct ColourScale<'a> {
     above_one: Option<Word<'a>>,

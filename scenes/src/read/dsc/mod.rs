@@ -14,7 +14,7 @@ use crate::model::{Light, Material};
 /// Most pixels along one side of a picture.
 const LARGEST: u32 = 65_535;
 
-/// What a `.dsc` file says.
+/// Contents of a `.dsc` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Width and height of the picture in pixels.
@@ -25,16 +25,16 @@ pub struct Description {
     pub lights: Vec<Light>,
     /// The material of each triangle, by number.
     pub surfaces: Vec<u32>,
-    /// Where the number of triangles stands.
+    /// Place of the number of triangles.
     pub count: Place,
-    /// What is likely a mistake.
+    /// Warnings: what is likely a mistake.
     pub warnings: Report,
 }
 
 /// A count as the file announces it, and its word.
 type WordedCount<'a> = (u32, Word<'a>);
 
-/// What a line of six numbers holds.
+/// The kind of a line of six numbers.
 struct Shape {
     name: &'static str,
     fields: [&'static str; 6],

@@ -4,10 +4,10 @@ use messages::{Diagnostic, nearest, question};
 
 use super::super::words::{Word, Words, counted, shortened};
 
-/// What is lost for one reason.
+/// Losses for one reason.
 struct LostKind {
     keywords: &'static [&'static str],
-    /// What is counted, as the subject of a sentence; its plural; and the rest of the sentence.
+    /// The thing that is counted, as the subject of a sentence; its plural; and the rest of the sentence.
     says: [&'static str; 3],
 }
 
@@ -57,7 +57,7 @@ pub(super) const WEIGHTS: usize = 6;
 /// Statements that are used or say nothing about the picture.
 const USED: [&str; 9] = ["v", "f", "fo", "usemtl", "mtllib", "o", "g", "call", "csh"];
 
-/// What is lost of a file.
+/// Losses of a file.
 #[derive(Default)]
 pub(super) struct LostStatements<'a> {
     counts: [usize; LOST_KINDS.len()],

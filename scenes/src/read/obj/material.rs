@@ -25,7 +25,7 @@ struct Draft<'a> {
     model: u32,
 }
 
-/// What a library says that no material of a scene can have.
+/// Statements of a library that no material of a scene can follow.
 #[derive(Default)]
 struct LostProperties<'a> {
     textures: usize,

@@ -65,7 +65,7 @@ pub fn parse<'a>(
     }
 }
 
-/// What stands in the file. Faces may come before their vertices, so they are cut at the end.
+/// Contents of the file. Faces may come before their vertices, so they are cut at the end.
 #[derive(Default)]
 struct ObjContents<'a> {
     vertices: Vec<Vec3>,
@@ -171,7 +171,7 @@ impl<'a> ObjContents<'a> {
         self.faces.push((self.corners.len(), material));
     }
 
-    /// Whether all vertices are there at the end; a complaint about the first that is not.
+    /// All vertices are there at the end; a complaint about the first that is not.
     fn check_ahead(&self, words: &mut Words<'a>) -> bool {
         let count = self.vertices.len();
         let mut beyond = self.ahead.iter().filter(|(_, number, _)| *number as usize >= count);

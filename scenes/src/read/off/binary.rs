@@ -16,7 +16,7 @@ use crate::model::Vec3;
 /// Octets at the start of a file in which a binary file's header must end.
 pub(super) const HEAD: usize = 4096;
 
-/// Whether the word `BINARY` is near the start of a file.
+/// The word `BINARY` is near the start of a file.
 pub(super) fn is_likely(bytes: &[u8]) -> bool {
     bytes[..bytes.len().min(HEAD)].windows(6).any(|six| six == b"BINARY")
 }
@@ -39,7 +39,7 @@ pub(super) fn read(bytes: &[u8], header: &Header, binary: Binary, words: &mut Wo
     }
 }
 
-/// What is left of the binary part.
+/// The rest of the binary part.
 struct Numbers<'a> {
     rest: &'a [u8],
     all: &'a [u8],
@@ -81,7 +81,7 @@ impl Numbers<'_> {
         Ok(f64::from(value))
     }
 
-    /// Whether `count` things of at least `octets` each may follow; somewhat too many pass, as in `Words::room`.
+    /// There is room for `count` things of at least `octets` each; somewhat too many pass, as in `Words::room`.
     fn room(&self, count: u32, octets: usize, what: &str) -> Result<usize, String> {
         let most = self.rest.len() / octets;
         if count as usize / 16 <= most {

@@ -9,31 +9,31 @@ use nom::{IResult, Parser};
 
 use super::super::words::{Word, Words, shortened};
 
-/// What the header word promises for each vertex, and how the rest is written.
+/// Promises of the header word for each vertex, and how the rest is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     /// Numbers of a position, the homogeneous one included.
     pub components: usize,
-    /// Whether the last number of a position divides the others.
+    /// The last number of a position divides the others.
     pub is_homogeneous: bool,
-    /// Whether a normal of three numbers follows the position.
+    /// A normal of three numbers follows the position.
     pub has_normals: bool,
-    /// Whether a colour of four numbers follows (in text three are read too).
+    /// A colour of four numbers follows (in text three are read too).
     pub has_colours: bool,
-    /// Whether a texture position of two numbers follows.
+    /// A texture position of two numbers follows.
     pub has_texture: bool,
-    /// Whether everything after the header is binary, and where it starts.
+    /// Everything after the header is binary, from this place on.
     pub binary: Option<Binary>,
 }
 
-/// Where the binary part starts and what its first number is.
+/// Start of the binary part, and its first number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Binary {
     /// First octet of the word `BINARY` and the one after its last.
     pub word: (usize, usize),
     /// Offset of the first octet behind that line, in the text that the header was read from.
     pub start: usize,
-    /// Whether the dimension of an nOFF is its first number.
+    /// The dimension of an nOFF is its first number.
     pub has_dimension: bool,
 }
 

@@ -127,7 +127,7 @@ fn vertices(
     Some(list)
 }
 
-/// What number `k` of vertex `n` is.
+/// Role of number `k` of vertex `n`.
 fn part(header: &Header, n: u32, k: usize) -> String {
     match k {
         0..3 if k < header.components => format!("{} of vertex {n}", ["x", "y", "z"][k]),
@@ -135,7 +135,7 @@ fn part(header: &Header, n: u32, k: usize) -> String {
     }
 }
 
-/// What is found more than once, and told once: the first place, and how often.
+/// A finding that is told once though it is made more often: the first place, and how often.
 struct Beyond<'a> {
     face: u32,
     number: u32,

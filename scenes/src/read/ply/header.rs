@@ -38,7 +38,7 @@ pub(super) fn length(bytes: &[u8]) -> Option<usize> {
     None
 }
 
-/// What an element is for.
+/// The purpose of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Vertices,
@@ -52,7 +52,7 @@ pub(super) enum Role {
 pub(super) struct Element<'a> {
     pub role: Role,
     pub definition: ElementDef,
-    /// Where its number stands.
+    /// Place of the number of elements.
     pub count: Word<'a>,
 }
 
@@ -148,7 +148,7 @@ pub(super) fn read<'a>(words: &mut Words<'a>) -> Option<(Header, Vec<Element<'a>
     Some((header, elements))
 }
 
-/// What an element is for, when it has what that takes.
+/// Purpose of an element, when it has what that takes.
 fn role(words: &mut Words<'_>, definition: &ElementDef, name: Word<'_>) -> Option<Role> {
     let role = match name.text {
         "vertex" => Role::Vertices,
@@ -245,11 +245,11 @@ pub(super) struct Expected<'d> {
     pub name: &'d str,
     /// The type of each.
     pub kind: &'d ScalarType,
-    /// Whether it is the length of a list.
+    /// The number is the length of a list.
     pub is_length: bool,
 }
 
-/// What the numbers of a line are.
+/// The numbers that a line must have, by property.
 pub(super) fn expected<'d>(definition: &'d ElementDef, words: &[&str]) -> Vec<Expected<'d>> {
     let mut at = 0;
     let mut expected = Vec::new();

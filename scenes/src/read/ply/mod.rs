@@ -78,7 +78,7 @@ fn without_end(bytes: &[u8], name: &str) -> Report {
     words.into_report()
 }
 
-/// What is wrong with an element: the message, and what in the element is meant where that is one of its corners.
+/// The complaint about an element: the message, and what in the element is meant where that is one of its corners.
 struct Complaint {
     message: String,
     corner: Option<i64>,
@@ -191,7 +191,7 @@ fn which(element: &Element<'_>, number: usize) -> String {
     format!("{} {number} of {}", element.definition.name, element.definition.count)
 }
 
-/// Whether a file with `rest` octets left may hold an element; somewhat too many pass, as in `Words::room`.
+/// A file with `rest` octets left may hold an element; somewhat too many pass, as in `Words::room`.
 fn has_room(words: &mut Words<'_>, element: &Element<'_>, rest: usize, is_text: bool) -> bool {
     let least = header::least(&element.definition, is_text);
     let most = (rest + 1).checked_div(least).unwrap_or(usize::MAX);
@@ -205,7 +205,7 @@ fn has_room(words: &mut Words<'_>, element: &Element<'_>, rest: usize, is_text: 
     false
 }
 
-/// Whether an element's properties say nothing: then it takes no room either, however many there are.
+/// An element's properties say nothing: then it takes no room either, however many there are.
 fn is_empty(element: &Element<'_>) -> bool {
     element.definition.properties.is_empty()
 }

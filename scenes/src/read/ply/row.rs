@@ -12,7 +12,7 @@ pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 pub(super) const COLOUR: [[&str; 2]; 3] =
     [["red", "diffuse_red"], ["green", "diffuse_green"], ["blue", "diffuse_blue"]];
 
-/// What is used of an element.
+/// The used part of an element.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Row {
     /// Coordinates of a vertex.

@@ -77,7 +77,7 @@ fn plain(line: &str) -> String {
     line.split_whitespace().map(plain).collect::<Vec<_>>().join(" ")
 }
 
-/// Whether a word can be a number of a type.
+/// A word can be a number of a type.
 fn fits(kind: &ScalarType, text: &str) -> bool {
     // As in `plain`, whole numbers may have a point.
     let whole = || text.parse::<f64>().ok().filter(|value| value.fract() == 0.0);

@@ -21,7 +21,7 @@ fn announced(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(count) as usize)
 }
 
-/// Whether the length of a file is that of the triangles which it announces.
+/// The length of a file is that of the triangles which it announces.
 pub(super) fn is_exact(bytes: &[u8]) -> bool {
     announced(bytes).is_some_and(|count| bytes.len() == HEADER + count * TRIANGLE)
 }

@@ -33,7 +33,7 @@ pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Re
     text::parse(bytes, name)
 }
 
-/// Whether a file starts as text does. A binary file has zeros in the number of its triangles at least, if that is
+/// A file starts as text does. A binary file has zeros in the number of its triangles at least, if that is
 /// less than 2^24.
 fn is_text(bytes: &[u8]) -> bool {
     let is_control = |&octet: &u8| octet < b' ' && !octet.is_ascii_whitespace() && octet != b'\x0b';

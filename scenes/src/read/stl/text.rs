@@ -27,9 +27,9 @@ const STEPS: [(&str, usize); 7] = [
 /// The statement that was handed over last.
 #[derive(Clone, Default)]
 struct Last {
-    /// Where it stands; empty at the end of the file.
+    /// Place of the word; empty at the end of the file.
     span: Range<usize>,
-    /// What it should have been, by number in [`STEPS`]; the first one may be `endsolid` too.
+    /// The word that was expected, by number in [`STEPS`]; the first one may be `endsolid` too.
     step: usize,
 }
 
@@ -87,7 +87,7 @@ struct Statements<'a> {
     words: Words<'a>,
     start: usize,
     last: Rc<Cell<Last>>,
-    /// What comes next, by number in [`STEPS`]; `None` before the first `solid`.
+    /// The next step, by number in [`STEPS`]; `None` before the first `solid`.
     step: Option<usize>,
     /// Words behind the first of a statement; kept for its memory.
     rest: Vec<Word<'a>>,
@@ -157,7 +157,7 @@ impl Statements<'_> {
         self.step = Some((self.step.unwrap_or(0) + 1) % STEPS.len());
     }
 
-    /// Whether another solid, or another triangle, follows an `endsolid`.
+    /// Another solid, or another triangle, follows an `endsolid`.
     fn goes_on(&mut self) -> bool {
         let at = self.words.position();
         let next = self.words.next().map(|word| word.text.to_ascii_lowercase());

@@ -14,8 +14,10 @@ pub mod tally;
 pub mod timing;
 pub mod trap;
 
+use std::any::Any;
 use std::fmt;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, Program};
 use messages::{Diagnostic, Place};
@@ -89,7 +91,12 @@ pub struct Code<'a> {
     inner: Vec<Inner>,
     /// The words that bodies stand for, in their order.
     extended: Vec<(u32, Op)>,
+    shared: Shared,
 }
+
+/// What those who execute a program share.
+#[derive(Clone, Debug, Default)]
+struct Shared(Arc<Mutex<Vec<Arc<dyn Any + Send + Sync>>>>);
 
 /// The program's bodies have more slots than [`MOST_BODY_SLOTS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,6 +141,7 @@ impl<'a> Code<'a> {
             starts: Vec::with_capacity(words + 1),
             inner: Vec::new(),
             extended: Vec::new(),
+            shared: Shared::default(),
         };
         // The slots of bodies come behind all words, whose number is known.
         let mut behind: Vec<Slot> = Vec::new();
@@ -234,6 +242,22 @@ impl<'a> Code<'a> {
             }
         }
         first
+    }
+
+    /// Something that all who execute the program share: one of its type that is wanted, or a new one.
+    #[cfg(feature = "native")]
+    pub(crate) fn share<T: Any + Send + Sync>(
+        &self,
+        is_wanted: impl Fn(&T) -> bool,
+        make: impl FnOnce() -> T,
+    ) -> Arc<T> {
+        let mut shared = self.shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = shared.iter().filter_map(|known| known.clone().downcast().ok());
+        known.into_iter().find(|known: &Arc<T>| is_wanted(known)).unwrap_or_else(|| {
+            let made = Arc::new(make());
+            shared.push(made.clone());
+            made
+        })
     }
 
     /// The slots: those of the words, then those of bodies.

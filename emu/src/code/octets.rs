@@ -49,7 +49,31 @@ impl Buffer {
     pub fn new(image: &[u8], size: u32) -> Buffer {
         let mut octets = image[..image.len().min(size as usize)].to_vec();
         octets.resize(size as usize, POISON);
-        Buffer { octets, written: 0, piece: (u32::BITS - size.leading_zeros()).saturating_sub(6) }
+        Buffer { octets, written: 0, piece: Buffer::piece_bits(size) }
+    }
+
+    /// The pieces of a buffer of `size` octets have 2^this octets, so that there are at most 64.
+    pub(crate) const fn piece_bits(size: u32) -> u32 {
+        (u32::BITS - size.leading_zeros()).saturating_sub(6)
+    }
+
+    /// The pieces that some octets lie in, of which there are any, a bit each.
+    #[inline]
+    pub(crate) const fn pieces(piece: u32, start: usize, octets: usize) -> u64 {
+        let (first, last) = (start >> piece, (start + octets - 1) >> piece);
+        u64::MAX >> (63 - (last - first)) << first
+    }
+
+    /// The first octet, for an engine that notes by [`Buffer::note_pieces`] what it writes.
+    #[cfg(feature = "native")]
+    pub(crate) fn start_mut(&mut self) -> *mut u8 {
+        self.octets.as_mut_ptr()
+    }
+
+    /// Notes that pieces were written.
+    #[cfg(feature = "native")]
+    pub(crate) fn note_pieces(&mut self, pieces: u64) {
+        self.written |= pieces;
     }
 
     /// Makes it equal again to the one that it was cloned from, which nobody has written to: only what was written is copied.
@@ -68,8 +92,7 @@ impl Buffer {
     #[inline]
     fn note_written(&mut self, start: usize, octets: usize) {
         if octets != 0 {
-            let (first, last) = (start >> self.piece, (start + octets - 1) >> self.piece);
-            self.written |= u64::MAX >> (63 - (last - first)) << first;
+            self.written |= Buffer::pieces(self.piece, start, octets);
         }
     }
 

@@ -2,25 +2,53 @@
 
 use super::fast::Fast;
 use super::host::HostSimd;
+use super::native::Native;
 use super::state::{CoreId, Pause, State};
 use super::taint::Taint;
-use super::{Engine, Refusal, Stopped, TimedLink, Timeless, interpreter};
+use super::{AddOctets, Engine, Refusal, Stopped, TimedLink, Timeless, interpreter};
 use crate::code::Code;
 use crate::code::tally::Tally;
+use crate::code::trap::Fault;
 use crate::profile::RunObserver;
-use crate::semantics::{Link, Watch};
+use crate::semantics::{Computes, Link, Watch};
 
 /// A program to execute, and what has to be known of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Demand<'a> {
     /// The program.
     pub code: &'a Code<'a>,
-    /// Vector instructions of the host that may be used at most.
-    pub simd: HostSimd,
-    /// Whether the arithmetic is the default one, and nobody watches what results lose.
-    pub is_default_arithmetic: bool,
+    /// The engine that is wanted.
+    pub wish: Wish,
+    /// What the arithmetic does.
+    pub computes: Computes,
+    /// Octets of the local buffer.
+    pub buffer_octets: u32,
     /// Whether it is to be found out what depends on the number of cores.
     pub follows_cores: bool,
+    /// Whether functions and regions are measured.
+    pub has_profile: bool,
+    /// When the machine answers.
+    pub answers: Answers,
+}
+
+impl<'a> Demand<'a> {
+    /// A program on a core that may have to wait for each answer, of which nobody wants to know more than counts.
+    pub fn new(code: &'a Code<'a>, wish: Wish, computes: Computes, buffer_octets: u32) -> Demand<'a> {
+        let answers = Answers::WhenReady;
+        Demand { code, wish, computes, buffer_octets, follows_cores: false, has_profile: false, answers }
+    }
+}
+
+/// When the machine answers a program that asks it for something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answers {
+    /// When it is ready, so that the program waits and asks again.
+    WhenReady,
+    /// At once, on a link that is [`super::Quick`].
+    AtOnce {
+        /// Whether the link wants to know when it is asked.
+        keeps_time: bool,
+    },
 }
 
 /// An engine that is wanted, and the vector instructions of the host that it may use at most.
@@ -30,21 +58,28 @@ pub struct Wish {
     pub kind: EngineKind,
     /// The vector instructions.
     pub simd: HostSimd,
+    /// Whether what runs briefly is compiled as well.
+    pub is_eager: bool,
 }
 
 impl Wish {
     /// The interpreter.
-    pub const CHECKED: Wish = Wish { kind: EngineKind::Checked, simd: HostSimd::Baseline };
+    pub const CHECKED: Wish = Wish { kind: EngineKind::Checked, simd: HostSimd::Baseline, is_eager: false };
 
     /// The fast engine with these vector instructions at most.
     pub const fn fast(simd: HostSimd) -> Wish {
-        Wish { kind: EngineKind::Fast, simd }
+        Wish { kind: EngineKind::Fast, simd, is_eager: false }
+    }
+
+    /// Native code, also for what runs briefly.
+    pub fn native() -> Wish {
+        Wish { kind: EngineKind::Native, is_eager: true, ..Wish::default() }
     }
 }
 
 impl Default for Wish {
     fn default() -> Wish {
-        Wish { kind: EngineKind::default(), simd: HostSimd::best() }
+        Wish { kind: EngineKind::default(), simd: HostSimd::best(), is_eager: false }
     }
 }
 
@@ -56,9 +91,6 @@ pub struct Choice {
     /// Why the one that was wanted does not run the program; `None` where it does.
     pub refusal: Option<Refusal>,
 }
-
-const ARITHMETIC: Refusal =
-    "only the interpreter computes in other modes than the default ones, traps divisions by zero and counts losses";
 
 /// The engines beside the interpreter, best first: a line each.
 macro_rules! engines {
@@ -100,22 +132,35 @@ macro_rules! engines {
             }
 
             #[inline(always)]
-            fn run<L: TimedLink, O: RunObserver>(
+            fn run<T: Watch, L: TimedLink, O: RunObserver>(
                 &mut self,
-                seat: CoreId,
+                core: CoreId,
                 state: &mut State,
+                arithmetic: &T,
                 link: &mut L,
                 taint: &mut Taint,
                 observer: &mut O,
             ) -> Stopped {
                 match self {
-                    $(Ready::$kind(engine) => engine.run(seat, state, link, taint, observer),)*
+                    $(Ready::$kind(engine) => engine.run(core, state, arithmetic, link, taint, observer),)*
                 }
             }
 
-            fn fold(&mut self, tally: &mut Tally) {
+            fn patience(&self, core: CoreId, state: &State) -> u64 {
                 match self {
-                    $(Ready::$kind(engine) => engine.fold(tally),)*
+                    $(Ready::$kind(engine) => engine.patience(core, state),)*
+                }
+            }
+
+            fn interpreted(&mut self, steps: u64) {
+                match self {
+                    $(Ready::$kind(engine) => engine.interpreted(steps),)*
+                }
+            }
+
+            fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+                match self {
+                    $(Ready::$kind(engine) => engine.fold(tally, add_octets),)*
                 }
             }
         }
@@ -123,26 +168,23 @@ macro_rules! engines {
 }
 
 engines! {
+    /// Code generated for the host: [`super::native`].
+    Native(Native) "native";
     /// One work item after the other, a run of instructions at a time: [`super::fast`].
     Fast(Fast) "fast";
 }
 
 impl Default for EngineKind {
     fn default() -> EngineKind {
-        EngineKind::ALL[0]
+        EngineKind::Fast
     }
 }
 
 /// Chooses who runs a program: the engine that is wanted, or the next one that does what is demanded. The interpreter does everything.
-pub fn choose<'a>(wanted: EngineKind, demand: &Demand<'a>) -> Runner<'a> {
+pub fn choose<'a>(demand: &Demand<'a>) -> Runner<'a> {
     let mut refusal = None;
-    for kind in EngineKind::ALL.into_iter().skip_while(|kind| *kind != wanted) {
-        let ready = match kind {
-            EngineKind::Checked => Ok(None),
-            _ if !demand.is_default_arithmetic => Err(ARITHMETIC),
-            _ => Ready::new(kind, demand),
-        };
-        match ready {
+    for kind in EngineKind::ALL.into_iter().skip_while(|kind| *kind != demand.wish.kind) {
+        match Ready::new(kind, demand) {
             Ok(ready) => return Runner { code: demand.code, ready, choice: Choice { kind, refusal } },
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
@@ -167,41 +209,60 @@ impl Runner<'_> {
     /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`Runner::fold`].
     pub fn run<T: Watch, O: RunObserver>(
         &mut self,
-        seat: CoreId,
+        core: CoreId,
         state: &mut State,
         arithmetic: &T,
         link: &mut dyn Link,
         tally: &mut Tally,
         observer: &mut O,
     ) -> Pause {
-        let timed: &mut &mut dyn TimedLink = &mut (&mut Timeless(&mut *link) as _);
-        match self.run_ahead(seat, state, timed, &mut Taint::default(), observer) {
-            Some(Stopped::Halt) => Pause::Halt,
-            Some(Stopped::Wait) => Pause::Wait,
-            Some(Stopped::Fault(fault)) => Pause::Fault(fault),
-            Some(Stopped::Bailout) | None => {
-                interpreter::run(self.code, seat, state, arithmetic, link, tally, observer)
+        loop {
+            let timed: &mut &mut dyn TimedLink = &mut (&mut Timeless(&mut *link) as _);
+            match self.run_ahead(core, state, arithmetic, timed, &mut Taint::default(), observer) {
+                Some(Stopped::Halt) => return Pause::Halt,
+                Some(Stopped::Wait) => return Pause::Wait,
+                Some(Stopped::Fault(fault)) => return Pause::Fault(fault),
+                Some(Stopped::Bailout) | None => {}
             }
+            // The interpreter goes on as long as the engine likes.
+            let before = state.steps + state.inner_steps;
+            let patience = self.ready.as_ref().map_or(u64::MAX, |ready| ready.patience(core, state));
+            let limit = before.saturating_add(patience);
+            let patient = CoreId { step_limit: core.step_limit.min(limit), ..core };
+            let pause = interpreter::run(self.code, patient, state, arithmetic, link, tally, observer);
+            self.interpreted(state.steps + state.inner_steps - before);
+            if limit >= core.step_limit || pause != Pause::Fault(Fault::StepLimit(limit)) {
+                return pause;
+            }
+        }
+    }
+
+    /// Notes that the interpreter has executed so many steps of the program.
+    pub(crate) fn interpreted(&mut self, steps: u64) {
+        if let Some(ready) = &mut self.ready {
+            ready.interpreted(steps);
         }
     }
 
     /// As far as an engine comes that is faster than the interpreter, as [`Engine::run`]; `None` where there is none.
     #[inline]
-    pub(crate) fn run_ahead<L: TimedLink, O: RunObserver>(
+    pub(crate) fn run_ahead<T: Watch, L: TimedLink, O: RunObserver>(
         &mut self,
-        seat: CoreId,
+        core: CoreId,
         state: &mut State,
+        arithmetic: &T,
         link: &mut L,
         taint: &mut Taint,
         observer: &mut O,
     ) -> Option<Stopped> {
-        Some(self.ready.as_mut()?.run(seat, state, link, taint, observer))
+        Some(self.ready.as_mut()?.run(core, state, arithmetic, link, taint, observer))
     }
 
-    /// Adds the passes of words that were executed quickly to a tally of the program, and forgets them.
-    pub fn fold(&mut self, tally: &mut Tally) {
+    /// Adds the passes of words that were executed quickly to a tally of the program, and the octets of reads that the link was not told of, and
+    /// forgets them.
+    pub fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
         if let Some(ready) = &mut self.ready {
-            ready.fold(tally);
+            ready.fold(tally, add_octets);
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::code::ExitCost;
 /// The numbers of a [`Cost`]: where each begins, and its bits. The sign of all is the [`FLAG`].
 const STEPS: (u32, u32) = (0, 15);
 const INNER: (u32, u32) = (15, 15);
-const CLOCKS: (u32, u32) = (30, 17);
+pub(super) const CLOCKS: (u32, u32) = (30, 17);
 const ELEMENTARY: (u32, u32) = (47, 16);
 const FIELDS: [(u32, u32); 4] = [STEPS, INNER, CLOCKS, ELEMENTARY];
 
@@ -52,6 +52,12 @@ impl Cost {
     /// Whether none of the numbers has come to a quarter of the room for it: two runs and what their exits add fit on top of a half.
     pub(super) fn is_small(self) -> bool {
         self.0 & (HALVES | HALVES >> 1) == 0
+    }
+
+    /// Whether none of the numbers has come to half of the room for it.
+    #[cfg(feature = "native")]
+    pub(super) fn is_below_half(self) -> bool {
+        self.0 & HALVES == 0
     }
 
     #[inline(always)]

@@ -7,14 +7,21 @@ mod dispatch;
 pub mod fast;
 mod host;
 pub mod interpreter;
+#[cfg(feature = "native")]
+pub mod native;
+#[cfg(not(feature = "native"))]
+#[path = "without_native.rs"]
+pub mod native;
 mod plan;
+mod quick;
 mod state;
 mod taint;
 
-pub use choose::{Choice, Demand, EngineKind, Runner, Wish, choose};
+pub use choose::{Answers, Choice, Demand, EngineKind, Runner, Wish, choose};
 pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;
+pub use quick::{Quick, Read};
 pub use state::{CoreId, Pause, State};
 pub(crate) use taint::{Taint, TaintObserver};
 
@@ -22,12 +29,15 @@ use crate::code::octets::Buffer;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::profile::RunObserver;
-use crate::semantics::{Link, Message, methods};
+use crate::semantics::{Link, Message, Watch, methods};
 
 /// Why an engine does not run a program, as the end of a sentence.
 pub type Refusal = &'static str;
 
-/// An engine that is faster than the interpreter, for one program on the default arithmetic.
+/// Takes octets that were read of a kind of data.
+pub type AddOctets<'a> = &'a mut dyn FnMut(u32, u64);
+
+/// An engine that is faster than the interpreter, for one program.
 pub trait Engine<'a>: Sized {
     /// Makes ready for a program.
     ///
@@ -42,17 +52,26 @@ pub trait Engine<'a>: Sized {
     /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `taint` is what the item knows of the
     /// cores, brought up to date where the demand says that it is followed. The observer is told as [`RunObserver`] says, the link before each
     /// request of when that is made.
-    fn run<L: TimedLink, O: RunObserver>(
+    fn run<T: Watch, L: TimedLink, O: RunObserver>(
         &mut self,
-        seat: CoreId,
+        core: CoreId,
         state: &mut State,
+        arithmetic: &T,
         link: &mut L,
         taint: &mut Taint,
         observer: &mut O,
     ) -> Stopped;
 
-    /// Adds the passes of all runs since the last call to a tally of the program.
-    fn fold(&mut self, tally: &mut Tally);
+    /// Steps that the interpreter is to take before the engine is asked again, where it has left something to the interpreter.
+    fn patience(&self, _seat: CoreId, _state: &State) -> u64 {
+        u64::MAX
+    }
+
+    /// Notes that the interpreter has executed so many steps of the program.
+    fn interpreted(&mut self, _steps: u64) {}
+
+    /// Adds the passes of all runs since the last call to a tally of the program, and octets of reads that no link was told of.
+    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets);
 }
 
 /// The machine as a work item sees it.
@@ -62,6 +81,11 @@ pub trait TimedLink: Link {
 
     /// When and where it is asked next; the time only where it is kept.
     fn note(&mut self, time: RequestTime);
+
+    /// The link as one whose memory may be read directly, where it is one.
+    fn quick(&mut self) -> Option<&mut dyn Quick> {
+        None
+    }
 }
 
 /// A link to which the time does not matter.
@@ -108,5 +132,9 @@ impl TimedLink for &mut dyn TimedLink {
 
     fn note(&mut self, time: RequestTime) {
         (**self).note(time);
+    }
+
+    fn quick(&mut self) -> Option<&mut dyn Quick> {
+        (**self).quick()
     }
 }

@@ -332,7 +332,13 @@ impl<'a> Plan<'a> {
     /// What a run takes, without what depends on exits.
     #[inline(always)]
     pub fn run_cost(&self, place: u32) -> Cost {
-        let [from, to] = [place, self.run_end(place)].map(|place| self.before[place as usize].0);
+        self.cost(place, self.run_end(place))
+    }
+
+    /// Cost of the places from one to before another one of the same run, without what depends on exits.
+    #[inline(always)]
+    pub fn cost(&self, from: u32, to: u32) -> Cost {
+        let [from, to] = [from, to].map(|place| self.before[place as usize].0);
         Cost(to.wrapping_sub(from))
     }
 

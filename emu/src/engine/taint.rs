@@ -57,6 +57,26 @@ impl TaintEffect {
         self.counts
     }
 
+    /// Scalars that it reads, other than for where a message goes to.
+    pub fn reads(&self) -> u64 {
+        self.reads
+    }
+
+    /// Scalars that it writes.
+    pub fn writes(&self) -> u64 {
+        self.writes
+    }
+
+    /// Of a send, the scalars of which one has to hold the number of cores, so that it does not depend on it.
+    pub fn fixed_unless(&self) -> Option<u64> {
+        self.is_send.then_some(self.target)
+    }
+
+    /// Whether it tells which core this is.
+    pub fn tells_core(&self) -> bool {
+        self.tells_core
+    }
+
     /// Whether it matters to the instruction which of these registers hold the number of cores.
     pub fn touches(&self, registers: u64) -> bool {
         (self.reads | self.writes | self.target) & registers != 0

@@ -67,9 +67,8 @@ impl Kinds {
         Some(())
     }
 
-    /// The kind at an address.
-    #[inline(never)]
-    fn find(&mut self, pc: u32, address: u32) -> usize {
+    /// The range around an address whose octets are of one kind, or of none: its first address, its length, and the kind.
+    pub fn range(&self, address: u32) -> (u32, u32, usize) {
         let after = self.ranges.partition_point(|(range, _)| range.start <= address);
         let (start, end, kind) = match self.ranges[..after].last() {
             Some(&(Range { start, end }, kind)) if address < end => (start, end, kind),
@@ -78,8 +77,20 @@ impl Kinds {
                 (last.map_or(0, |(range, _)| range.end), next, self.other)
             }
         };
-        self.last[pc as usize % RECENT] = (start, end - start, kind as u32);
+        (start, end - start, kind)
+    }
+
+    /// The kind at an address.
+    #[inline(never)]
+    fn find(&mut self, pc: u32, address: u32) -> usize {
+        let (start, length, kind) = self.range(address);
+        self.last[pc as usize % RECENT] = (start, length, kind as u32);
         kind
+    }
+
+    /// Adds octets of a kind, as [`Kinds::range`] says it.
+    pub fn add_octets(&mut self, kind: usize, octets: Octets) {
+        self.totals[kind].octets += octets;
     }
 
     /// Nothing moved again.

@@ -34,6 +34,7 @@ use trace::Window;
 use crate::code::trap::Trap;
 use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
+use crate::semantics::{Computes, Watch};
 
 /// What a machine runs.
 #[derive(Clone)]
@@ -62,9 +63,10 @@ impl Setup<'_> {
     /// The engine that runs the cores' program, and why not a faster one that was wanted.
     pub fn engine(&self) -> Choice {
         let code = Code::new(self.core, self.isa, self.config.timing());
-        let is_default_arithmetic = self.config.arithmetic.watching(self.options.has_losses).is_none();
-        let Wish { kind, simd } = self.options.wish();
-        choose(kind, &Demand { code: &code, simd, is_default_arithmetic, follows_cores: true }).choice()
+        let watching = self.config.arithmetic.watching(self.options.has_losses);
+        let computes = watching.map_or(Computes::default(), |watching| watching.computes());
+        let demand = Demand::new(&code, self.options.wish(), computes, self.config.buffer_octets);
+        choose(&Demand { follows_cores: true, has_profile: self.options.has_profile, ..demand }).choice()
     }
 }
 
@@ -83,12 +85,14 @@ pub struct Options {
     pub engine: EngineKind,
     /// Vector instructions of the host that an engine may use at most; `None` for all that there are.
     pub simd: Option<HostSimd>,
+    /// Whether what runs briefly is compiled as well, where that is what the engine does.
+    pub is_eager: bool,
 }
 
 impl Options {
     /// The engine that is wanted.
     pub(crate) fn wish(&self) -> Wish {
-        Wish { kind: self.engine, simd: self.simd.unwrap_or_else(HostSimd::best) }
+        Wish { kind: self.engine, simd: self.simd.unwrap_or_else(HostSimd::best), is_eager: self.is_eager }
     }
 }
 

@@ -18,7 +18,7 @@ use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
-use crate::engine::{CoreId, Demand, Pause, Runner, Wish, choose};
+use crate::engine::{CoreId, Demand, Pause, Runner, choose};
 use crate::profile::RunObserver;
 use crate::semantics::Watch;
 
@@ -35,7 +35,7 @@ pub fn run<T: Watch, O: RunObserver>(
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
-    let runner = runner_of::<T>(setup, &core_code);
+    let runner = runner_of::<T, O>(setup, &core_code, arithmetic, setup.config.buffer_octets);
     let core = |core: CoreId| {
         let buffer_octets = setup.config.buffer_octets;
         Executor::<T, O>::new(&core_code, core, buffer_octets, runner.clone(), arithmetic)
@@ -45,9 +45,14 @@ pub fn run<T: Watch, O: RunObserver>(
 }
 
 /// Runner of a program on a machine.
-fn runner_of<'a, T: Watch>(setup: &Setup, code: &'a Code<'a>) -> Runner<'a> {
-    let Wish { kind, simd } = setup.options.wish();
-    choose(kind, &Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false })
+fn runner_of<'a, T: Watch, O: RunObserver>(
+    setup: &Setup,
+    code: &'a Code<'a>,
+    arithmetic: &T,
+    buffer_octets: u32,
+) -> Runner<'a> {
+    let demand = Demand::new(code, setup.options.wish(), arithmetic.computes(), buffer_octets);
+    choose(&Demand { has_profile: O::IS_ACTIVE, ..demand })
 }
 
 /// Worker of the main processor, which executes its program on any machine.
@@ -56,8 +61,9 @@ pub(crate) fn main_worker<'a, T: Watch, O: RunObserver>(
     code: &'a Code<'a>,
     arithmetic: &'a T,
 ) -> Executor<'a, T, O> {
-    let main = &setup.config.main;
-    Executor::new(code, setup.main_id(), main.buffer_octets, runner_of::<T>(setup, code), arithmetic)
+    let buffer_octets = setup.config.main.buffer_octets;
+    let runner = runner_of::<T, O>(setup, code, arithmetic, buffer_octets);
+    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic)
 }
 
 /// All processors, what they share, and what they have done so far.

@@ -111,9 +111,10 @@ impl Task for OneCoreTask<'_> {
 fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic: &T, wish: Wish) -> SingleRun {
     let code = Code::new(single.program, single.isa, single.config.timing());
     let core = CoreId { core: 0, cores: 1, step_limit: single.step_limit };
-    let demand = Demand { code: &code, simd: wish.simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false };
-    let runner = choose(wish.kind, &demand);
-    let mut worker: Executor<T, O> = Executor::new(&code, core, single.config.buffer_octets, runner, arithmetic);
+    let buffer_octets = single.config.buffer_octets;
+    let demand = Demand::new(&code, wish, arithmetic.computes(), buffer_octets);
+    let runner = choose(&Demand { has_profile: O::IS_ACTIVE, ..demand });
+    let mut worker: Executor<T, O> = Executor::new(&code, core, buffer_octets, runner, arithmetic);
     worker.state.registers = single.registers.clone();
     worker.observer.begin(worker.state.pc);
     let mut processor = Processor::new(&code, core, worker);

@@ -150,7 +150,8 @@ impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
 
     /// The passes of its program so far.
     pub fn take_tally(&mut self) -> Tally {
-        self.runner.fold(&mut self.tally);
+        // Its links are told of all reads.
+        self.runner.fold(&mut self.tally, &mut |_, _| {});
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 }

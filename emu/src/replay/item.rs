@@ -5,7 +5,7 @@ use super::recording::Segment;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
-use crate::engine::{RequestTime, TimedLink};
+use crate::engine::{Quick, Read, RequestTime, TimedLink};
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
 use crate::semantics::{Link, Message};
@@ -27,6 +27,8 @@ pub(super) struct ItemRecord {
     pub segments: Vec<Segment>,
     pub octets: Octets,
     pub before: u64,
+    /// There was no room for a segment, so that the item was recorded in vain.
+    pub is_without_room: bool,
 }
 
 /// The link of a work item: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
@@ -49,6 +51,42 @@ impl TimedLink for ItemRecorder<'_> {
     #[inline(always)]
     fn note(&mut self, time: RequestTime) {
         self.time = time;
+    }
+
+    fn quick(&mut self) -> Option<&mut dyn Quick> {
+        Some(self)
+    }
+}
+
+impl Quick for ItemRecorder<'_> {
+    fn memory(&self) -> Option<&[u8]> {
+        self.memory.peek(0, self.memory.size() as u32)
+    }
+
+    fn kind(&mut self, address: u32) -> (u32, u32, u32) {
+        let (start, length, kind) = self.kinds.range(address);
+        (start, length, kind as u32)
+    }
+
+    fn add(&mut self, kind: u32, octets: u64) {
+        self.kinds.add_octets(kind as usize, Octets(octets));
+    }
+
+    fn keep(&mut self, reads: &[Read], before: u64) -> bool {
+        let record = &mut *self.record;
+        let portions = record.segments.len() / Budget::PORTION;
+        record.segments.extend(reads.iter().map(Segment::of_read));
+        record.octets += Octets(reads.iter().map(|read| u64::from(read.octets)).sum());
+        record.before = before;
+        let more = record.segments.len() / Budget::PORTION - portions;
+        if more != 0 && !self.budget.take(more * Budget::PORTION) {
+            record.is_without_room = true;
+        }
+        !record.is_without_room
+    }
+
+    fn before(&self) -> u64 {
+        self.record.before
     }
 }
 

@@ -14,7 +14,7 @@ use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
-use crate::engine::{CoreId, Demand, Pause, State, Wish, choose};
+use crate::engine::{CoreId, Demand, Pause, State, choose};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::profile::{Observer, Profile, RunObserver, Unobserved};
@@ -152,9 +152,8 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
     let mut tally = Tally::new(&main_code);
-    let Wish { kind, simd } = setup.options.wish();
-    let demand = Demand { code: &main_code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: false };
-    let mut runner = choose(kind, &demand);
+    let computes = arithmetic.computes();
+    let mut runner = choose(&Demand::new(&main_code, setup.options.wish(), computes, config.main.buffer_octets));
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
         let seat = CoreId { core: CORES, cores: CORES, step_limit };

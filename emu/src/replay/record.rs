@@ -9,7 +9,7 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, CoreId, Demand, Pause, RequestTime, Runner, State, Stopped, TaintObserver, Wish, choose, interpreter,
+    self, Answers, CoreId, Demand, Pause, RequestTime, Runner, State, Stopped, TaintObserver, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
@@ -97,6 +97,7 @@ impl Link for CheckedLink<'_> {
     }
 }
 
+const WITHOUT_ROOM: Reason = "there is no room for it";
 const WRITES: Reason = "the cores write to global memory";
 const BEGINS: Reason = "a work item does not begin with a message";
 
@@ -134,11 +135,15 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let config = setup.config;
         let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
-        let Wish { kind, simd } = setup.options.wish();
-        let demand = Demand { code, simd, is_default_arithmetic: !T::IS_WATCHING, follows_cores: true };
+        let demand = Demand {
+            follows_cores: true,
+            has_profile: O::IS_ACTIVE,
+            answers: Answers::AtOnce { keeps_time: level == RecordLevel::Segments },
+            ..Demand::new(code, setup.options.wish(), arithmetic.computes(), config.buffer_octets)
+        };
         Recorder {
             usual: 0,
-            runner: choose(kind, &demand),
+            runner: choose(&demand),
             level,
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
@@ -195,7 +200,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
 
     /// The passes of all items.
     pub fn take_tally(&mut self) -> Tally {
-        self.runner.fold(&mut self.tally);
+        let kinds = &mut self.kinds;
+        self.runner.fold(&mut self.tally, &mut |kind, octets| kinds.add_octets(kind as usize, Octets(octets)));
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 
@@ -207,10 +213,10 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         match O::IS_ACTIVE {
-            false => self.runner.run_ahead(seat, state, &mut link, taint, &mut Unobserved),
+            false => self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, &mut Unobserved),
             true => {
                 let link: &mut &mut dyn engine::TimedLink = &mut (&mut link as _);
-                self.runner.run_ahead(seat, state, link, taint, observer)
+                self.runner.run_ahead(seat, state, &self.arithmetic, link, taint, observer)
             }
         }
     }
@@ -225,6 +231,10 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let segments = Vec::with_capacity(self.usual);
         let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
         let stopped = self.run_quickly(&mut record, budget);
+        if record.is_without_room {
+            return Err(WITHOUT_ROOM);
+        }
+        let steps = self.state.steps;
         let mut link = CheckedLink { sent: record.sent, ..self.link(record.message) };
         let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
         let end = loop {
@@ -252,7 +262,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 self.kinds.add(self.state.pc, Some(request));
                 segments.push(segment);
                 if segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
-                    return Err("there is no budget for it");
+                    return Err(WITHOUT_ROOM);
                 }
             }
             before = self.state.clocks;
@@ -261,6 +271,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         if link.message.is_some() {
             return Err(BEGINS);
         }
+        self.runner.interpreted(self.state.steps - steps);
         self.observer.end();
         budget.take(segments.len() % Budget::PORTION);
         self.usual = segments.len().min(Budget::PORTION);

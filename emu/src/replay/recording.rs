@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::code::quantity::Octets;
-use crate::engine::Pause;
+use crate::engine::{Pause, Read};
 use crate::machine::request::{Access, Request};
 use crate::semantics::Message;
 
@@ -41,6 +41,12 @@ impl Segment {
         };
         let octets = u32::try_from(octets.0).ok().filter(|&octets| octets < 1 << 30)?;
         Some(Segment { clocks: u32::try_from(clocks).ok()?, pc, address, what: octets << 2 | kind })
+    }
+
+    /// The segment that ends with a read that an engine has done by itself.
+    #[inline]
+    pub fn of_read(read: &Read) -> Segment {
+        Segment { clocks: read.clocks, pc: read.slot, address: read.address, what: read.octets << 2 | READ }
     }
 
     /// Octets that go over the bus.

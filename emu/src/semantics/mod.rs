@@ -22,7 +22,7 @@ pub use bus::{Link, Message, Port};
 pub(crate) use bus::{Peek, hand_on, methods, refuse};
 pub use control::{End, Flow, Motion};
 pub use numbers::Numbers;
-pub use watch::{Watch, Watching};
+pub use watch::{Computes, Watch, Watching};
 
 pub(crate) use split::split_operands;
 

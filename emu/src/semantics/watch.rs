@@ -16,6 +16,11 @@ pub trait Watch: Arithmetic {
     /// The same for meanings in Rust, which do not know its type.
     fn numbers(&self) -> Numbers<'_>;
 
+    /// What it does, for engines that are made for it beforehand.
+    fn computes(&self) -> Computes {
+        Computes::default()
+    }
+
     /// Whether something was divided by zero since the last call, where that is to trap.
     fn take_division_by_zero(&self) -> bool {
         false
@@ -25,6 +30,17 @@ pub trait Watch: Arithmetic {
     fn take_losses(&self) -> Losses {
         Losses::default()
     }
+}
+
+/// What arithmetic does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Computes {
+    /// Word length and modes.
+    pub modes: Modes,
+    /// Whether a division by zero traps.
+    pub traps_division_by_zero: bool,
+    /// Whether it is counted what results lose.
+    pub counts_losses: bool,
 }
 
 impl Watch for Nearest32 {
@@ -104,6 +120,11 @@ impl Arithmetic for Watching {
 
 impl Watch for Watching {
     const IS_WATCHING: bool = true;
+
+    fn computes(&self) -> Computes {
+        let Watching { modes, traps_division_by_zero, counts_losses, .. } = *self;
+        Computes { modes, traps_division_by_zero, counts_losses }
+    }
 
     fn numbers(&self) -> Numbers<'_> {
         Numbers::Other(self)

@@ -42,7 +42,7 @@ fn both_engines_count_what_they_read() {
     let (core, main) = (readers(150), dispatch(45));
     let count = |engine, features| {
         let kinds = vec![(500..508, "first".to_owned()), (512..600, "second".to_owned())];
-        let options = Options { engine, simd: features, ..Options::default() };
+        let options = Options { engine, simd: features, is_eager: true, ..Options::default() };
         let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds, options };
         let count = emu::count(&setup, &memory()).expect("it runs").expect("it is counted");
         let octets = count.kinds.totals().iter().map(|kind| (kind.kind.clone(), kind.octets)).collect::<Vec<_>>();
@@ -51,8 +51,10 @@ fn both_engines_count_what_they_read() {
     let checked = count(EngineKind::Checked, None);
     assert!(checked.2.iter().all(|(kind, octets)| kind == "messages" || octets.0 > 100_000), "{:?}", checked.2);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        let found = count(EngineKind::Fast, Some(features));
-        assert!(found == checked, "{features:?} {:?} {:?}", found.2, checked.2);
+        for engine in [EngineKind::Native, EngineKind::Fast] {
+            let found = count(engine, Some(features));
+            assert!(found == checked, "{engine:?} {features:?} {:?} {:?}", found.2, checked.2);
+        }
     }
 }
 
@@ -60,7 +62,7 @@ fn both_engines_count_what_they_read() {
 fn what_they_may_not_read_is_the_interpreters() {
     let (isa, config, main) = (Isa::base(), Config::default(), dispatch(45));
     let end = |core: &Program, engine| {
-        let options = Options { engine, ..Options::default() };
+        let options = Options { engine, is_eager: true, ..Options::default() };
         let setup = Setup { config: &config, isa: &isa, core, main: &main, kinds: Vec::new(), options };
         emu::run(&setup, memory(), &mut |_| {}).map(|frame| (frame.method, frame.clocks)).map_err(|e| e.to_string())
     };
@@ -73,7 +75,9 @@ fn what_they_may_not_read_is_the_interpreters() {
         p.emit(Op::halt, &[]);
     });
     for core in [&beyond, &early] {
-        assert_eq!(end(core, EngineKind::Fast), end(core, EngineKind::Checked));
+        for engine in [EngineKind::Native, EngineKind::Fast] {
+            assert_eq!(end(core, engine), end(core, EngineKind::Checked));
+        }
     }
     let outside = end(&beyond, EngineKind::Fast).expect_err("it ends behind the memory");
     assert!(outside.contains("2968"), "{outside}");

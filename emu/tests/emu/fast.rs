@@ -31,7 +31,7 @@ fn frame(
     step_limit: u64,
 ) -> Result<RunOutcome, Failure> {
     let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
-    let options = Options { has_items: true, engine, simd: features, ..Options::default() };
+    let options = Options { has_items: true, engine, simd: features, is_eager: true, ..Options::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
     let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
@@ -43,10 +43,13 @@ fn same(name: &str, core: &Program, step_limit: u64) -> Result<RunOutcome, Strin
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
     let checked = run(EngineKind::Checked, None);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        let fast = run(EngineKind::Fast, Some(features));
-        if fast != checked {
-            let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
-            panic!("{name}, with {}\n{}\n{fast:#?}\n{checked:#?}", features.name(), text.concat());
+        for engine in [EngineKind::Native, EngineKind::Fast] {
+            let found = run(engine, Some(features));
+            if found != checked {
+                let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
+                let (engine, features) = (engine.name(), features.name());
+                panic!("{name}, {engine} with {features}\n{}\n{found:#?}\n{checked:#?}", text.concat());
+            }
         }
     }
     checked
@@ -374,7 +377,7 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
             p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
         });
         let setup = |config, engine| {
-            let options = Options { engine, ..Options::default() };
+            let options = Options { engine, is_eager: true, ..Options::default() };
             Setup { config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
         };
         let stepped = machines.each_ref().map(|config| {

@@ -4,9 +4,9 @@
 
 mod count;
 #[cfg(target_arch = "x86_64")]
-mod doubles;
+pub(super) mod doubles;
 mod fuel;
-mod operands;
+pub(super) mod operands;
 #[cfg(target_arch = "x86_64")]
 mod planes;
 mod rows;
@@ -21,10 +21,11 @@ use super::host::{HostSimd, Present};
 use super::plan::Plan;
 use super::state::{CoreId, State};
 use super::taint::Taint;
-use super::{Demand, Engine, Refusal, Stopped, TimedLink};
+use super::{AddOctets, Demand, Engine, Refusal, Stopped, TimedLink};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
+use crate::semantics::{Computes, Watch};
 
 /// The fast engine of one program.
 #[derive(Clone, Debug)]
@@ -36,15 +37,19 @@ pub struct Fast<'a> {
 
 impl<'a> Engine<'a> for Fast<'a> {
     fn new(demand: &Demand<'a>) -> Result<Fast<'a>, Refusal> {
+        if demand.computes != Computes::default() {
+            return Err(ARITHMETIC);
+        }
         let plan = Plan::new(demand.code).ok_or(TOO_LONG)?;
         let plan = if demand.follows_cores { plan } else { plan.regardless_of_cores() };
-        Ok(Fast { count: FlowCounts::new(&plan, demand.follows_cores), plan, simd: demand.simd.present() })
+        Ok(Fast { count: FlowCounts::new(&plan, demand.follows_cores), plan, simd: demand.wish.simd.present() })
     }
 
-    fn run<L: TimedLink, O: RunObserver>(
+    fn run<T: Watch, L: TimedLink, O: RunObserver>(
         &mut self,
         seat: CoreId,
         state: &mut State,
+        _: &T,
         link: &mut L,
         taint: &mut Taint,
         observer: &mut O,
@@ -55,11 +60,13 @@ impl<'a> Engine<'a> for Fast<'a> {
         stopped
     }
 
-    fn fold(&mut self, tally: &mut Tally) {
+    fn fold(&mut self, tally: &mut Tally, _: AddOctets) {
         self.count.fold(&self.plan, tally);
     }
 }
 
+const ARITHMETIC: Refusal =
+    "the fast engine computes in no other modes than the default ones, traps no divisions by zero and counts no losses";
 const TOO_LONG: Refusal = "an instruction takes more clocks than the sums of the fast engine have room for";
 
 /// Runs until the program halts, waits or comes to something unusual, with the features given. The results are the same with all of them.

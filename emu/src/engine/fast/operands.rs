@@ -7,7 +7,7 @@ use crate::code::registers::Registers;
 
 /// Sets a vector.
 #[inline(always)]
-pub(super) fn set_vector(registers: &mut Registers, number: u8, value: Vector) {
+pub(in crate::engine) fn set_vector(registers: &mut Registers, number: u8, value: Vector) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_mm_setr_epi32, _mm_storeu_si128};
@@ -42,8 +42,8 @@ macro_rules! put {
         }
     };
     ($registers:expr, $fields:expr, $letter:ident $kind:ident) => {
-        write!($registers, $fields, $letter $kind)
+        $crate::registers::write!($registers, $fields, $letter $kind)
     };
 }
 
-pub(super) use put;
+pub(in crate::engine) use put;

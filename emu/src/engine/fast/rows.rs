@@ -278,7 +278,7 @@ macro_rules! stamp {
                 };
                 use crate::engine::plan::{Step, padded};
                 use crate::profile::RunObserver;
-                use crate::code::registers::{Registers, read, write};
+                use crate::code::registers::{Registers, read};
                 use crate::code::trap::Stop;
 
                 const IS_WIDE: bool = $is_wide;

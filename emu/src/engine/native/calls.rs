@@ -1,0 +1,217 @@
+//! Functions that generated code calls: a row each, stamped from the same meanings as the interpreter's.
+
+use isa::Op;
+use isa::number::Nearest32;
+use isa::table::{AnyOutcome, outcome};
+
+use super::context::Context;
+use super::run::Host;
+use super::{Recipe, Status};
+use crate::code::registers::{Registers, read};
+use crate::code::trap::Stop;
+use crate::engine::HostSimd;
+use crate::engine::fast::operands::put;
+use crate::engine::plan::Step;
+use crate::semantics::{
+    BusRoom, IntegerRoom, Port, RayRoom, ScalarRoom, VectorRoom, Watch, Watching, WideRoom, split_operands,
+};
+
+/// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].
+pub(super) type Helper = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
+
+/// Takes note of the units with which a row ended, as [`pure`] returned them.
+pub(super) type Units = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
+
+/// What a row of values returns that has divided by zero where that traps. It has written nothing then.
+pub(super) const STOPPED: u64 = u64::MAX;
+
+/// The bit that [`unit`] sets where control goes on as the row's distance says.
+pub(super) const TAKEN: u32 = 1 << 8;
+
+/// Writes what a meaning handed back, and yields how it ended.
+macro_rules! finish {
+    ($registers:ident $fields:ident, $result:expr, []) => {
+        $result
+    };
+    ($registers:ident $fields:ident, $result:expr, [$(($letter:ident $kind:ident))+]) => {{
+        let ($($letter,)+ exit) = $result;
+        $(put!($registers, $fields, $letter $kind);)+
+        exit
+    }};
+}
+
+/// The function of a row.
+macro_rules! helper {
+    ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        /// Yields the number of the exit, and in the high half its units.
+        ///
+        /// # Safety
+        /// Context and registers are those of a run, whose arithmetic is a `T`, and the step lives.
+        pub unsafe extern "C" fn $name<T: Watch>(
+            context: *mut Context,
+            registers: *mut Registers,
+            step: *const Step,
+        ) -> u64 {
+            // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
+            let (arithmetic, registers, fields) =
+                unsafe { (&*(*context).arithmetic.cast::<T>(), &mut *registers, &(*step).fields) };
+            let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
+            if T::IS_WATCHING && arithmetic.take_division_by_zero() {
+                return STOPPED;
+            }
+            let _ = (&*registers, fields);
+            let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
+            exit.index() as u64 | u64::from(exit.units()) << 32
+        }
+    };
+    ({ bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        /// Yields 0, or the [`Status`] with which to leave.
+        ///
+        /// # Safety
+        /// Context and registers are those of a run, and the step lives.
+        pub unsafe extern "C" fn $name(context: *mut Context, registers: *mut Registers, step: *const Step) -> u64 {
+            // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
+            let (context, registers, step) = unsafe { (&mut *context, &mut *registers, &*step) };
+            // SAFETY: the context is that of a run.
+            let host = unsafe { Host::of(context) };
+            let fields = &step.fields;
+            let address = registers.scalar(fields.a).wrapping_add(fields.i) as u32;
+            host.ask(context, step);
+            // SAFETY: the buffer is the core's, which nobody else has.
+            let buffer = unsafe { &mut *host.buffer };
+            let port = &mut Port { buffer, link: &mut host.link };
+            match $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
+                Ok(result) => {
+                    let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
+                    if exit.units() != 0 {
+                        host.add_units(context, step.exit as usize, exit.units());
+                    }
+                    host.answered(context, step, address);
+                    0
+                }
+                Err(stop) => host.stop(stop),
+            }
+        }
+    };
+    ({ $style:ident $trait:ident $name:ident } $read:tt $written:tt) => {};
+}
+
+macro_rules! helpers {
+    ($($style:ident $room:ident $trait:ident $room_doc:literal {
+        $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
+    })*) => {
+        #[allow(non_snake_case, reason = "a row's function is spelt as its mnemonic")]
+        mod rows {
+            use super::*;
+
+            $($(split_operands! { helper { $style $trait $name } [] [] ($($operands)*) })*)*
+        }
+
+        /// The function of a row that needs only values: see [`rows`].
+        fn of_values<T: Watch>(op: Op) -> Option<Helper> {
+            match op {
+                $($(Op::$name => of_values!($style $name),)*)*
+                Op::Ext(_) => None,
+            }
+        }
+
+        /// The function of a row that asks the machine.
+        fn of_machine(op: Op) -> Option<Helper> {
+            match op {
+                $($(Op::$name => of_machine!($style $name),)*)*
+                Op::Ext(_) => None,
+            }
+        }
+    };
+}
+
+macro_rules! of_values {
+    (pure $name:ident) => {
+        Some(rows::$name::<T>)
+    };
+    ($style:ident $name:ident) => {
+        None
+    };
+}
+
+macro_rules! of_machine {
+    (bus $name:ident) => {
+        Some(rows::$name)
+    };
+    ($style:ident $name:ident) => {
+        None
+    };
+}
+
+isa::instructions!(helpers);
+
+/// The function of a row that needs only values: it yields the number of the exit, and in the high half its units; [`STOPPED`] where it has
+/// divided by zero and that traps.
+pub(super) fn pure(op: Op, recipe: &Recipe) -> Helper {
+    if recipe.is_watching {
+        return of_values::<Watching>(op).expect("the row needs only values");
+    }
+    #[cfg(target_arch = "x86_64")]
+    if op == Op::rtri && recipe.simd.min(HostSimd::best()) >= HostSimd::Avx2 {
+        return rtri;
+    }
+    of_values::<Nearest32>(op).expect("the row needs only values")
+}
+
+/// A ray against a triangle, in doubles where they are sure.
+///
+/// # Safety
+/// As [`rows`], on a host with these features.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")]
+unsafe extern "C" fn rtri(_: *mut Context, registers: *mut Registers, step: *const Step) -> u64 {
+    // SAFETY: as the function asks for. `rows::rtri` is the safe twin's.
+    let exit = unsafe { crate::engine::fast::doubles::rtri(&mut *registers, &(*step).fields) };
+    exit.index() as u64 | u64::from(exit.units()) << 32
+}
+
+/// The function of a row that asks the machine: it yields 0, or the [`Status`] with which to leave.
+pub(super) fn bus(op: Op) -> Helper {
+    of_machine(op).expect("the row asks the machine")
+}
+
+/// Takes note of units beside the sums.
+///
+/// # Safety
+/// The context is that of a run, and the step lives.
+pub(super) unsafe extern "C" fn add_units(context: *mut Context, step: *const Step, ended: u64) -> u64 {
+    // SAFETY: as the function asks for.
+    let (context, step) = unsafe { (&mut *context, &*step) };
+    // SAFETY: the context is that of a run.
+    let host = unsafe { Host::of(context) };
+    host.add_units(context, step.exit as usize + ended as u32 as usize, (ended >> 32) as u32);
+    0
+}
+
+/// Executes an instruction with a meaning in Rust: yields the exit and [`TAKEN`], or in the high half the [`Status`] with which to leave.
+///
+/// # Safety
+/// Context and registers are those of a run, and the step lives.
+pub(super) unsafe extern "C" fn unit(context: *mut Context, registers: *mut Registers, step: *const Step) -> u64 {
+    // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
+    let (context, registers, step) = unsafe { (&mut *context, &mut *registers, &*step) };
+    // SAFETY: the context is that of a run.
+    let host = unsafe { Host::of(context) };
+    // SAFETY: buffer and units are the core's, which nobody else has.
+    let (buffer, units) = unsafe { (&mut *host.buffer, &mut *host.units) };
+    let Some(unit) = units.get_mut(step.unit) else { return (Status::Bailout as u64) << 32 };
+    host.ask(context, step);
+    let (link, numbers) = (&mut host.link, &host.numbers);
+    let mut read = |address, words: &mut [i32]| link.read(address, words);
+    let ended: Result<_, Stop> = unit.execute(&step.fields, registers, buffer, &mut read, numbers);
+    match ended {
+        Ok(ending) => {
+            if ending.units != 0 {
+                host.add_units(context, step.exit as usize + usize::from(ending.exit), ending.units);
+            }
+            host.answered(context, step, 0);
+            u64::from(ending.exit) | if ending.is_taken { u64::from(TAKEN) } else { 0 }
+        }
+        Err(stop) => host.stop(stop) << 32,
+    }
+}

@@ -1,0 +1,262 @@
+//! Programs as native code, generated at run time by Cranelift: each instruction inline or as a call of its meaning, counted by the ways
+//! between its runs. Whatever is bailout is left to [`super::interpreter`], which goes on where this stopped, from the same state.
+//!
+//! What is counted, followed or noted is decided when code is generated, by a `Recipe`.
+
+mod blocks;
+mod calls;
+mod context;
+mod count;
+mod executable;
+mod lower;
+mod run;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+use cranelift_codegen::control::ControlPlane;
+use cranelift_codegen::settings::{self, Configurable, Flags};
+
+use super::host::HostSimd;
+use super::plan::{Plan, Step};
+use super::state::{CoreId, State};
+use super::taint::Taint;
+use super::{AddOctets, Answers, Demand, Engine, Read, Refusal, Stopped, TimedLink};
+use crate::code::registers::Registers;
+use crate::code::tally::Tally;
+use crate::profile::RunObserver;
+use crate::semantics::{Computes, Watch};
+use blocks::Blocks;
+use context::{Context, Layout};
+use count::Counters;
+use executable::Executable;
+
+/// What code is generated for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Recipe {
+    /// What the arithmetic does.
+    computes: Computes,
+    /// Whether that is not the default one, so that it is one that watches: [`crate::semantics::Watching`].
+    is_watching: bool,
+    /// Vector instructions that may be used at most.
+    simd: HostSimd,
+    /// Octets of the local buffer.
+    buffer_octets: u32,
+    /// Scalars that may hold the number of cores, where that is followed.
+    held: Option<u64>,
+    /// When the machine answers.
+    answers: Answers,
+}
+
+impl Recipe {
+    fn new(demand: &Demand, plan: &Plan) -> Recipe {
+        let held = || (0..plan.end()).fold(0, |held, place| held | plan.effect(place).counts());
+        Recipe {
+            computes: demand.computes,
+            is_watching: demand.computes != Computes::default(),
+            simd: demand.wish.simd,
+            buffer_octets: demand.buffer_octets,
+            held: demand.follows_cores.then(held),
+            answers: demand.answers,
+        }
+    }
+
+    /// Whether programs may have to wait, and are entered again at each instruction that asks the machine.
+    fn is_stepped(&self) -> bool {
+        self.answers == Answers::WhenReady
+    }
+
+    /// Whether inline reads are noted with their clocks.
+    fn keeps_time(&self) -> bool {
+        self.answers == Answers::AtOnce { keeps_time: true }
+    }
+}
+
+/// How generated code left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+enum Status {
+    /// The program executed `halt`.
+    Halt,
+    /// The instruction waits for the machine.
+    Wait,
+    /// The instruction asked the machine for something and went wrong.
+    Fault,
+    /// The instruction is for the interpreter.
+    Bailout,
+    /// A sum has come to half of its room.
+    Full,
+    /// Control goes to a word that was found in a register.
+    Elsewhere,
+}
+
+impl Status {
+    fn of(number: u32) -> Status {
+        use Status::{Bailout, Elsewhere, Fault, Full, Halt, Wait};
+        [Halt, Wait, Fault, Bailout, Full, Elsewhere].get(number as usize).copied().unwrap_or(Bailout)
+    }
+}
+
+/// The site of what is no read.
+const NO_SITE: u32 = u32::MAX;
+
+/// Generated code as a function: see [`lower::function`].
+type Function = unsafe extern "C" fn(*mut Context, *mut Registers, u32) -> u32;
+
+/// Code that was generated for a program.
+#[derive(Debug)]
+struct Compiled {
+    function: Function,
+    layout: Layout,
+    /// The places at which it can be entered.
+    is_join: Vec<bool>,
+    /// Numbers of the reads that are done inline, by place.
+    sites: Vec<u32>,
+    /// The place of each of them.
+    site_places: Vec<u32>,
+    /// What the code points to.
+    _steps: Box<[Step]>,
+    _extras: Box<[u64]>,
+    _executable: Executable,
+}
+
+/// The code of a program, shared by the cores that run it. It is generated when the interpreter has taken about as long as that takes.
+#[derive(Debug)]
+struct Shared {
+    recipe: Recipe,
+    compiled: OnceLock<Result<Compiled, Refusal>>,
+    /// Steps that the interpreter has executed of the program.
+    interpreted: AtomicU64,
+}
+
+/// Steps of the interpreter, for each slot of a program, that take about as long as compiling it.
+const PATIENCE: u64 = 1000;
+
+/// The native engine of one program, with what a core has counted.
+#[derive(Clone, Debug)]
+pub struct Native<'a> {
+    plan: Plan<'a>,
+    shared: Arc<Shared>,
+    /// Steps of the interpreter after which the program is compiled.
+    patience: u64,
+    counters: Option<Counters>,
+}
+
+impl<'a> Engine<'a> for Native<'a> {
+    fn new(demand: &Demand<'a>) -> Result<Native<'a>, Refusal> {
+        if demand.computes.counts_losses {
+            return Err("native code counts no losses");
+        }
+        if demand.has_profile {
+            return Err("native code measures no functions");
+        }
+        host()?;
+        let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
+        let plan = plan.regardless_of_cores();
+        let recipe = Recipe::new(demand, &plan);
+        let new = || Shared { recipe: recipe.clone(), compiled: OnceLock::new(), interpreted: AtomicU64::new(0) };
+        let shared = demand.code.share(|shared: &Shared| shared.recipe == recipe, new);
+        let patience = if demand.wish.is_eager { 0 } else { PATIENCE * plan.slots().len() as u64 };
+        Ok(Native { plan, shared, patience, counters: None })
+    }
+
+    fn run<T: Watch, L: TimedLink, O: RunObserver>(
+        &mut self,
+        core: CoreId,
+        state: &mut State,
+        arithmetic: &T,
+        link: &mut L,
+        taint: &mut Taint,
+        _: &mut O,
+    ) -> Stopped {
+        let mut link: &mut dyn TimedLink = link;
+        self.run_code(core, state, arithmetic, &mut link, taint)
+    }
+
+    fn patience(&self, core: CoreId, state: &State) -> u64 {
+        let is_refused = matches!(self.shared.compiled.get(), Some(Err(_)));
+        match self.patience.saturating_sub(self.shared.interpreted.load(Ordering::Relaxed)) {
+            _ if is_refused || run::is_near_limit(core, state.steps + state.inner_steps) => u64::MAX,
+            rest => rest.max(1),
+        }
+    }
+
+    fn interpreted(&mut self, steps: u64) {
+        self.shared.interpreted.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+        self.fold_counters(tally, add_octets);
+    }
+}
+
+impl Shared {
+    /// The code, where there is some, or it is time to generate it.
+    fn code(&self, plan: &Plan, patience: u64) -> Option<&Compiled> {
+        if self.compiled.get().is_none() && self.interpreted.load(Ordering::Relaxed) < patience {
+            return None;
+        }
+        self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe)).as_ref().ok()
+    }
+}
+
+impl Compiled {
+    /// Generates the code of a plan.
+    ///
+    /// # Errors
+    /// Why that cannot be done.
+    fn new(plan: &Plan, recipe: &Recipe) -> Result<Compiled, Refusal> {
+        let isa = host()?;
+        let steps: Box<[Step]> = plan.steps().into();
+        let extras: Box<[u64]> = (0..plan.exits()).map(|exit| plan.extra(exit).0).collect();
+        let (mut sites, mut site_places) = (vec![NO_SITE; steps.len()], Vec::new());
+        for (place, step) in (0..plan.end()).zip(&steps) {
+            if blocks::asks(plan, step) && run::octets(plan, step) != 0 {
+                sites[place as usize] = site_places.len() as u32;
+                site_places.push(place);
+            }
+        }
+        let layout = Layout::new(plan.exits(), steps.len(), site_places.len()).ok_or("the program is too large")?;
+        let blocks = Blocks::new(plan, recipe);
+        let source =
+            lower::Source { plan, steps: &steps, extras: &extras, recipe, layout, blocks: &blocks, sites: &sites };
+        let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
+        let compiled = context.compile(&*isa, &mut ControlPlane::default());
+        let compiled = compiled.map_err(|_| "the program cannot be compiled")?;
+        if !compiled.buffer.relocs().is_empty() {
+            return Err("the host lacks an instruction that compiled programs need");
+        }
+        let executable = Executable::new(compiled.code_buffer()).map_err(|_| "the host gives no memory for code")?;
+        // SAFETY: what was generated is a function of that signature, in the host's calling convention, with nothing left to relocate.
+        let function = unsafe { std::mem::transmute::<*const u8, Function>(executable.start()) };
+        Ok(Compiled {
+            function,
+            layout,
+            is_join: blocks.is_join,
+            sites,
+            site_places,
+            _steps: steps,
+            _extras: extras,
+            _executable: executable,
+        })
+    }
+}
+
+/// Cranelift for this host.
+///
+/// # Errors
+/// The host is one for which it does not know how to compile.
+fn host() -> Result<cranelift_codegen::isa::OwnedTargetIsa, Refusal> {
+    const UNKNOWN: Refusal = "no compiler knows this host";
+    let mut flags = settings::builder();
+    let verifies = if cfg!(debug_assertions) { "true" } else { "false" };
+    for (name, value) in [("opt_level", "speed"), ("enable_verifier", verifies), ("enable_probestack", "false")] {
+        flags.set(name, value).map_err(|_| UNKNOWN)?;
+    }
+    let isa = cranelift_native::builder().map_err(|_| UNKNOWN)?;
+    let isa = isa.finish(Flags::new(flags)).map_err(|_| UNKNOWN)?;
+    if isa.pointer_bits() != 64 || cfg!(target_endian = "big") {
+        return Err(UNKNOWN);
+    }
+    Ok(isa)
+}

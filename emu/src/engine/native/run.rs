@@ -1,0 +1,271 @@
+//! Runs generated code, and what it needs of the machine meanwhile.
+
+use super::context::{Context, Layout, NOTED};
+use super::count::Counters;
+use super::{NO_SITE, Native, Read, Status, Stopped, TimedLink};
+use crate::code::octets::Buffer;
+use crate::code::trap::{Fault, Stop};
+use crate::engine::RequestTime;
+use crate::engine::cost::Cost;
+use crate::engine::plan::{Plan, Step};
+use crate::engine::taint::Taint;
+use crate::engine::{CoreId, State};
+use crate::extension::Units;
+use crate::semantics::{Numbers, Watch};
+
+/// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
+const AHEAD: u64 = 4 * Cost::WHOLE as u64;
+
+/// What a run took before its sums were emptied.
+#[derive(Clone, Copy, Debug)]
+struct Totals {
+    steps: u64,
+    inner_steps: u64,
+    clocks: u64,
+    elementary: u64,
+}
+
+/// The machine as functions see it that generated code calls.
+pub(super) struct Host<'a> {
+    plan: &'a Plan<'a>,
+    pub buffer: *mut Buffer,
+    pub units: *mut Units,
+    pub link: &'a mut dyn TimedLink,
+    pub numbers: Numbers<'a>,
+    totals: Totals,
+    /// Units by exit.
+    counted_units: &'a mut [u64],
+    /// What sites know: the kind of the data there.
+    kinds: &'a mut [u32],
+    sites: &'a [u32],
+    layout: Layout,
+    reads_inline: bool,
+    fault: Option<Fault>,
+    /// The link has no room for what it was told of.
+    is_full: bool,
+}
+
+impl<'a> Host<'a> {
+    /// The host of a run.
+    ///
+    /// # Safety
+    /// The context is that of a run, and nobody else holds its host.
+    pub unsafe fn of<'h>(context: &mut Context) -> &'h mut Host<'a> {
+        // SAFETY: it was put there by `run`, which waits for generated code.
+        unsafe { &mut *context.host.cast() }
+    }
+
+    /// Tells the link of everything before a step that asks for something.
+    pub fn ask(&mut self, context: &mut Context, step: &Step) {
+        self.hand_over(context);
+        let clocks = self.totals.clocks + Cost(context.sums).clocks();
+        self.link.note(RequestTime { pc: step.slot, clocks });
+    }
+
+    /// Hands over the reads that were noted.
+    fn hand_over(&mut self, context: &mut Context) {
+        if !self.reads_inline || context.noted == 0 {
+            return;
+        }
+        let reads = &context.reads[..context.noted as usize / size_of::<Read>()];
+        let before = self.totals.clocks.wrapping_add_signed(context.before);
+        if let Some(quick) = self.link.quick() {
+            self.is_full |= !quick.keep(reads, before);
+        }
+        context.noted = 0;
+    }
+
+    /// A step was answered; where it was a read, its site learns where that was.
+    pub fn answered(&mut self, context: &mut Context, step: &Step, address: u32) {
+        if !self.reads_inline {
+            return;
+        }
+        let place = self.plan.place_of(step.slot) as usize;
+        let Some(quick) = self.link.quick() else { return };
+        context.before = quick.before().wrapping_sub(self.totals.clocks) as i64;
+        context.noted_end = end_of_notes(context.before);
+        let site = self.sites.get(place).filter(|&&site| site != NO_SITE);
+        let (Some(&site), Some(size)) = (site, quick.memory().map(<[u8]>::len)) else {
+            return;
+        };
+        let octets = octets(self.plan, step);
+        let (start, length, kind) = quick.kind(address);
+        // As far as a read from there lies in memory.
+        let end = (u64::from(start) + u64::from(length)).min((size as u64 + 1).saturating_sub(octets));
+        let length = end.saturating_sub(start.into()) as u32;
+        // SAFETY: the site lies in the frame of which the context is the beginning.
+        let known = unsafe {
+            let at = std::ptr::from_mut(context).cast::<u8>().add(self.layout.site(site) as usize).cast::<u64>();
+            std::slice::from_raw_parts_mut(at, 2)
+        };
+        let old = &mut self.kinds[site as usize];
+        if known[1] != 0 {
+            quick.add(*old, known[1] * octets);
+        }
+        (*old, known[0], known[1]) = (kind, u64::from(start) | u64::from(length) << 32, 0);
+    }
+
+    /// The status with which to leave.
+    pub fn stop(&mut self, stop: Stop) -> u64 {
+        match stop {
+            Stop::Wait => Status::Wait as u64,
+            Stop::Fault(fault) => {
+                self.fault = Some(fault);
+                Status::Fault as u64
+            }
+        }
+    }
+
+    /// A pass through an exit of the plan had units.
+    pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
+        if let Some(count) = self.counted_units.get_mut(exit) {
+            *count += u64::from(units);
+        }
+        if let Some(pass) = self.plan.pass(exit)
+            && self.plan.code.costs()[pass].has_busy_units
+        {
+            let (clocks, elementary) = self.plan.code.unit_cost(pass, units);
+            self.totals.elementary += elementary;
+            self.add_clocks(context, clocks.0);
+        }
+    }
+
+    /// Adds clocks to those before the sums were last emptied.
+    fn add_clocks(&mut self, context: &mut Context, clocks: u64) {
+        self.totals.clocks += clocks;
+        context.before -= clocks as i64;
+        if end_of_notes(context.before) == 0 {
+            context.noted_end = context.noted;
+        }
+    }
+
+    /// Empties the sums.
+    fn empty(&mut self, context: &mut Context) {
+        let cost = Cost(std::mem::take(&mut context.sums));
+        self.totals.steps += cost.steps();
+        self.totals.inner_steps += cost.inner_steps();
+        self.totals.elementary += cost.elementary();
+        self.add_clocks(context, cost.clocks());
+    }
+}
+
+/// Whether generated code might go beyond the step limit before it looks.
+pub(super) fn is_near_limit(core: CoreId, steps: u64) -> bool {
+    steps + AHEAD > core.step_limit
+}
+
+/// Octets that a step's read moves.
+pub(super) fn octets(plan: &Plan, step: &Step) -> u64 {
+    plan.code.slot_row(step.slot).map_or(0, |row| row.outcomes[0].cost[isa::Class::Octet])
+}
+
+/// Where notes of reads have to be handed over, in octets: at once where so many clocks have gone by that they may not fit a note.
+fn end_of_notes(before: i64) -> u64 {
+    if before < -(1 << 31) { 0 } else { (NOTED * size_of::<Read>()) as u64 }
+}
+
+impl Native<'_> {
+    /// Runs until the program halts, waits or comes to something bailout. `taint` is what is known of the cores; it is followed where the
+    /// recipe says so.
+    pub(super) fn run_code<T: Watch>(
+        &mut self,
+        core: CoreId,
+        state: &mut State,
+        arithmetic: &T,
+        link: &mut dyn TimedLink,
+        taint: &mut Taint,
+    ) -> Stopped {
+        let Native { plan, shared, patience, counters } = self;
+        let plan = &*plan;
+        let Some(code) = shared.code(plan, *patience) else { return Stopped::Bailout };
+        let is_inside = (state.pc as usize) < plan.slots().len();
+        let mut place = plan.place_of(state.pc);
+        if !is_inside || !code.is_join[place as usize] || is_near_limit(core, state.steps + state.inner_steps) {
+            return Stopped::Bailout;
+        }
+        let counters = counters.get_or_insert_with(|| Counters::new(code.layout, plan, code.site_places.len()));
+        let State { steps, inner_steps, clocks, elementary, .. } = *state;
+        let (buffer_octets, before) =
+            (state.buffer.start_mut(), link.quick().map(|quick| (quick.before(), quick.memory().map(<[u8]>::as_ptr))));
+        let context = counters.frame.context();
+        let mut host = Host {
+            plan,
+            buffer: &raw mut state.buffer,
+            units: &raw mut state.units,
+            link,
+            numbers: arithmetic.numbers(),
+            totals: Totals { steps, inner_steps, clocks, elementary },
+            counted_units: &mut counters.units,
+            kinds: &mut counters.kinds,
+            sites: &code.sites,
+            layout: code.layout,
+            reads_inline: !shared.recipe.is_stepped(),
+            fault: None,
+            is_full: false,
+        };
+        {
+            // SAFETY: the frame has a context at its beginning, and nobody else looks at it.
+            let context = unsafe { &mut *context };
+            context.sums = 0;
+            (context.core, context.cores) = (core.core as i32, core.cores as i32);
+            context.tainted = taint.tainted;
+            (context.depends_on_cores, context.depends_on_core) = (0, 0);
+            (context.buffer, context.written) = (buffer_octets, 0);
+            let (before, memory) = before.unwrap_or((0, None));
+            context.memory = memory.unwrap_or(std::ptr::null());
+            context.before = before.wrapping_sub(clocks) as i64;
+            (context.noted, context.noted_end) = (0, end_of_notes(context.before));
+            context.arithmetic = std::ptr::from_ref(arithmetic).cast();
+            context.host = (&raw mut host).cast();
+        }
+        let registers = &raw mut state.registers;
+        let mut is_begun = true;
+        let stopped = loop {
+            if std::mem::take(&mut is_begun) {
+                // SAFETY: the counter of the place lies in the frame.
+                unsafe { *context.cast::<u8>().add(code.layout.begun(place) as usize).cast::<u64>() += 1 };
+            }
+            // SAFETY: the code was generated for this plan and this layout; context, registers, buffer and memory live until it returns, and
+            // the place is one at which it can be entered. The safe twin is `crate::engine::interpreter::run`.
+            let status = Status::of(unsafe { (code.function)(context, registers, place) });
+            // SAFETY: as above, and the code has returned.
+            let context = unsafe { &mut *context };
+            host.empty(context);
+            let found = context.place;
+            place = found;
+            let is_near_limit = is_near_limit(core, host.totals.steps + host.totals.inner_steps);
+            match status {
+                Status::Halt => break Stopped::Halt,
+                Status::Full if !is_near_limit && !host.is_full => continue,
+                Status::Elsewhere => {
+                    place = plan.place_of(found);
+                    is_begun = true;
+                    if !is_near_limit && code.is_join[place as usize] {
+                        continue;
+                    }
+                    // Neither was it begun, nor was it cut.
+                    break Stopped::Bailout;
+                }
+                _ => {}
+            }
+            counters.cut[place as usize] += 1;
+            break match status {
+                Status::Wait => Stopped::Wait,
+                Status::Fault => Stopped::Fault(host.fault.take().expect("what went wrong is known")),
+                _ => Stopped::Bailout,
+            };
+        };
+        // SAFETY: the code has returned.
+        let context = unsafe { &mut *context };
+        host.hand_over(context);
+        let Totals { steps, inner_steps, clocks, elementary } = host.totals;
+        (state.steps, state.inner_steps, state.clocks, state.elementary) = (steps, inner_steps, clocks, elementary);
+        state.pc = plan.steps()[place as usize].slot;
+        taint.tainted = context.tainted;
+        taint.depends_on_cores |= context.depends_on_cores != 0;
+        taint.depends_on_core |= context.depends_on_core != 0;
+        let written = context.written;
+        state.buffer.note_pieces(written);
+        stopped
+    }
+}

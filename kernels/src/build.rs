@@ -13,18 +13,18 @@ use crate::prelude;
 use crate::set::KernelSet;
 use crate::skip::{Skip, Skips};
 
-/// What of a scene decides which code its programs contain.
+/// Features of a scene that decide which code its programs contain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneFeatures {
-    /// Whether some triangle's material reflects.
+    /// Some triangle's material reflects.
     pub has_mirror: bool,
-    /// Whether some triangle's material is transparent.
+    /// Some triangle's material is transparent.
     pub is_transparent: bool,
     /// Levels of secondary rays.
     pub bounces: u32,
     /// Weight (in the weight format) that a secondary ray must exceed.
     pub cutoff: i32,
-    /// What its programs leave out.
+    /// Skips: what its programs leave out.
     pub skips: Skips,
     /// Difference of a component (in the colour format) up to which the corners around a pixel agree, so that it is interpolated; `None`
     /// when every pixel has its ray.
@@ -47,12 +47,12 @@ impl SceneFeatures {
         }
     }
 
-    /// Whether any ray has children.
+    /// Some ray has children.
     pub fn has_tree(&self) -> bool {
         self.bounces > 0 && (self.has_mirror || self.is_transparent || !self.skips.has(Skip::Features))
     }
 
-    /// Whether any ray is refracted.
+    /// Some ray is refracted.
     pub fn has_glass(&self) -> bool {
         self.bounces > 0 && (self.is_transparent || !self.skips.has(Skip::Features))
     }
@@ -76,7 +76,7 @@ pub struct Crop {
     pub height: u32,
 }
 
-/// What a user may choose of the kernels.
+/// Choices of a user for the kernels.
 #[derive(Clone, Debug)]
 pub struct KernelOptions {
     /// Which file serves which function.
@@ -87,7 +87,7 @@ pub struct KernelOptions {
     pub crop: Option<Crop>,
     /// Weight that a secondary ray must exceed, in [0, 1].
     pub weight_cutoff: f64,
-    /// What is left out because the scene or a ray does not need it.
+    /// Skips: what is left out because the scene or a ray does not need it.
     pub skips: Skips,
     /// Difference of a component up to which the corners around a pixel agree, so that it is interpolated; `None` when every pixel has its
     /// ray (report 6.4).
@@ -110,9 +110,9 @@ impl Default for KernelOptions {
 /// The programs that draw a scene.
 #[derive(Clone, Debug)]
 pub struct Build {
-    /// What each core runs.
+    /// The program of each core.
     pub cores: Program,
-    /// What the main processor runs.
+    /// The program of the main processor.
     pub main: Program,
     /// The part of the picture that is drawn.
     pub crop: Crop,
@@ -143,7 +143,7 @@ pub fn build(
     Ok(Build { cores, main, crop, warnings })
 }
 
-/// Whether a file says, in a line `; team: ray`, that it keeps to what the files of that profile agree on between them.
+/// A file says, in a line `; team: ray`, that it keeps to what the files of that profile agree on between them.
 fn keeps_to_team(source: &Source, profile: KernelSet) -> bool {
     source.text.lines().any(|line| line.strip_prefix("; team: ") == Some(profile.name()))
 }

@@ -1,4 +1,4 @@
-//! What a program leaves out because its scene, or a ray, does not need it: each skip has a name and can be switched off, to see what it
+//! Parts that a program leaves out because its scene, or a ray, does not need them: each skip has a name and can be switched off, to see what it
 //! saves. None changes a picture.
 
 use std::fmt;
@@ -29,7 +29,7 @@ macro_rules! skips {
                 match self { $(Skip::$variant => $constant,)* }
             }
 
-            /// What is left out, in one line.
+            /// Description of what is left out, in one line.
             pub const fn description(self) -> &'static str {
                 match self { $(Skip::$variant => concat!($($doc),*).trim_ascii(),)* }
             }
@@ -105,7 +105,7 @@ impl Skips {
         Skip::ALL.iter().filter(|&&skip| !profile.knows(skip)).fold(self, |skips, &skip| skips.without(skip))
     }
 
-    /// Whether `skip` is one of them.
+    /// The set contains `skip`.
     pub const fn has(self, skip: Skip) -> bool {
         self.0 >> skip as u32 & 1 == 1
     }

@@ -14,13 +14,13 @@ use super::{Row, Term, world};
 pub struct Figure {
     /// Short name.
     pub id: String,
-    /// What it is.
+    /// Description of the figure.
     pub label: String,
-    /// Where it is printed.
+    /// Place in the report where it is printed.
     pub source: String,
-    /// Its value as printed; `None` where the report leaves it out.
+    /// The value as printed; `None` where the report leaves it out.
     pub printed: Option<f64>,
-    /// Its unit; empty for a pure number.
+    /// The unit; empty for a pure number.
     #[serde(default)]
     pub unit: String,
 }
@@ -35,7 +35,7 @@ pub struct PixelSearch {
     pub most: u32,
     /// The function whose calls tell whether the number is found.
     pub region: String,
-    /// How many calls the row assumes.
+    /// Number of calls that the row assumes.
     pub calls: u64,
 }
 
@@ -45,26 +45,26 @@ pub struct PixelSearch {
 pub struct Erratum {
     /// Short name.
     pub id: String,
-    /// Where it is printed.
+    /// Place in the report where it is printed.
     pub source: String,
-    /// What is printed.
+    /// The printed text.
     pub printed: String,
-    /// What it should be.
+    /// The correct text.
     pub correct: String,
-    /// What it changes.
+    /// The consequence of the mistake.
     pub effect: String,
 }
 
 /// A machine of table 3.
 #[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 pub struct Peer {
-    /// Its name.
+    /// The machine's name.
     pub name: String,
     /// Servers that work in parallel.
     pub servers: u32,
     /// Width and height of a picture in pixels.
     pub resolution: [u32; 2],
-    /// What rays are tested against.
+    /// The primitive that rays are tested against.
     pub primitive: String,
     /// Time of a pixel in microseconds.
     pub pixel_us: f64,

@@ -21,7 +21,7 @@ pub struct Row {
     pub id: String,
     /// The label as printed.
     pub label: String,
-    /// Where it is printed.
+    /// Place in the report where it is printed.
     pub source: String,
     /// Operations as printed, those of called rows included.
     pub printed: Counts,
@@ -29,9 +29,9 @@ pub struct Row {
     pub driver: String,
     /// The function or region of the kernels that is measured: its calls' inclusive counts.
     pub region: String,
-    /// What the driver's assumptions are looked for with.
+    /// The search for the driver's assumptions, where they are not given.
     pub search: Option<PixelSearch>,
-    /// What the kernels do more or less than is printed; by class the terms sum to the difference.
+    /// Differences of the kernels from what is printed; by class the terms sum to the difference.
     pub terms: Vec<Term>,
 }
 
@@ -53,12 +53,12 @@ impl Row {
         Class::ALL.iter().copied().filter(move |class| class.is_elementary() || has_memory && *class == Class::Mem)
     }
 
-    /// How many operations of a class a count exceeds the printed ones by.
+    /// Number of operations of a class by which a count exceeds the printed ones.
     pub fn difference(&self, counted: &Counts, class: Class) -> i64 {
         counted[class] as i64 - self.printed[class] as i64
     }
 
-    /// What the terms say that the difference is.
+    /// The difference that the terms explain.
     pub fn explained(&self, class: Class) -> i64 {
         self.terms.iter().flat_map(|term| &term.counts).filter(|(of, _)| *of == class).map(|(_, n)| n).sum()
     }
@@ -71,7 +71,7 @@ pub fn rows() -> &'static [Row] {
     &DATA.rows
 }
 
-/// What the report derives from the rows (6.1, 6.2, 6.4, Annex I).
+/// Figures that the report derives from the rows (6.1, 6.2, 6.4, Annex I).
 pub fn figures() -> &'static [Figure] {
     &DATA.figures
 }
@@ -81,7 +81,7 @@ pub fn printed(figure: &str) -> Option<f64> {
     figures().iter().find(|other| other.id == figure)?.printed
 }
 
-/// What is odd in the printed figures.
+/// Oddities in the printed figures.
 pub fn errata() -> &'static [Erratum] {
     &DATA.errata
 }

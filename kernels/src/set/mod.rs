@@ -36,7 +36,7 @@ pub(crate) struct Answers {
     pub teams: &'static [Team],
     /// Way in which its walk remembers far sides, when the user has replaced none of the functions that walk.
     pub walk: Walk,
-    /// The same when the user has replaced one of them.
+    /// Way in which its walk remembers far sides, when the user has replaced one of them.
     pub walk_alone: Walk,
     /// Exactness of its decisions.
     pub decisions: Decisions,
@@ -135,7 +135,7 @@ impl KernelSet {
         if replaced.is_empty() || self.team(Function::Descend, replaced).is_some() { walk } else { walk_alone }
     }
 
-    /// Whether the set's kernels know how to leave something out.
+    /// The set's kernels know how to leave something out.
     pub fn knows(self, skip: Skip) -> bool {
         self.answers().skips.contains(&skip)
     }

@@ -22,7 +22,7 @@ pub fn descend(arithmetic: &impl Lanes, stage: &Stage, ray: &Ray, exit: &ExitPla
     })
 }
 
-/// Whether a split that is met together with the exit plane is met before it, the direction being moved by (e, e^2, e^3).
+/// A split that is met together with the exit plane is met before it, the direction being moved by (e, e^2, e^3).
 fn has_crossed(ray: &Ray, exit: &ExitPlane, axis: usize, at: i32) -> bool {
     match axis.cmp(&exit.axis) {
         _ if at == ray.origin[axis] => true,

@@ -1,4 +1,4 @@
-//! Where a ray leaves a packet, without division.
+//! Exit of a ray from a packet, without division.
 
 use std::array::from_fn;
 
@@ -21,7 +21,7 @@ pub fn exit_face(arithmetic: &impl Lanes, ray: &Ray, bounds: &Bounds) -> ExitPla
     ExitPlane { axis, plane: plane[axis], run: run[axis], slope: ray.steep[axis] }
 }
 
-/// How far planes lie ahead of a ray's origin, each along its axis.
+/// Distances of planes ahead of a ray's origin, each along its axis.
 pub(super) fn runs(arithmetic: &impl Lanes, ray: &Ray, plane: [i32; 3]) -> [i32; 3] {
     let ahead = arithmetic.difference(plane, ray.origin);
     from_fn(|k| if ray.is_backwards(k) { arithmetic.negative(ahead[k]) } else { ahead[k] })

@@ -1,4 +1,4 @@
-//! Where a camera ray enters the scene (report, pseudo code 4).
+//! Entry of a camera ray into the scene (report, pseudo code 4).
 
 use std::array::from_fn;
 

@@ -22,7 +22,7 @@ fn cross(a: Vector, b: Vector) -> WideVector {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// What can be computed in one rounding. A `shift` goes to the right.
+/// Operations that round once. A `shift` goes to the right.
 pub trait Lanes: Arithmetic {
     /// Sum.
     fn plus(&self, a: i32, b: i32) -> i32 {

@@ -17,7 +17,7 @@ pub struct Packets<'a> {
     notes: Vec<(Plane, u32)>,
     /// The plane by which it leaves the scene.
     outer: Plane,
-    /// Where the walk goes on: a node, and the plane by which the ray comes to it.
+    /// Next stop of the walk: a node, and the plane by which the ray comes to it.
     from: Option<(u32, Plane)>,
 }
 

@@ -1,4 +1,4 @@
-//! What functions hand to each other: rays, the places where they leave packets, packets, and the search for a hit.
+//! Values that functions hand to each other: rays, the places where they leave packets, packets, and the search for a hit.
 
 use std::ops::Range;
 
@@ -10,9 +10,9 @@ use super::lanes::Lanes;
 /// A ray P(t) = origin + t direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ray {
-    /// Where it starts: a position.
+    /// The origin: a position.
     pub origin: Vector,
-    /// Where it goes: a direction of unit length.
+    /// The direction, of unit length.
     pub direction: Vector,
     /// Absolute value of the direction, lane by lane.
     pub steep: Vector,
@@ -24,7 +24,7 @@ impl Ray {
         Ray { origin, direction, steep: arithmetic.magnitude(direction) }
     }
 
-    /// Whether it goes towards smaller coordinates of an axis; 0 counts as positive.
+    /// The ray goes towards smaller coordinates of an axis; 0 counts as positive.
     pub fn is_backwards(&self, axis: usize) -> bool {
         self.direction[axis] < 0
     }
@@ -44,16 +44,16 @@ pub struct ExitPlane {
 }
 
 impl ExitPlane {
-    /// Where a ray starts: t = 0.
+    /// The start of a ray: t = 0.
     pub const START: ExitPlane = ExitPlane { axis: 3, plane: 0, run: 0, slope: 1 };
 }
 
 /// A leaf of the kd tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Its part of space.
+    /// The packet's part of space.
     pub bounds: Bounds,
-    /// Its references to triangles, by number.
+    /// The packet's references to triangles, by number.
     pub references: Range<u32>,
 }
 
@@ -64,7 +64,7 @@ pub struct Search {
     pub t: i32,
     /// The triangle of the nearest hit so far, by index.
     pub triangle: Option<u32>,
-    /// Whether any hit ends the search.
+    /// The search ends with any hit.
     pub takes_any: bool,
 }
 

@@ -18,7 +18,7 @@ pub struct Branch {
     packet: Option<Packet>,
     /// Weight of the path to the node.
     weight: i32,
-    /// Whether the ray is in a body.
+    /// The ray is in a body.
     inside: bool,
     level: u32,
 }
@@ -76,7 +76,7 @@ impl<A: Arithmetic> Twin<A> {
         child(weight, surface.point, branch.inside, self.reflected(surface));
     }
 
-    /// What becomes of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
+    /// Fate of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
     /// direction of the refracted one.
     fn transmitted(&self, surface: &Surface, weight: i32, inside: bool) -> (i32, Option<(i32, Vector)>) {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);

@@ -54,7 +54,7 @@ impl<A: Arithmetic> Twin<A> {
     }
 }
 
-/// Whether a surface faces a light that lies `way` from it: the direction to the light and the cosine of its angle with the normal.
+/// Direction and cosine for a surface that faces a light `way` from it: the direction to the light and the cosine of its angle with the normal.
 fn lit(arithmetic: &impl Lanes, constants: &Constants, facing: Vector, way: Vector) -> Option<(Vector, i32)> {
     if arithmetic.wide_dot(facing, way) <= 0 {
         return None;

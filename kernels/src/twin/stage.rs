@@ -37,16 +37,16 @@ pub struct Material {
     pub transmission: i32,
     /// Index of refraction: the ratio for a ray that leaves a body.
     pub index: i32,
-    /// Its reciprocal: the ratio for a ray that enters.
+    /// Reciprocal of the index: the ratio for a ray that enters.
     pub inverse_index: i32,
 }
 
 /// A point light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
-    /// Where it stands, raw.
+    /// Position of the light, raw.
     pub position: Vector,
-    /// Its colour in the colour format.
+    /// The light's colour in the colour format.
     pub colour: Vector,
 }
 
@@ -102,7 +102,7 @@ impl Stage {
         }
     }
 
-    /// Whether every search ends and finds what it looks for: there is a root, children come after their parents, materials exist.
+    /// Every search ends and finds what it looks for: there is a root, children come after their parents, materials exist.
     fn is_sound(&self) -> bool {
         let has_children = |(number, node): (usize, &Node)| match node {
             Node::Inner { left, .. } => number < *left as usize && (*left as usize) < self.nodes.len() - 1,

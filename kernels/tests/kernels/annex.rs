@@ -36,7 +36,7 @@ fn searched(row: &Row, isa: &Isa) -> (Program, Vec<u8>) {
     row.tries().map(|number| assembled(row, number, isa)).find(is_met).expect("one of the numbers meets it")
 }
 
-/// What the machine's profile says of a row's region.
+/// Calls of a row's region by the machine's profile.
 fn profiled(row: &Row, program: &Program, memory: &[u8], isa: &Isa) -> Calls {
     let config = Config::default();
     let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, isa, program) };
@@ -134,7 +134,7 @@ fn traced(program: &Program, memory: &[u8], isa: &Isa) -> Vec<Step> {
     trace.steps
 }
 
-/// Whether a word lies in a region or in one inside it.
+/// A word lies in a region or in one inside it.
 fn is_in(program: &Program, pc: u32, name: &str) -> bool {
     let mut region = program.region_of[pc as usize];
     while let Some(number) = region {

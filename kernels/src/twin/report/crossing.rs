@@ -1,4 +1,4 @@
-//! Where a ray crosses the planes of a box: by the formula of 3.1.1, with a division each and a rounded point.
+//! Crossings of a ray and the planes of a box: by the formula of 3.1.1, with a division each and a rounded point.
 
 use std::array::from_fn;
 
@@ -12,7 +12,7 @@ use crate::twin::lanes::Lanes;
 use crate::twin::ray::{Packet, Ray};
 use crate::twin::stage::Stage;
 
-/// Where a ray leaves a packet.
+/// Exit of a ray from a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExitPoint {
     /// Axis of the plane; 3 for a ray without a direction, which leaves by none.

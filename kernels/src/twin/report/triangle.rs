@@ -7,7 +7,7 @@ use crate::constants::Constants;
 use crate::twin::lanes::Lanes;
 use crate::twin::ray::Ray;
 
-/// What the formulas of 3.1.2 give.
+/// Results of the formulas of 3.1.2.
 struct Solution {
     determinant: i32,
     t: i32,

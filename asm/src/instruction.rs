@@ -49,30 +49,31 @@ pub(crate) fn describe(kind: Kind) -> &'static str {
     }
 }
 
-fn takes_offset(row: &InstructionDef, at: usize) -> bool {
-    row.operands[at].kind.register_file() == Some('s') && row.operands.get(at + 1).is_some_and(|o| o.kind == Kind::Off)
+fn takes_offset(definition: &InstructionDef, at: usize) -> bool {
+    definition.operands[at].kind.register_file() == Some('s')
+        && definition.operands.get(at + 1).is_some_and(|o| o.kind == Kind::Off)
 }
 
 /// The row as a person writes it, such as `lw d, i(a)`.
-pub fn usage(row: &InstructionDef) -> String {
+pub fn usage(definition: &InstructionDef) -> String {
     let mut parts = Vec::new();
     let mut at = 0;
-    while at < row.operands.len() {
-        let letter = row.operands[at].letter as char;
-        if takes_offset(row, at) {
-            parts.push(format!("{}({letter})", row.operands[at + 1].letter as char));
+    while at < definition.operands.len() {
+        let letter = definition.operands[at].letter as char;
+        if takes_offset(definition, at) {
+            parts.push(format!("{}({letter})", definition.operands[at + 1].letter as char));
             at += 2;
         } else {
             parts.push(letter.to_string());
             at += 1;
         }
     }
-    format!("{} {}", row.name, parts.join(", ")).trim_end().to_string()
+    format!("{} {}", definition.name, parts.join(", ")).trim_end().to_string()
 }
 
-fn legend(row: &InstructionDef) -> String {
+fn legend(definition: &InstructionDef) -> String {
     let parts: Vec<String> =
-        row.operands.iter().map(|o| format!("{} is {}", o.letter as char, describe(o.kind))).collect();
+        definition.operands.iter().map(|o| format!("{} is {}", o.letter as char, describe(o.kind))).collect();
     if parts.is_empty() { "it takes no operands".into() } else { parts.join(", ") }
 }
 
@@ -124,9 +125,9 @@ impl Assembler<'_> {
     /// Assembles one instruction of a row.
     pub(crate) fn row_instruction(&mut self, op: Op, operands: &[Operand], at: At, cursor: &Cursor) {
         let isa = self.isa;
-        let row = isa.definition(op);
-        let Some(mut arguments) = self.arguments(row, operands, at) else {
-            self.emit(row.pattern.value, cursor.line);
+        let definition = isa.definition(op);
+        let Some(mut arguments) = self.arguments(definition, operands, at) else {
+            self.emit(definition.pattern.value, cursor.line);
             return;
         };
         let pc = self.program.words.len();
@@ -157,31 +158,31 @@ impl Assembler<'_> {
                     }
                     self.fixups.push(Fixup::Instruction { op, arguments, pc });
                 }
-                row.pattern.value
+                definition.pattern.value
             }
         };
         self.emit(word, cursor.line);
     }
 
     /// Holds written operands against the row; `None` when what is wrong was reported.
-    fn arguments(&mut self, row: &InstructionDef, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
-        let mut found = Vec::with_capacity(row.operands.len());
+    fn arguments(&mut self, definition: &InstructionDef, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
+        let mut found = Vec::with_capacity(definition.operands.len());
         let mut rest = operands.iter();
         let mut place = 0;
         let mut is_right = true;
-        while place < row.operands.len() {
-            let kind = row.operands[place].kind;
+        while place < definition.operands.len() {
+            let kind = definition.operands[place].kind;
             let Some(operand) = rest.next() else { break };
             let known = |value: u8| Argument { value: Value::Known(value.into()), at: operand.at };
             // An operand of the text may be two of the row: `8(s2)` is an address and its offset.
             match &operand.written {
-                Written::Memory(offset, (file, number), register_at) if takes_offset(row, place) => {
+                Written::Memory(offset, (file, number), register_at) if takes_offset(definition, place) => {
                     if *file == 's' {
                         found.push(Argument { value: Value::Known((*number).into()), at: *register_at });
                         found.push(Argument { value: Value::Expression(offset.clone()), at: offset.at });
                     } else {
                         let register = Operand::made(Written::Register((*file, *number)), *register_at);
-                        let problem = self.wrong_kind(row, place, &register);
+                        let problem = self.wrong_kind(definition, place, &register);
                         self.messages.add(problem);
                         is_right = false;
                     }
@@ -197,7 +198,7 @@ impl Assembler<'_> {
                 }
                 _ => {
                     is_right = false;
-                    let problem = self.wrong_kind(row, place, operand);
+                    let problem = self.wrong_kind(definition, place, operand);
                     self.messages.add(problem);
                 }
             }
@@ -205,21 +206,21 @@ impl Assembler<'_> {
         }
         // Only tell the number of operands when each of them was right.
         let left = rest.count();
-        if left > 0 || place < row.operands.len() {
+        if left > 0 || place < definition.operands.len() {
             if is_right {
-                self.messages.add(wrong_count(row, operands, at));
+                self.messages.add(wrong_count(definition, operands, at));
             }
             return None;
         }
         is_right.then_some(found)
     }
 
-    fn wrong_kind(&self, row: &InstructionDef, place: usize, operand: &Operand) -> Box<Problem> {
-        let wanted = row.operands[place];
+    fn wrong_kind(&self, definition: &InstructionDef, place: usize, operand: &Operand) -> Box<Problem> {
+        let wanted = definition.operands[place];
         let message = format!(
             "operand `{}` of `{}` is {}, not {}",
             wanted.letter as char,
-            row.name,
+            definition.name,
             describe(wanted.kind),
             operand.describe()
         );
@@ -231,14 +232,16 @@ impl Assembler<'_> {
         match &operand.written {
             Written::Number(expression) if wanted.kind.register_file().is_some() => match expression.symbol() {
                 Some(name) => problem.suggest(&self.names.text(name).clone(), Among::Registers),
-                None if takes_offset(row, place) => problem.hint(format!("it is written `{}`", usage(row))),
-                None => match self.operations.get_key_value(&*format!("{}i", row.name)) {
+                None if takes_offset(definition, place) => {
+                    problem.hint(format!("it is written `{}`", usage(definition)))
+                }
+                None => match self.operations.get_key_value(&*format!("{}i", definition.name)) {
                     Some((with_number, _)) => problem.hint(format!("`{with_number}` takes a number")),
                     None => problem,
                 },
             },
             Written::Number(_) => problem,
-            Written::Memory(..) => problem.hint(format!("it is written `{}`", usage(row))),
+            Written::Memory(..) => problem.hint(format!("it is written `{}`", usage(definition))),
             Written::Register(_) => problem,
         }
     }
@@ -246,10 +249,10 @@ impl Assembler<'_> {
     /// Encodes an instruction as far as its names are known.
     pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<Failure>> {
         let isa = self.isa;
-        let row = isa.definition(op);
+        let definition = isa.definition(op);
         let mut numbers = Vec::with_capacity(arguments.len());
         let mut failures = Vec::new();
-        for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
+        for (argument, operand) in arguments.iter().zip(definition.operands.iter()) {
             let value = match &argument.value {
                 Value::Known(value) => Ok(*value),
                 Value::Expression(expression) if operand.kind == Kind::Rel => {
@@ -257,12 +260,18 @@ impl Assembler<'_> {
                 }
                 Value::Expression(expression) => self.evaluate(expression),
             };
-            let width = row.pattern.field(operand.letter).map_or(32, |field| field.width);
+            let width = definition.pattern.field(operand.letter).map_or(32, |field| field.width);
             let (least, most) = operand.kind.range(width);
             match value {
                 Err(failure) => failures.push(failure),
                 Ok(number) if number < least || number > most => {
-                    failures.push(Failure::Wrong(out_of_range(row, *operand, argument.at, number, (least, most))));
+                    failures.push(Failure::Wrong(out_of_range(
+                        definition,
+                        *operand,
+                        argument.at,
+                        number,
+                        (least, most),
+                    )));
                 }
                 Ok(number) => numbers.push(number),
             }
@@ -292,32 +301,33 @@ impl Assembler<'_> {
     }
 }
 
-fn wrong_count(row: &InstructionDef, operands: &[Operand], at: At) -> Box<Problem> {
+fn wrong_count(definition: &InstructionDef, operands: &[Operand], at: At) -> Box<Problem> {
     let place = operands.last().map_or(at, |last| at.to(last.at));
     let count = |number: usize| match number {
         0 => "no operands".to_string(),
         1 => "1 operand".to_string(),
         more => format!("{more} operands"),
     };
-    let usage = usage(row);
+    let usage = usage(definition);
     let (message, label) = if usage.contains('(') {
-        (format!("`{}` is written `{usage}`", row.name), format!("{} here", count(operands.len())))
+        (format!("`{}` is written `{usage}`", definition.name), format!("{} here", count(operands.len())))
     } else {
-        let message = format!("`{}` takes {}, not {}", row.name, count(row.operands.len()), operands.len());
+        let message =
+            format!("`{}` takes {}, not {}", definition.name, count(definition.operands.len()), operands.len());
         (message, format!("it is written `{usage}`"))
     };
-    Problem::new(explain::OPERAND_COUNT, message, place, label).hint(legend(row))
+    Problem::new(explain::OPERAND_COUNT, message, place, label).hint(legend(definition))
 }
 
 pub(crate) fn out_of_range(
-    row: &InstructionDef,
+    definition: &InstructionDef,
     operand: isa::definition::Operand,
     at: At,
     number: i64,
     (least, most): (i64, i64),
 ) -> Box<Problem> {
     let (letter, kind) = (operand.letter as char, operand.kind.name());
-    let name = &row.name;
+    let name = &definition.name;
     if operand.kind == Kind::Rel {
         let message = format!("the target is {number} words away, beyond the reach of `{name}`");
         let problem =

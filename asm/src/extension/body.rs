@@ -30,9 +30,16 @@ pub(super) fn assemble(
     let options = Options { include, ..Options::default() };
     let mut assembler = assembler::new(isa, &options);
     assembler.take_options(source);
-    let row = isa.definition(op);
+    let definition = isa.definition(op);
     let row_line = source.line_column(row_at.span.start).0 as u32;
-    let template = Template { op, row: row.clone(), row_line, steps: Vec::new(), places: Vec::new(), is_shared: true };
+    let template = Template {
+        op,
+        definition: definition.clone(),
+        row_line,
+        steps: Vec::new(),
+        places: Vec::new(),
+        is_shared: true,
+    };
     assembler.body = Some(template);
     // What all bodies share comes first; instructions are refused there.
     assembler.enter(Frame::new(shared, Origin::File(0)), At::default());
@@ -51,21 +58,22 @@ pub(super) fn assemble(
         return Err(attempt.report);
     }
     let body = complete(template, isa, source, row_at)?;
-    let summary = body.summary(row, isa).map_err(|defect| defective(defect, &body, row, row_at))?;
+    let summary = body.summary(definition, isa).map_err(|defect| defective(defect, &body, definition, row_at))?;
     Ok((body, summary, attempt.report))
 }
 
 /// Adds the outcome that the body runs into, where there is only one.
 fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place) -> Result<Body, Report> {
-    let Template { row, mut steps, .. } = template;
+    let Template { definition, mut steps, .. } = template;
     let end = steps.len();
     let mut body = Body { steps: steps.clone(), source: source.clone(), temporaries: [0; 3] };
     // A step from which control falls off the end, or an empty body.
     let runs_on = (0..end).find(|&step| body.successors(step, isa).any(|next| next == end));
     if let Some(step) = runs_on.or((end == 0).then_some(0)) {
-        if row.outcomes.len() > 1 {
-            let names: Vec<&str> = row.outcomes.iter().map(|outcome| &*outcome.name).collect();
-            let message = format!("the body of `{}` runs off its end, but it has {} outcomes", row.name, names.len());
+        if definition.outcomes.len() > 1 {
+            let names: Vec<&str> = definition.outcomes.iter().map(|outcome| &*outcome.name).collect();
+            let message =
+                format!("the body of `{}` runs off its end, but it has {} outcomes", definition.name, names.len());
             let place = body.place(step).unwrap_or_else(|| row_at.clone());
             let hint = format!("end it with `exit {}`", names.join("` or `exit "));
             return Err(Diagnostic::error(message)
@@ -82,12 +90,12 @@ fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place)
     for (place, file) in ['s', 'v', 'w'].into_iter().enumerate() {
         let hidden = registers::hidden(file);
         let used = temporaries(&body, isa, file);
-        let written = row.operands.iter().filter(|o| o.is_written() && o.kind.register_file() == Some(file));
+        let written = definition.operands.iter().filter(|o| o.is_written() && o.kind.register_file() == Some(file));
         let written: u8 = written.map(|operand| operand.kind.registers()).sum();
         if usize::from(used + written) > hidden.len() {
             let message = format!(
                 "the body of `{}` needs {} hidden registers of the file `{file}`, of which there are {}",
-                row.name,
+                definition.name,
                 used + written,
                 hidden.len()
             );
@@ -116,7 +124,7 @@ fn temporaries(body: &Body, isa: &Isa, file: char) -> u8 {
     used
 }
 
-fn defective(defect: Defect, body: &Body, row: &InstructionDef, row_at: &Place) -> Report {
+fn defective(defect: Defect, body: &Body, definition: &InstructionDef, row_at: &Place) -> Report {
     let place = |step: usize| body.place(step).unwrap_or_else(|| row_at.clone());
     let message = match defect {
         Defect::Unwritten { step, file, number } => {
@@ -135,15 +143,15 @@ fn defective(defect: Defect, body: &Body, row: &InstructionDef, row_at: &Place) 
                 .hint(hint)
         }
         Defect::Missing { step, letter, offset } => {
-            let count = row.operand(letter).map_or(1, |operand| operand.kind.registers());
+            let count = definition.operand(letter).map_or(1, |operand| operand.kind.registers());
             let name = letter_name(letter, offset, count);
-            let message = format!("`{name}` is not written on every way to this outcome of `{}`", row.name);
+            let message = format!("`{name}` is not written on every way to this outcome of `{}`", definition.name);
             Diagnostic::error(message)
                 .at(place(step), "ends here")
                 .also(row_at.clone(), "its row")
                 .hint("write it, or call the operand `x` or `y` in the row if it may stay as it was")
         }
-        Defect::Endless => Diagnostic::error(format!("the body of `{}` never ends", row.name))
+        Defect::Endless => Diagnostic::error(format!("the body of `{}` never ends", definition.name))
             .at(row_at.clone(), "no outcome is reached")
             .hint("`exit NAME` ends a body"),
     };

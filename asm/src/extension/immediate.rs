@@ -30,8 +30,9 @@ impl Assembler<'_> {
 
     /// Least and largest value of an immediate of the row.
     fn letter_range(&self, letter: u8) -> (i64, i64) {
-        let row = self.body.as_ref().map(|template| &template.row);
-        let operand = row.and_then(|row| Some((row.operand(letter)?, row.pattern.field(letter)?)));
+        let definition = self.body.as_ref().map(|template| &template.definition);
+        let operand =
+            definition.and_then(|definition| Some((definition.operand(letter)?, definition.pattern.field(letter)?)));
         operand.map_or((0, 0), |(operand, field)| operand.kind.range(field.width))
     }
 
@@ -46,7 +47,7 @@ impl Assembler<'_> {
     pub(crate) fn immediate(
         &self,
         expression: &Expression,
-        row: &InstructionDef,
+        definition: &InstructionDef,
         operand: isa::definition::Operand,
         range: (i64, i64),
     ) -> Result<Immediate, Failure> {
@@ -61,7 +62,7 @@ impl Assembler<'_> {
             let value = self.evaluate(expression)?;
             return match i32::try_from(value) {
                 Ok(value) => Ok(Immediate::Number(value)),
-                Err(_) => Err(Failure::Wrong(out_of_range(row, operand, expression.at, value, range))),
+                Err(_) => Err(Failure::Wrong(out_of_range(definition, operand, expression.at, value, range))),
             };
         };
         let kind = self.body.as_ref().and_then(|template| template.operand(letter)).map(|operand| operand.kind);
@@ -100,7 +101,7 @@ impl Assembler<'_> {
             if result < i128::from(range.0) || result > i128::from(range.1) {
                 let message = format!(
                     "with {} = {value} this is {result}, beyond operand `{}` of `{}`",
-                    letter as char, operand.letter as char, row.name
+                    letter as char, operand.letter as char, definition.name
                 );
                 return Err(wrong(message, &format!("{} to {} here", range.0, range.1)));
             }

@@ -20,7 +20,7 @@ use crate::token::Kind as Token;
 pub(crate) struct Template {
     /// The instruction whose body it is.
     pub op: Op,
-    pub row: InstructionDef,
+    pub definition: InstructionDef,
     /// Line of the row, for steps that come from other files.
     pub row_line: u32,
     pub steps: Vec<Step>,
@@ -48,12 +48,12 @@ pub(super) fn register_name(file: char, number: u8) -> String {
 
 impl Template {
     pub fn operand(&self, letter: u8) -> Option<&isa::definition::Operand> {
-        self.row.operand(letter)
+        self.definition.operand(letter)
     }
 
     /// The names that a body may use, for hints.
     fn owns(&self) -> String {
-        let letters: Vec<String> = (self.row.operands.iter())
+        let letters: Vec<String> = (self.definition.operands.iter())
             .filter(|operand| operand.kind.register_file().is_some())
             .map(|operand| format!("`{}`", operand.letter as char))
             .collect();
@@ -67,7 +67,7 @@ impl Template {
             return Ok(Some(('s', 0)));
         }
         if looks_like_register(text) {
-            let message = format!("the body of `{}` does not own `{text}`", self.row.name);
+            let message = format!("the body of `{}` does not own `{text}`", self.definition.name);
             return Err(Problem::new(explain::BODY, message, at, "belongs to the program").hint(self.owns()));
         }
         // Operands of the row by their letters.
@@ -208,14 +208,15 @@ impl Assembler<'_> {
     /// `exit Name`, or `exit Name, i` where the program goes on at the row's label.
     fn exit_step(&mut self, cursor: &mut Cursor) -> Parsed<()> {
         let Some(template) = &self.body else { return Ok(()) };
-        let row = template.row.clone();
-        let names = || row.outcomes.iter().map(|outcome| format!("`{}`", outcome.name)).collect::<Vec<_>>().join(", ");
-        let outcome = if cursor.is_at_end() && row.outcomes.len() == 1 {
+        let definition = template.definition.clone();
+        let names =
+            || definition.outcomes.iter().map(|outcome| format!("`{}`", outcome.name)).collect::<Vec<_>>().join(", ");
+        let outcome = if cursor.is_at_end() && definition.outcomes.len() == 1 {
             0
         } else {
             let (name, name_at) = cursor.name("the name of an outcome")?;
-            row.outcome(name).ok_or_else(|| {
-                let message = format!("`{}` has no outcome `{name}`", row.name);
+            definition.outcome(name).ok_or_else(|| {
+                let message = format!("`{}` has no outcome `{name}`", definition.name);
                 Problem::new(explain::BODY, message, name_at, "not in its row")
                     .hint(format!("its outcomes: {}", names()))
             })?
@@ -223,9 +224,10 @@ impl Assembler<'_> {
         let jumps = cursor.accept(",");
         if jumps {
             let (letter, letter_at) = cursor.name("the row's distance, `i` or `j`")?;
-            let is_distance = row.operands.iter().any(|o| o.kind == Kind::Rel && letter.as_bytes() == [o.letter]);
+            let is_distance =
+                definition.operands.iter().any(|o| o.kind == Kind::Rel && letter.as_bytes() == [o.letter]);
             if !is_distance {
-                let message = format!("`{letter}` is no distance of `{}`", row.name);
+                let message = format!("`{letter}` is no distance of `{}`", definition.name);
                 return Err(Problem::new(explain::BODY, message, letter_at, "an operand of kind `Rel` is expected"));
             }
         }
@@ -241,12 +243,12 @@ impl Assembler<'_> {
     /// A step from its operands, as far as its names are known.
     pub(crate) fn encode_step(&self, op: Op, arguments: &[Argument], step: usize) -> Result<Act, Vec<Failure>> {
         let (isa, Some(template)) = (self.isa, &self.body) else { return Err(Vec::new()) };
-        let row = isa.definition(op);
+        let definition = isa.definition(op);
         let mut fields = Fields::default();
         let mut immediates = [Immediate::Number(0); 2];
         let mut failures = Vec::new();
-        for (argument, operand) in arguments.iter().zip(row.operands.iter()) {
-            let width = row.pattern.field(operand.letter).map_or(32, |field| field.width);
+        for (argument, operand) in arguments.iter().zip(definition.operands.iter()) {
+            let width = definition.pattern.field(operand.letter).map_or(32, |field| field.width);
             let range = operand.kind.range(width);
             // Immediates `i` and `j` have a place each.
             let place = usize::from(operand.letter == b'j');
@@ -254,7 +256,10 @@ impl Assembler<'_> {
                 Value::Known(number) if operand.kind.register_file().is_some() => {
                     fields.set(operand.letter, *number as i32);
                     failures.extend(
-                        template.check_register(row, *operand, *number as u8, argument.at).err().map(Failure::Wrong),
+                        template
+                            .check_register(definition, *operand, *number as u8, argument.at)
+                            .err()
+                            .map(Failure::Wrong),
                     );
                     continue;
                 }
@@ -275,14 +280,20 @@ impl Assembler<'_> {
                             ))
                         }
                     }),
-                Value::Expression(expression) => self.immediate(expression, row, *operand, range),
+                Value::Expression(expression) => self.immediate(expression, definition, *operand, range),
             };
             // Numbers are held to their fields now; letters of immediates when the instruction is spliced.
             match number {
                 Ok(Immediate::Number(number))
                     if operand.kind != Kind::Rel && !(range.0..=range.1).contains(&i64::from(number)) =>
                 {
-                    failures.push(Failure::Wrong(out_of_range(row, *operand, argument.at, number.into(), range)));
+                    failures.push(Failure::Wrong(out_of_range(
+                        definition,
+                        *operand,
+                        argument.at,
+                        number.into(),
+                        range,
+                    )));
                 }
                 Ok(immediate) => {
                     immediates[place] = immediate;
@@ -309,7 +320,7 @@ impl Template {
     /// A step may have a register where it has it.
     fn check_register(
         &self,
-        row: &InstructionDef,
+        definition: &InstructionDef,
         operand: isa::definition::Operand,
         number: u8,
         at: At,
@@ -325,7 +336,7 @@ impl Template {
         };
         if !fits {
             let message = format!("`{name}` is not the first of {count} registers here");
-            let label = format!("operand `{}` of `{}`", operand.letter as char, row.name);
+            let label = format!("operand `{}` of `{}`", operand.letter as char, definition.name);
             return Err(
                 Problem::new(explain::BODY, message, at, label).hint("the registers of a group stand side by side")
             );
@@ -335,7 +346,7 @@ impl Template {
             && let Some(own) = self.operand(letter)
             && !own.is_written()
         {
-            let message = format!("the body writes `{name}`, which `{}` only reads", self.row.name);
+            let message = format!("the body writes `{name}`, which `{}` only reads", self.definition.name);
             let hint = "write a temporary, or call the operand `x` or `y` in the row, which is read and written";
             return Err(Problem::new(explain::BODY, message, at, "does not own it").hint(hint));
         }

@@ -7,6 +7,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer};
 
 use crate::Place;
 use crate::snippet::with_snippet;
+use crate::visible::sentence;
 
 /// Weight of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +104,7 @@ impl Diagnostic {
             Severity::Note { .. } => Level::NOTE,
         };
         // The first line, with the code in brackets.
-        let mut title = level.primary_title(self.message.as_str());
+        let mut title = level.primary_title(sentence(&self.message));
         if let Some(code) = self.code {
             title = title.id(code);
         }
@@ -122,7 +123,7 @@ impl Diagnostic {
         }
         let mut groups = vec![group];
         if let Some(hint) = &self.hint {
-            groups.push(Group::with_title(Level::HELP.secondary_title(hint.as_str())));
+            groups.push(Group::with_title(Level::HELP.secondary_title(sentence(hint))));
         }
         // Plain characters draw the margin, so that files and terminals of all kinds show it.
         let renderer = if is_coloured { Renderer::styled() } else { Renderer::plain() };

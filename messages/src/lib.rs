@@ -2,15 +2,19 @@
 //! project (assembly, extensions, scenes, machines) report through these types; no reader prints by itself.
 
 mod diagnostic;
+mod packed;
 mod report;
 mod snippet;
 mod source;
 mod suggestion;
+mod visible;
 
 pub use diagnostic::{Diagnostic, Severity};
+pub use packed::{packed_by, refuse_packed, refuse_utf16};
 pub use report::Report;
 pub use source::{Place, Source};
 pub use suggestion::{did_you_mean, nearest, question};
+pub use visible::{is_invisible, visible};
 
 #[cfg(test)]
 mod tests {
@@ -48,6 +52,19 @@ mod tests {
         assert!(text.contains("| ...x x") && text.contains("y...\n") && text.contains(" ^^^^ label"), "{text}");
         let (code, carets) = (text.lines().find(|line| line.contains("here")), text.lines().last());
         assert_eq!(code.and_then(|line| line.find("here")), carets.and_then(|line| line.find("^^^^")), "{text}");
+    }
+
+    #[test]
+    fn no_message_sends_what_steers_a_terminal() {
+        let source = Source::new("a\u{1b}[2J\n.s", "  x\u{a0}\u{7}y = \u{1b}[31m4\n");
+        let place = Place::new(&source, 10..16);
+        let message = Diagnostic::error("found `\u{1b}[31m4`").at(place.clone(), "a\u{202e}b").also(place, "c\u{7}");
+        let text = message.hint("d\r").to_string();
+        assert!(!text.chars().any(|character| is_invisible(character) && character != '\n'), "{text:?}");
+        assert!(text.contains("a␛[2J␊.s:1:10"), "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        let line = lines.iter().position(|line| line.contains("x<U+00A0>␇y = ␛[31m4")).unwrap();
+        assert_eq!(lines[line].chars().position(|c| c == '␛'), lines[line + 1].find('^'), "{text}");
     }
 
     #[test]

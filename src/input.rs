@@ -22,7 +22,7 @@ pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Resul
         let defaults = generate::GenerateOptions::default();
         let scene =
             generate::scene(name, &generate::GenerateOptions { size: size.unwrap_or(defaults.size), ..defaults })?;
-        return Ok(Loaded { scene, warnings: Report::default(), files: Vec::new() });
+        return Ok(Loaded::from(scene));
     }
     let names = || SCENES.iter().map(|generator| generator.name);
     let near = read::load(path, None).err().and_then(|report| report.0.into_iter().next()?.hint);

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-/// Whether a character is a control character, or one that looks like a blank or like nothing but is none.
+/// True of a control character, and of one that looks like a blank or like nothing but is none.
 ///
 /// Spaces are seen; tabs and line ends are control characters here.
 pub fn is_invisible(character: char) -> bool {

@@ -37,11 +37,17 @@ pub(super) struct FaceColours {
     specs: Vec<Spec>,
     first: usize,
     is_octet: bool,
+    not_finite: usize,
 }
 
 impl FaceColours {
     /// Takes the colour of face `face`; faces come in order.
     pub(super) fn push(&mut self, face: usize, spec: Spec) {
+        let spec = match spec {
+            Spec::Index(index) if !index.is_finite() => self.without_value(),
+            Spec::Components(rgb, _) if !rgb.iter().all(|component| component.is_finite()) => self.without_value(),
+            spec => spec,
+        };
         if self.specs.is_empty() {
             if spec == Spec::Default {
                 return;
@@ -52,6 +58,12 @@ impl FaceColours {
             self.is_octet |= rgb.iter().any(|&component| component > 1.0);
         }
         self.specs.push(spec);
+    }
+
+    /// No colour, for one that has no value.
+    fn without_value(&mut self) -> Spec {
+        self.not_finite += 1;
+        Spec::Default
     }
 
     /// One material for each different colour, and the material of each of `faces` faces; nothing when no face has
@@ -65,6 +77,10 @@ impl FaceColours {
         name: &str,
         warnings: &mut Vec<Diagnostic>,
     ) -> (Vec<Material>, Vec<u32>) {
+        if self.not_finite > 0 {
+            let subject = counted(self.not_finite, "face has a colour", "faces have colours");
+            warnings.push(Diagnostic::warning(format!("{name}: {subject} without a finite value, not used")));
+        }
         if self.specs.is_empty() {
             return (Vec::new(), Vec::new());
         }

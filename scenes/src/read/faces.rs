@@ -23,6 +23,8 @@ pub(super) struct Faces {
     drawn: u32,
     left_out: usize,
     is_too_many: bool,
+    /// The first face that would take too long to be cut, counted without those left out, and its corners.
+    too_long: Option<(u32, usize)>,
 }
 
 impl Faces {
@@ -42,17 +44,26 @@ impl Faces {
             return false;
         }
         self.is_too_many |= self.triangles.len() + corners.len() - 2 > most;
-        if self.is_too_many {
+        if self.is_too_many || self.too_long.is_some() {
             return false;
         }
         let (triangles, origins, face) = (&mut self.triangles, &mut self.origins, self.drawn);
-        self.cutter.cut(vertices, corners, |triangle| {
+        let is_cut = self.cutter.cut(vertices, corners, |triangle| {
             triangles.push(triangle);
             origins.push(face);
         });
+        if !is_cut {
+            self.too_long = Some((face, corners.len()));
+            return false;
+        }
         self.colours.push(self.drawn as usize, colour);
         self.drawn += 1;
         true
+    }
+
+    /// True where faces had too few corners to be drawn.
+    pub(super) fn has_left_out(&self) -> bool {
+        self.left_out > 0
     }
 
     /// Attributes of each drawn face, in their order, for each triangle.
@@ -60,12 +71,18 @@ impl Faces {
         self.origins.iter().map(|&face| of_faces[face as usize]).collect()
     }
 
-    /// The mesh, with warnings about what is odd in it, and an error when there were more triangles than a mesh may have.
+    /// The mesh, with warnings about what is odd in it, and an error when there were more triangles, or corners of concave
+    /// polygons, than a mesh may have.
     pub(super) fn into_mesh(mut self, name: &str, vertices: Vec<Vec3>, count: Option<Place>) -> Mesh {
         let mut warnings = Vec::new();
         if self.is_too_many {
             let error = Diagnostic::error(format!("{name}: its faces are more than {MOST} triangles"));
             warnings.push(error.hint("polygons count as the triangles that they are cut into"));
+        }
+        if let Some((face, corners)) = self.too_long {
+            let message = format!("{name}: its concave polygons have too many corners to be cut into triangles");
+            let hint = format!("face {face}, counted from 0, has {corners}: cut them where the file was made");
+            warnings.push(Diagnostic::error(message).hint(hint));
         }
         if self.left_out > 0 {
             let subject = counted(self.left_out, "face has", "faces have");
@@ -73,6 +90,9 @@ impl Faces {
         }
         if self.triangles.is_empty() && self.left_out == 0 && !vertices.is_empty() {
             warnings.push(Diagnostic::warning(format!("{name}: vertices without faces cannot be seen")));
+        }
+        if vertices.is_empty() {
+            warnings.push(Diagnostic::warning(format!("{name}: the mesh is empty: there is nothing to be seen")));
         }
         let (materials, of_faces) =
             std::mem::take(&mut self.colours).into_materials(self.drawn as usize, name, &mut warnings);
@@ -85,6 +105,7 @@ impl Faces {
             vertices,
             triangles: self.triangles,
             materials,
+            material_names: Vec::new(),
             surfaces,
             faces: self.drawn as usize,
             count,

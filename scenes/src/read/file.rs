@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use messages::{Diagnostic, Report, nearest, question};
+use messages::{Diagnostic, Report, nearest, question, refuse_packed};
 
 use super::format::scene_extensions;
 
@@ -13,7 +13,7 @@ const LARGEST: u64 = 256 << 20;
 
 /// All octets of a file.
 ///
-/// Errors: it is missing (with a name nearby that may be meant), a folder, too large, or cannot be read.
+/// Errors: it is missing (with a name nearby that may be meant), a folder, too large, compressed, or cannot be read.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     let shown = path.display();
     let metadata = fs::metadata(path).map_err(|error| refusal(path, &error))?;
@@ -34,7 +34,11 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     // Pipes and terminals have no length: they are read up to their end, or the limit.
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     file.take(LARGEST + 1).read_to_end(&mut bytes).map_err(|error| refusal(path, &error))?;
-    if bytes.len() as u64 > LARGEST { Err(too_large().into()) } else { Ok(bytes) }
+    if bytes.len() as u64 > LARGEST {
+        return Err(too_large().into());
+    }
+    refuse_packed(&bytes, &shown.to_string())?;
+    Ok(bytes)
 }
 
 fn refusal(path: &Path, error: &std::io::Error) -> Report {

@@ -35,7 +35,7 @@ pub(super) fn described(name: String, description: Description, mesh: Mesh) -> R
         triangles: triangles(&mesh.triangles, &description.surfaces),
         vertices: mesh.vertices,
     };
-    Ok(Loaded { scene, warnings, files: Vec::new() })
+    Ok(Loaded { warnings, ..Loaded::from(scene) })
 }
 
 /// Width and height of the picture of a mesh without description, in pixels.
@@ -55,7 +55,7 @@ pub(super) fn alone(name: String, mesh: Mesh) -> Loaded {
         scene.materials.push(GREY);
     }
     scene.lights.push(light(&scene));
-    Loaded { scene, warnings: mesh.warnings, files: Vec::new() }
+    Loaded { warnings: mesh.warnings, material_names: mesh.material_names, ..Loaded::from(scene) }
 }
 
 /// The light of a mesh without description: white, above and in front of the middle of its box by the larger of the

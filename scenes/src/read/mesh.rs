@@ -14,6 +14,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The surfaces that the file's colours ask for; empty when it has no colours.
     pub materials: Vec<Material>,
+    /// Names of the materials, empty for one without; no names at all where the format has none.
+    pub material_names: Vec<String>,
     /// The material of each triangle by number; empty when the file has no colours.
     pub surfaces: Vec<u32>,
     /// Faces of the file that were drawn, whatever their number of corners.

@@ -30,8 +30,17 @@ pub struct Loaded {
     pub scene: Scene,
     /// Warnings, in the order of the files' texts; never errors.
     pub warnings: Report,
+    /// Names of the scene's materials, empty for one without; no names at all where the files have none.
+    pub material_names: Vec<String>,
     /// All files that were read, as their paths were found.
     pub files: Vec<PathBuf>,
+}
+
+impl From<Scene> for Loaded {
+    /// A scene that is in no file.
+    fn from(scene: Scene) -> Loaded {
+        Loaded { scene, warnings: Report::default(), material_names: Vec::new(), files: Vec::new() }
+    }
 }
 
 /// Reads the scene `path`: a `.dsc` with the mesh `mesh`, or with the `.off`, `.obj`, `.ply` or `.stl` of the same name
@@ -58,6 +67,7 @@ fn load_listing(path: &Path, mesh: Option<&Path>, files: &mut Vec<PathBuf>) -> R
             None => Ok(join::alone(name, parse_mesh(format, bytes, path, Some(files))?)),
         };
     }
+    messages::refuse_utf16(&bytes, &path.display().to_string())?;
     let source = words::source(&path.display().to_string(), bytes.into());
     let description = dsc::parse(&source);
     let mesh = match mesh {

@@ -5,8 +5,12 @@ use earcut::Earcut;
 
 use crate::model::Vec3;
 
-/// Corners above which an outline is not cut into ears but fanned: no real polygon has as many.
-const LARGEST: usize = 10_000;
+/// Work that the concave polygons of a file may take, in squares of their numbers of corners: the time that the worst
+/// outlines take. About two seconds.
+const WORK: u64 = 1_000_000_000;
+
+/// Work beyond that for each corner of a concave polygon: a file of many is large in itself.
+const WORK_PER_CORNER: u64 = 200;
 
 /// Cuts polygons one after another and keeps its memory between them.
 #[derive(Default)]
@@ -14,21 +18,31 @@ pub(super) struct Cutter {
     flat: Vec<[f64; 2]>,
     ears: Vec<u32>,
     earcut: Option<Earcut<f64>>,
+    work: u64,
+    allowance: u64,
 }
 
 impl Cutter {
     /// The triangles of a polygon with at least three corners, given by vertex number, in the polygon's sense of
-    /// rotation: corners.len() - 2 of them.
-    pub(super) fn cut(&mut self, vertices: &[Vec3], corners: &[u32], mut triangle: impl FnMut([u32; 3])) {
+    /// rotation: corners.len() - 2 of them. False, without any, where the concave polygons so far have too many corners.
+    pub(super) fn cut(&mut self, vertices: &[Vec3], corners: &[u32], mut triangle: impl FnMut([u32; 3])) -> bool {
         let count = corners.len();
-        if count > 3 && count <= LARGEST {
+        if count > 3 {
             self.project(vertices, corners);
-            if !is_convex(&self.flat) && self.cut_ears() {
-                self.ears.chunks_exact(3).for_each(|ear| triangle([0, 1, 2].map(|k| corners[ear[k] as usize])));
-                return;
+            if !is_convex(&self.flat) {
+                self.work += (count as u64).pow(2);
+                self.allowance += count as u64 * WORK_PER_CORNER;
+                if self.work > WORK + self.allowance {
+                    return false;
+                }
+                if self.cut_ears() {
+                    self.ears.chunks_exact(3).for_each(|ear| triangle([0, 1, 2].map(|k| corners[ear[k] as usize])));
+                    return true;
+                }
             }
         }
         (1..count - 1).for_each(|n| triangle([corners[0], corners[n], corners[n + 1]]));
+        true
     }
 
     /// The corners along the two axes that the polygon faces most, turned counter-clockwise.
@@ -143,7 +157,7 @@ mod tests {
 
     fn cut(vertices: &[Vec3], corners: &[u32]) -> Vec<[u32; 3]> {
         let mut triangles = Vec::new();
-        Cutter::default().cut(vertices, corners, |triangle| triangles.push(triangle));
+        assert!(Cutter::default().cut(vertices, corners, |triangle| triangles.push(triangle)));
         triangles
     }
 
@@ -192,6 +206,27 @@ mod tests {
         assert_eq!(triangles.len(), 7);
         assert_eq!(outline(triangles.iter().map(|t| t.to_vec())), outline([corners]));
         assert!(triangles.iter().all(|t| area(&vertices, t, [0.0, 0.0, 1.0]) >= 0.0), "{triangles:?}");
+    }
+
+    #[test]
+    fn concave_polygons_of_too_many_corners_are_refused_before_they_are_cut() {
+        let zigzag = |count: u32| -> Vec<Vec3> {
+            (0..count).map(|n| [f64::from(n), if n == 0 { 2.0 } else { f64::from(n % 2) }, 0.0]).collect()
+        };
+        let corners: Vec<u32> = (0..40_000).collect();
+        let mut found = 0;
+        assert!(!Cutter::default().cut(&zigzag(40_000), &corners, |_| found += 1));
+        assert_eq!(found, 0);
+        // Many small ones are cut however many they are, and so is a convex one of any size.
+        let (mut cutter, small) = (Cutter::default(), zigzag(8));
+        assert!((0..20_000).all(|_| cutter.cut(&small, &corners[..8], |_| {})));
+        let circle = |n: &u32| {
+            let angle = f64::from(*n) / 40_000.0 * std::f64::consts::TAU;
+            [angle.cos(), angle.sin(), 0.0]
+        };
+        let circle: Vec<Vec3> = corners.iter().map(circle).collect();
+        assert!(Cutter::default().cut(&circle, &corners, |_| found += 1));
+        assert_eq!(found, 39_998);
     }
 
     proptest! {

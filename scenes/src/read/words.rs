@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
-use messages::{Diagnostic, Place, Report, Severity, Source};
+use messages::{Diagnostic, Place, Report, Severity, Source, is_invisible};
 use nom::branch::alt;
 use nom::bytes::complete::{take_till, take_while1};
 use nom::character::complete::char;
@@ -21,6 +21,9 @@ const SHOWN: usize = 20;
 
 /// Errors beyond those after which a file is not read on.
 const HOPELESS: usize = 1000;
+
+/// Ctrl-Z, the end of a text under CP/M and its followers.
+const END_MARK: u8 = 0x1a;
 
 /// One word and where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -288,7 +291,9 @@ impl<'a> Words<'a> {
                 let message = format!("expected {}, found `{}`", what(), shortened(word.text));
                 let place = self.place(word.span());
                 let mut complaint = Diagnostic::error(message).at(place, kind(word.text, "not a number"));
-                if word.text.replacen(',', ".", 1).parse::<f64>().is_ok() {
+                if has_odd_blank(word.text) {
+                    complaint = complaint.hint("words are separated by spaces and tabs");
+                } else if word.text.replacen(',', ".", 1).parse::<f64>().is_ok() {
                     complaint = complaint.hint("decimals follow a point, not a comma");
                 } else if word.text.contains(',') {
                     complaint = complaint.hint("numbers are separated by blanks, not commas");
@@ -297,6 +302,15 @@ impl<'a> Words<'a> {
                 self.complain(complaint);
                 0.0
             }
+        }
+    }
+
+    /// The word as a number that may be `nan` or infinite, since nothing depends on its value; otherwise as
+    /// [`Words::number`].
+    pub(super) fn unused_number(&mut self, word: Word<'_>, what: impl FnOnce() -> String) -> f64 {
+        match word.text.parse::<f64>() {
+            Ok(value) => value,
+            Err(_) => self.number(word, what),
         }
     }
 
@@ -312,14 +326,28 @@ impl<'a> Words<'a> {
             Err(_) => kind(word.text, "not a number"),
         };
         let message = format!("expected {}, found `{}`", what(), shortened(word.text));
-        self.refuse(word, message, label);
+        let complaint = Diagnostic::error(message).at(self.place(word.span()), label);
+        self.complain(match has_odd_blank(word.text) {
+            true => complaint.hint("words are separated by spaces and tabs"),
+            false => complaint,
+        });
         None
     }
 }
 
 /// Description of a word that is no number.
 fn kind(text: &str, otherwise: &'static str) -> &'static str {
-    if text.contains('\u{fffd}') { "not UTF-8 text" } else { otherwise }
+    match text {
+        _ if text.contains('\u{fffd}') => "not UTF-8 text",
+        _ if has_odd_blank(text) => "contains a character that only looks like a blank",
+        _ if text.contains(is_invisible) => "contains an invisible character",
+        _ => otherwise,
+    }
+}
+
+/// True of a word with a blank in it that separates no words, such as a no-break space.
+fn has_odd_blank(text: &str) -> bool {
+    text.contains(char::is_whitespace)
 }
 
 /// Decimal digits as a number, if it fits.
@@ -329,13 +357,14 @@ fn digits(text: &str) -> Option<u32> {
     is_plain.then(|| text.parse().ok()).flatten()
 }
 
-/// Refuses UTF-16 text, which would otherwise look like words with gaps.
-pub(super) fn refuse_utf16(bytes: &[u8], name: &str) -> Result<(), Report> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        let error = Diagnostic::error(format!("{name} is UTF-16 text, which is not read"));
-        return Err(error.hint("save it as UTF-8 or ASCII").into());
+/// The octets of a text without the Ctrl-Z that some systems end it with, and what pads the file behind that.
+pub(super) fn without_end_mark(bytes: &[u8]) -> &[u8] {
+    let is_padding = |octet: &u8| octet.is_ascii_whitespace() || matches!(*octet, 0 | END_MARK);
+    let end = bytes.iter().rposition(|octet| !is_padding(octet)).map_or(0, |at| at + 1);
+    match bytes[end..].iter().position(|&octet| octet == END_MARK) {
+        Some(mark) => &bytes[..end + mark],
+        None => bytes,
     }
-    Ok(())
 }
 
 /// Start of the text of a file: behind the byte order mark, if there is one.
@@ -345,6 +374,14 @@ pub(super) fn start(bytes: &[u8]) -> usize {
 
 /// A file's octets as a source; what is not UTF-8 is replaced, and refused where it is more than a comment.
 pub(super) fn source(name: &str, bytes: Cow<'_, [u8]>) -> Arc<Source> {
+    let length = without_end_mark(&bytes).len();
+    let bytes = match bytes {
+        Cow::Borrowed(bytes) => Cow::Borrowed(&bytes[..length]),
+        Cow::Owned(mut bytes) => {
+            bytes.truncate(length);
+            Cow::Owned(bytes)
+        }
+    };
     // The check is many times faster than the replacement, which is hardly ever needed.
     let text = match bytes {
         Cow::Borrowed(bytes) => std::str::from_utf8(bytes).map(str::to_string).map_err(|_| Cow::Borrowed(bytes)),

@@ -68,9 +68,9 @@ pub fn mesh(scene: &Scene, format: MeshFormat, stem: &str) -> io::Result<Vec<(St
         MeshFormat::Stl => stl(scene, &mut octets)?,
         MeshFormat::Obj => {
             let library = format!("{stem}.mtl");
-            obj(scene, &library, &mut octets)?;
+            obj(scene, &[], &library, &mut octets)?;
             let mut materials = Vec::new();
-            mtl(scene, &mut materials)?;
+            mtl(scene, &[], &mut materials)?;
             files.push((library, materials));
         }
     }

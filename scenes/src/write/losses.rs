@@ -6,11 +6,14 @@ use messages::{Diagnostic, Report};
 
 use super::MeshFormat;
 use crate::model::{Material, Scene};
+use crate::read::Loaded;
 use crate::read::join;
 use crate::read::mesh::GREY;
 
-/// Parts of a scene that are not in its mesh when that stands alone: warnings, none where reading it gives the same picture.
-pub fn losses(scene: &Scene, format: MeshFormat) -> Report {
+/// Parts of a scene that are not in its mesh when that stands alone: warnings, none where reading it gives the same picture and
+/// the same names.
+pub fn losses(loaded: &Loaded, format: MeshFormat) -> Report {
+    let scene = &loaded.scene;
     let mut lost = Vec::new();
     if scene.size != join::SIZE {
         lost.push("the size of the picture");
@@ -23,12 +26,20 @@ pub fn losses(scene: &Scene, format: MeshFormat) -> Report {
     lost.extend(lost_of_materials(&used(scene), format));
     let has_hint = !lost.is_empty();
     lost.extend(lost_digits(scene, format));
-    warning(format, &lost, has_hint)
+    lost.extend(lost_names(loaded).filter(|_| format != MeshFormat::Obj));
+    warning(format.name(), &lost, has_hint)
 }
 
-/// Parts of a scene that are not in its mesh when a `.dsc` stands beside that, which holds all the rest.
-pub fn losses_beside_description(scene: &Scene, format: MeshFormat) -> Report {
-    warning(format, &Vec::from_iter(lost_digits(scene, format)), false)
+/// Parts of a scene that are not in its mesh when a `.dsc` stands beside that, which holds all the rest. A `.dsc` with materials of
+/// its own makes those of the mesh count for nothing, so that their names are lost whatever the mesh is.
+pub fn losses_beside_description(loaded: &Loaded, format: MeshFormat) -> Report {
+    let mut report = warning(format.name(), &Vec::from_iter(lost_digits(&loaded.scene, format)), false);
+    report.0.append(&mut warning("dsc", &Vec::from_iter(lost_names(loaded)), false).0);
+    report
+}
+
+fn lost_names(loaded: &Loaded) -> Option<&'static str> {
+    loaded.material_names.iter().any(|name| !name.is_empty()).then_some("the names of materials")
 }
 
 /// The materials that triangles have.
@@ -73,10 +84,10 @@ fn lost_digits(scene: &Scene, format: MeshFormat) -> Option<&'static str> {
     is_lost.then_some("digits beyond single precision")
 }
 
-fn warning(format: MeshFormat, lost: &[&str], has_hint: bool) -> Report {
+fn warning(format: &str, lost: &[&str], has_hint: bool) -> Report {
     let Some((last, rest)) = lost.split_last() else { return Report::default() };
     let list = if rest.is_empty() { (*last).to_string() } else { format!("{} and {last}", rest.join(", ")) };
-    let article = if format == MeshFormat::Ply { "a" } else { "an" };
+    let article = if ["ply", "dsc"].contains(&format) { "a" } else { "an" };
     let warning = Diagnostic::warning(format!("{article} .{format} file does not hold {list}"));
     if has_hint { warning.hint("a .dsc beside it holds all but the mesh").into() } else { warning.into() }
 }

@@ -196,7 +196,7 @@ proptest! {
         prop_assert_eq!(corners(&alone.scene, |x| x), corners(&scene, single));
         prop_assert!(!alone.scene.check().has_errors());
         // What has been through a format once goes through it again as it is.
-        let lost = write::losses(&alone.scene, format);
+        let lost = write::losses(&alone, format);
         prop_assert!(lost.0.is_empty(), "{}", lost);
         let (again, _) = mesh_there_and_back(folder.path(), &alone.scene, format);
         prop_assert_eq!((again.scene.size, &again.scene.lights), (alone.scene.size, &alone.scene.lights));
@@ -213,7 +213,7 @@ proptest! {
 fn what_a_format_does_not_hold_is_said() {
     let mut text = String::new();
     for name in ["cornell", "triangle", "empty"] {
-        let scene = generate::scene(name, &GenerateOptions::default()).unwrap();
+        let scene = Loaded::from(generate::scene(name, &GenerateOptions::default()).unwrap());
         for format in MeshFormat::ALL {
             writeln!(text, "{name}\n{}", write::losses(&scene, format)).unwrap();
             writeln!(text, "beside a .dsc: {}\n", write::losses_beside_description(&scene, format)).unwrap();

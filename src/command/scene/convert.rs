@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use messages::{Diagnostic, Report};
-use scenes::model::Scene;
+use scenes::read::Loaded;
 use scenes::write::{self, MeshFormat};
 
 use super::parts;
@@ -95,15 +95,15 @@ pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> 
     files::check_spared(paths.iter().map(PathBuf::as_path), &loaded.files).map_err(Failure::usage)?;
     terminal.show(&loaded.warnings);
     let scene = &loaded.scene;
-    let contents = contents(scene, target, has_description, &paths)
+    let contents = contents(&loaded, target, has_description, &paths)
         .map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
     files::write_all(&paths.iter().zip(contents).collect::<Vec<_>>())?;
     match target {
         ConversionTarget::Mesh(format) if has_description => {
-            terminal.show(&write::losses_beside_description(scene, format))
+            terminal.show(&write::losses_beside_description(&loaded, format))
         }
-        ConversionTarget::Mesh(format) => terminal.show(&write::losses(scene, format)),
-        ConversionTarget::Description => {}
+        ConversionTarget::Mesh(format) => terminal.show(&write::losses(&loaded, format)),
+        ConversionTarget::Description => terminal.show(&write::losses_beside_description(&loaded, MeshFormat::Off)),
     }
     let shown: Vec<String> = paths.iter().rev().map(|path| path.display().to_string()).collect();
     terminal.print(&format!("{}: {}\n", shown.join(" and "), parts(scene)))?;
@@ -124,11 +124,12 @@ fn paths(output: &Path, target: ConversionTarget, has_description: bool) -> Vec<
 
 /// The octets of these files.
 fn contents(
-    scene: &Scene,
+    loaded: &Loaded,
     target: ConversionTarget,
     has_description: bool,
     paths: &[PathBuf],
 ) -> std::io::Result<Vec<Vec<u8>>> {
+    let scene = &loaded.scene;
     let mut description = Vec::new();
     if has_description {
         write::dsc(scene, &mut description)?;
@@ -136,8 +137,8 @@ fn contents(
     let mut files = match target {
         ConversionTarget::Mesh(MeshFormat::Obj) => {
             let (mut library, mut mesh) = (Vec::new(), Vec::new());
-            write::mtl(scene, &mut library)?;
-            write::obj(scene, &library_name(&paths[0])?, &mut mesh)?;
+            write::mtl(scene, &loaded.material_names, &mut library)?;
+            write::obj(scene, &loaded.material_names, &library_name(&paths[0])?, &mut mesh)?;
             vec![library, mesh]
         }
         ConversionTarget::Mesh(format) => {

@@ -17,8 +17,10 @@ struct Draft<'a> {
     diffuse: Vec3,
     /// Ks.
     specular: Vec3,
-    /// d, or 1 - Tr.
-    opacity: f64,
+    /// d, clamped to 0 to 1, and its number in the text.
+    opacity: Option<(f64, Word<'a>)>,
+    /// Tr, the same way.
+    transparency: Option<(f64, Word<'a>)>,
     /// Ni.
     refraction: f64,
     /// Illumination model 0 to 10; highlights where it is not given.
@@ -47,13 +49,14 @@ pub(super) fn parse(source: &Arc<Source>) -> (Vec<(String, Material)>, Report) {
     let mut arguments = Vec::new();
     while let Some(keyword) = statement::next(&mut words, &mut arguments) {
         if keyword.text == "newmtl" {
-            materials.extend(draft.take().map(|draft| finish(draft, &mut lost)));
+            materials.extend(draft.take().map(|draft| finish(&mut words, draft, &mut lost)));
             let name = words.line_from(keyword.span().end).text;
             if name.is_empty() {
                 words.refuse(keyword, "a material needs a name", "no name follows");
             }
             let (diffuse, specular) = (GREY.colour, [0.0; 3]);
-            draft = Some(Draft { name, diffuse, specular, opacity: 1.0, refraction: 1.0, model: 2 });
+            draft =
+                Some(Draft { name, diffuse, specular, opacity: None, transparency: None, refraction: 1.0, model: 2 });
         } else if let Some(draft) = &mut draft {
             read(&mut words, keyword, &arguments, draft, &mut lost);
         } else {
@@ -65,7 +68,7 @@ pub(super) fn parse(source: &Arc<Source>) -> (Vec<(String, Material)>, Report) {
             break;
         }
     }
-    materials.extend(draft.map(|draft| finish(draft, &mut lost)));
+    materials.extend(draft.map(|draft| finish(&mut words, draft, &mut lost)));
     lost.complain(&mut words, &source.name);
     (materials, words.into_report())
 }
@@ -75,7 +78,7 @@ fn read<'a>(
     words: &mut Words<'a>,
     keyword: Word<'a>,
     arguments: &[Word<'a>],
-    draft: &mut Draft<'_>,
+    draft: &mut Draft<'a>,
     lost: &mut LostProperties<'a>,
 ) {
     let mut clamp = |value: f64| {
@@ -101,7 +104,8 @@ fn read<'a>(
         "d" | "Tr" => {
             let halo = usize::from(arguments.first().is_some_and(|word| word.text == "-halo"));
             let Some(value) = one(words, keyword, &arguments[halo..]) else { return };
-            draft.opacity = if keyword.text == "d" { clamp(value) } else { 1.0 - clamp(value) };
+            let given = Some((clamp(value), arguments[halo]));
+            *if keyword.text == "d" { &mut draft.opacity } else { &mut draft.transparency } = given;
         }
         "Ni" => {
             let Some(value) = one(words, keyword, arguments) else { return };
@@ -129,7 +133,11 @@ fn read<'a>(
 
 /// Three components, or one that stands for all.
 fn colour(words: &mut Words<'_>, keyword: Word<'_>, arguments: &[Word<'_>]) -> Option<Vec3> {
-    let mut component = |word| words.number(word, || format!("a component of `{}`", keyword.text));
+    let what = || format!("a component of `{}`", keyword.text);
+    let mut component = |word| match keyword.text {
+        "Kd" | "Ks" => words.number(word, what),
+        _ => words.unused_number(word, what),
+    };
     match *arguments {
         [all] => Some([component(all); 3]),
         [red, green, blue] => Some([red, green, blue].map(component)),
@@ -159,22 +167,45 @@ fn one(words: &mut Words<'_>, keyword: Word<'_>, arguments: &[Word<'_>]) -> Opti
 /// - Where d is below 1, the material is transparent: what ks leaves is shared in the ratio of d to 1 - d by kd and
 ///   kt, the colour is Kd, the index of refraction Ni.
 /// - Otherwise kd times the colour is Kd, and kd is 1 - ks if Kd is no brighter than that.
-fn finish(draft: Draft<'_>, lost: &mut LostProperties<'_>) -> (String, Material) {
+fn finish(words: &mut Words<'_>, draft: Draft<'_>, lost: &mut LostProperties<'_>) -> (String, Material) {
     let is_reflecting = (3..=9).contains(&draft.model);
     let [red, green, blue] = draft.specular;
     // The mean of three equal numbers is not always the same bits.
     let mean = if red == green && green == blue { red } else { (red + green + blue) / 3.0 };
     lost.highlights += usize::from(!is_reflecting && draft.model == 2 && mean > 0.0);
     let reflection = if is_reflecting { mean.min(1.0) } else { 0.0 };
-    let material = if draft.opacity < 1.0 {
+    let opacity = opacity(words, &draft);
+    let material = if opacity < 1.0 {
         let index = if draft.refraction > 0.0 { draft.refraction } else { 1.0 };
-        Material { colour: draft.diffuse, reflection, intensity: draft.opacity * (1.0 - reflection), index }
+        Material { colour: draft.diffuse, reflection, intensity: opacity * (1.0 - reflection), index }
     } else {
         let intensity = draft.diffuse.into_iter().fold(1.0 - reflection, f64::max);
         let colour = draft.diffuse.map(|c| if intensity > 0.0 { c / intensity } else { 0.0 });
         Material { colour, reflection, intensity, index: 0.0 }
     };
     (draft.name.to_string(), material)
+}
+
+/// The opacity, 1 where none is given. `d` counts where `Tr` is not what it leaves: some programs mean `d` by both.
+fn opacity(words: &mut Words<'_>, draft: &Draft<'_>) -> f64 {
+    let (opacity, word, (transparency, other)) = match (draft.opacity, draft.transparency) {
+        (None, None) => return 1.0,
+        (None, Some((transparency, _))) => return 1.0 - transparency,
+        (Some((opacity, _)), None) => return opacity,
+        (Some((opacity, word)), Some(transparency)) => (opacity, word, transparency),
+    };
+    // Programs write as few as three digits.
+    if (opacity + transparency - 1.0).abs() > 2e-3 {
+        let message = format!(
+            "`d {}` and `Tr {}` of material `{}` contradict each other: Tr is 1 - d",
+            word.text,
+            other.text,
+            shortened(draft.name)
+        );
+        let warning = Diagnostic::warning(message).at(words.place(word.span()), "this counts");
+        words.complain(warning.also(words.place(other.span()), "this is not used"));
+    }
+    opacity
 }
 
 impl<'a> LostProperties<'a> {

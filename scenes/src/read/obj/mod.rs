@@ -17,7 +17,7 @@ use super::faces::Faces;
 use super::format::{Likelihood, MeshReader};
 use super::mesh::{GREY, Mesh};
 use super::words::{self, Word, Words, counted, shortened};
-use crate::model::{Material, Vec3};
+use crate::model::Vec3;
 
 /// Opens a material library by the name that a `.obj` gives it: the path to show in messages, and its octets.
 pub type Libraries<'l> = dyn FnMut(&str) -> Result<(String, Vec<u8>), Report> + 'l;
@@ -46,7 +46,7 @@ pub fn parse<'a>(
     libraries: Option<&mut Libraries<'_>>,
 ) -> Result<Mesh, Report> {
     let bytes = bytes.into();
-    words::refuse_utf16(&bytes, name)?;
+    messages::refuse_utf16(&bytes, name)?;
     let start = words::start(&bytes);
     let source = words::source(name, bytes);
     let mut words = Words::new(&source, start);
@@ -140,10 +140,10 @@ fn vertex<'a>(
     }
     let mut values = [0.0; 7];
     for (k, (value, word)) in values.iter_mut().zip(arguments).enumerate() {
-        *value = words.number(*word, || match k {
-            0..3 => format!("{} of vertex {number}", ["x", "y", "z"][k]),
-            _ => format!("number {} of vertex {number}", k + 1),
-        });
+        *value = match k {
+            0..3 => words.number(*word, || format!("{} of vertex {number}", ["x", "y", "z"][k])),
+            _ => words.unused_number(*word, || format!("number {} of vertex {number}", k + 1)),
+        };
     }
     if count >= 6 {
         lost.note(lost::COLOURS);
@@ -209,14 +209,20 @@ impl<'a> ObjContents<'a> {
         let mut is_used = vec![false; self.names.len()];
         named.iter().flatten().for_each(|&number| is_used[number as usize] = true);
         let (mut materials, mut surfaces) = (Vec::new(), Vec::new());
+        let mut material_names = Vec::new();
         if let Some(libraries) = libraries.filter(|_| is_used.contains(&true)) {
-            let found = library::find(words, &self, &is_used, libraries, others);
-            let of_faces;
-            (materials, of_faces) = in_order_of_use(&named, &found);
+            let (defined, found) = library::find(words, &self, &is_used, libraries, others);
+            let found: Vec<Option<u32>> =
+                named.iter().map(|name| name.and_then(|name| found[name as usize]).map(|n| n as u32)).collect();
+            let (order, of_faces) = in_order_of_use(&found);
+            let definition = |number: &Option<u32>| number.map(|number| &defined.list[number as usize]);
+            materials = order.iter().map(|number| definition(number).map_or(GREY, |(_, material)| *material)).collect();
+            let name = |number| definition(number).map_or_else(String::new, |(name, _)| name.clone());
+            material_names = order.iter().map(name).collect();
             surfaces = faces.spread(&of_faces);
         }
         let mesh = faces.into_mesh(name, self.vertices, None);
-        Mesh { materials, surfaces, ..mesh }
+        Mesh { materials, material_names, surfaces, ..mesh }
     }
 }
 
@@ -253,20 +259,19 @@ fn reference(words: &mut Words<'_>, word: Word<'_>, face: usize, known: usize) -
     None
 }
 
-/// The materials that faces have, each once, in the order of their first use; and the material of each face.
-fn in_order_of_use(named: &[Option<u32>], found: &[Option<Material>]) -> (Vec<Material>, Vec<u32>) {
-    let mut materials = Vec::new();
-    let mut numbers = HashMap::new();
-    let of_faces = named
+/// The numbers that faces have, each once, in the order of their first use; and the place in that of each face.
+fn in_order_of_use(numbers: &[Option<u32>]) -> (Vec<Option<u32>>, Vec<u32>) {
+    let mut order = Vec::new();
+    let mut places = HashMap::new();
+    let of_faces = numbers
         .iter()
-        .map(|&name| {
+        .map(|&number| {
             // All that are grey for want of a definition are one.
-            let known = name.filter(|&number| found[number as usize].is_some());
-            *numbers.entry(known).or_insert_with(|| {
-                materials.push(known.and_then(|number| found[number as usize]).unwrap_or(GREY));
-                materials.len() as u32 - 1
+            *places.entry(number).or_insert_with(|| {
+                order.push(number);
+                order.len() as u32 - 1
             })
         })
         .collect();
-    (materials, of_faces)
+    (order, of_faces)
 }

@@ -74,14 +74,20 @@ impl Numbers<'_> {
         let parsed: IResult<&[u8], f32> = be_f32.parse(self.rest);
         let (rest, value) =
             parsed.map_err(|_| format!("the file ends at octet {} before {}", self.all.len(), what()))?;
-        if !value.is_finite() {
-            return Err(format!("{} must be a finite number, not {value} (octet {})", what(), self.at()));
-        }
         self.rest = rest;
         Ok(f64::from(value))
     }
 
-    /// There is room for `count` things of at least `octets` each; somewhat too many pass, as in `Words::room`.
+    /// The next number, refused where it is not finite.
+    fn finite(&mut self, what: impl Fn() -> String) -> Result<f64, String> {
+        let value = self.real(&what)?;
+        if !value.is_finite() {
+            return Err(format!("{} must be a finite number, not {value} (octet {})", what(), self.before()));
+        }
+        Ok(value)
+    }
+
+    /// Room for `count` things of at least `octets` each, where they may follow; somewhat too many pass, as in `Words::room`.
     fn room(&self, count: u32, octets: usize, what: &str) -> Result<usize, String> {
         let most = self.rest.len() / octets;
         if count as usize / 16 <= most {
@@ -114,8 +120,11 @@ fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) 
     let mut vertices: Vec<Vec3> = Vec::with_capacity(numbers.room(points, 4 * row_length, "vertices")?);
     let mut row = vec![0.0; row_length];
     for n in 0..points {
-        for slot in &mut row {
-            *slot = numbers.real(|| format!("a number of vertex {n} of {points}"))?;
+        for (k, slot) in row.iter_mut().enumerate() {
+            let what = || format!("a number of vertex {n} of {points}");
+            // As in text, what is not used may be anything.
+            let is_used = k < 3.min(header.components) || header.is_homogeneous && k + 1 == header.components;
+            *slot = if is_used { numbers.finite(what)? } else { numbers.real(what)? };
         }
         let point = position(&header, &row[..header.components]);
         let at = numbers.before();

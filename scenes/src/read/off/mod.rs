@@ -33,7 +33,7 @@ pub(super) static READER: MeshReader = MeshReader {
 /// Errors: several at once where it stays clear what follows.
 pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Report> {
     let bytes = bytes.into();
-    words::refuse_utf16(&bytes, name)?;
+    messages::refuse_utf16(&bytes, name)?;
     let start = words::start(&bytes);
     if binary::is_likely(&bytes) {
         let source = words::source(name, Cow::Borrowed(&bytes[..bytes.len().min(binary::HEAD)]));

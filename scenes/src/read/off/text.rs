@@ -110,7 +110,10 @@ fn vertices(
                 return None;
             };
             first.get_or_insert(word);
-            *slot = words.number(word, || part(header, n, k));
+            // Numbers behind the first three of a position, but for the last one of a 4OFF, are not used.
+            let is_used = k < 3.min(header.components) || header.is_homogeneous && k + 1 == header.components;
+            let what = || part(header, n, k);
+            *slot = if is_used { words.number(word, what) } else { words.unused_number(word, what) };
             if words.is_lost() {
                 return None;
             }
@@ -155,6 +158,7 @@ fn faces<'a>(
     let mut corners = Vec::new();
     let mut beyond: Option<Beyond<'a>> = None;
     let mut colours = FaceColours::default();
+    let mut are_whole = true;
     for n in 0..polygons.0 {
         let Some(word) = words.next() else {
             let error = Diagnostic::error(format!(
@@ -166,6 +170,7 @@ fn faces<'a>(
             return None;
         };
         let size = words.whole(word, || format!("the number of corners of face {n}"))?;
+        are_whole &= size >= 3;
         corners.clear();
         let mut is_good = true;
         for k in 0..size {
@@ -194,7 +199,8 @@ fn faces<'a>(
     }
     colours.complain(words);
     // Numbers left over mean that a count is wrong; then vertex numbers out of range are its consequence.
-    if !trailing(words, points, polygons)
+    let has_right_vertices = are_whole && beyond.is_none();
+    if !trailing(words, points, polygons, has_right_vertices)
         && let Some(Beyond { face, number, word, more }) = beyond
     {
         let known = match points.0 {
@@ -242,7 +248,7 @@ impl FaceColours {
         let mut writing = Writing::Whole;
         let mut values = [0.0; 4];
         for (value, word) in values.iter_mut().zip(given.iter().flatten()) {
-            *value = words.number(*word, || format!("a colour component of face {n}"));
+            *value = words.unused_number(*word, || format!("a colour component of face {n}"));
             if word.text.contains(['.', 'e', 'E']) {
                 writing = Writing::Decimal;
             }
@@ -273,14 +279,28 @@ impl FaceColours {
     }
 }
 
-/// Whatever follows the last face: numbers mean that a count is wrong (then true), other text belongs to someone else.
-fn trailing(words: &mut Words<'_>, points: SpannedCount<'_>, polygons: SpannedCount<'_>) -> bool {
+/// Whatever follows the last face: more faces are left out with a warning, other numbers mean that the number of
+/// vertices is wrong (then true), other text belongs to someone else.
+fn trailing(
+    words: &mut Words<'_>,
+    points: SpannedCount<'_>,
+    polygons: SpannedCount<'_>,
+    has_right_vertices: bool,
+) -> bool {
     let Some(word) = words.next() else { return false };
+    let end = words.rest_of_line(word).1;
+    let is_face = has_right_vertices && is_face(words, word, points.0);
     let place = words.place(word.span());
     let (vertices, faces) =
         (counted(points.0 as usize, "vertex", "vertices"), counted(polygons.0 as usize, "face", "faces"));
     let message = format!("the file goes on after {vertices} and {faces}");
     let announced = words.place(points.1.start..polygons.1.span().end);
+    if is_face {
+        let message = format!("there are more faces than the {} that are announced", polygons.0);
+        let warning = Diagnostic::warning(message).at(words.place(word.start..end), "not read from here on");
+        words.complain(warning.also(words.place(polygons.1.span()), "the number of faces"));
+        return false;
+    }
     let is_number = word.text.parse::<f64>().is_ok();
     words.complain(if is_number {
         let error = Diagnostic::error(message).at(place, "a number too many");
@@ -289,4 +309,15 @@ fn trailing(words: &mut Words<'_>, points: SpannedCount<'_>, polygons: SpannedCo
         Diagnostic::warning(message).at(place, "not read").also(announced, "these counts")
     });
     is_number
+}
+
+/// True where the line that starts with `first` is a face of at least three of `vertices` vertices, and perhaps a colour.
+fn is_face(words: &mut Words<'_>, first: Word<'_>, vertices: u32) -> bool {
+    let Ok(size) = first.text.parse::<usize>() else { return false };
+    let line = words.line_from(first.start);
+    let text = line.text.split('#').next().unwrap_or_default();
+    let numbers: Vec<&str> = text.split_ascii_whitespace().skip(1).collect();
+    let is_vertex = |text: &&str| text.parse::<u32>().is_ok_and(|number| number < vertices);
+    let Some((corners, colour)) = numbers.split_at_checked(size) else { return false };
+    words.starts_line(first) && size >= 3 && corners.iter().all(is_vertex) && matches!(colour.len(), 0 | 1 | 3 | 4)
 }

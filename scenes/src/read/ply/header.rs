@@ -1,7 +1,5 @@
 //! The header of a PLY file. The library reads it; line by line it is asked first, so that a mistake has a place.
 
-use std::ops::Range;
-
 use messages::{Diagnostic, did_you_mean};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType, ScalarType};
@@ -235,40 +233,4 @@ pub(super) fn least(definition: &ElementDef, is_text: bool) -> usize {
         PropertyType::Scalar(kind) | PropertyType::List(kind, _) => octets(kind),
     });
     kinds.sum()
-}
-
-/// Numbers of a line that belong together, for messages.
-pub(super) struct Expected<'d> {
-    /// Which words of the line.
-    pub words: Range<usize>,
-    /// The property.
-    pub name: &'d str,
-    /// The type of each.
-    pub kind: &'d ScalarType,
-    /// The number is the length of a list.
-    pub is_length: bool,
-}
-
-/// The numbers that a line must have, by property.
-pub(super) fn expected<'d>(definition: &'d ElementDef, words: &[&str]) -> Vec<Expected<'d>> {
-    let mut at = 0;
-    let mut expected = Vec::new();
-    for (name, property) in &definition.properties {
-        let name = name.as_str();
-        match &property.data_type {
-            PropertyType::Scalar(kind) => {
-                expected.push(Expected { words: at..at + 1, name, kind, is_length: false });
-                at += 1;
-            }
-            PropertyType::List(length, kind) => {
-                expected.push(Expected { words: at..at + 1, name, kind: length, is_length: true });
-                let count = words.get(at).and_then(|word| word.parse::<usize>().ok()).unwrap_or(0);
-                // More than the line has are missing all the same.
-                let end = at + 1 + count.min(words.len());
-                expected.push(Expected { words: at + 1..end, name, kind, is_length: false });
-                at = end;
-            }
-        }
-    }
-    expected
 }

@@ -1,5 +1,5 @@
-//! The reader of `.ply` meshes, text and binary of either order of octets. The formats are decoded by the library
-//! `ply-rs-bw`, element by element; what they stand for is put together here.
+//! The reader of `.ply` meshes, text and binary of either order of octets. Header and binary forms are decoded by the
+//! library `ply-rs-bw`; what elements stand for is put together here.
 
 mod binary;
 mod header;
@@ -37,7 +37,7 @@ pub(super) static READER: MeshReader = MeshReader {
 /// Errors: several at once in the header, the first one behind it.
 pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Report> {
     let bytes = bytes.into();
-    words::refuse_utf16(&bytes, name)?;
+    messages::refuse_utf16(&bytes, name)?;
     let start = words::start(&bytes);
     let Some(length) = header::length(&bytes) else {
         return Err(without_end(&bytes, name));
@@ -124,13 +124,7 @@ impl PlyContents {
             self.corners.push(vertex);
         }
         let colour = match row.colour {
-            [Some(red), Some(green), Some(blue)] => {
-                let colour = [red, green, blue];
-                if !colour.iter().all(|c| c.is_finite()) {
-                    return Err(Complaint::new(format!("face {number} has a colour that is not finite")));
-                }
-                Spec::Components(colour, Writing::Decimal)
-            }
+            [Some(red), Some(green), Some(blue)] => Spec::Components([red, green, blue], Writing::Decimal),
             _ => Spec::Default,
         };
         self.faces.push(&self.vertices, &self.corners, colour);

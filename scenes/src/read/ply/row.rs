@@ -1,6 +1,6 @@
-//! One element of a PLY file: where the library `ply-rs-bw` puts the properties that are used here. It drops the others.
+//! One element of a PLY file: the properties that are used here, wherever they come from.
 
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, ScalarType};
 
 /// Names of the list of a face's corners.
 pub(super) const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
@@ -12,7 +12,35 @@ pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 pub(super) const COLOUR: [[&str; 2]; 3] =
     [["red", "diffuse_red"], ["green", "diffuse_green"], ["blue", "diffuse_blue"]];
 
-/// The used part of an element.
+/// Place of a property in a [`Row`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    /// Coordinate 0 to 2.
+    Position(usize),
+    /// Component 0 to 2 of a colour.
+    Colour(usize),
+    /// The list of vertices.
+    Corners,
+    /// None: the property is not used.
+    Unused,
+}
+
+impl Slot {
+    /// The place of a property of this name.
+    pub(super) fn of(name: &str) -> Slot {
+        if let Some(k) = POSITION.iter().position(|&axis| axis == name) {
+            Slot::Position(k)
+        } else if let Some(k) = COLOUR.iter().position(|names| names.contains(&name)) {
+            Slot::Colour(k)
+        } else if CORNERS.contains(&name) {
+            Slot::Corners
+        } else {
+            Slot::Unused
+        }
+    }
+}
+
+/// Parts of an element that are used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Row {
     /// Coordinates of a vertex.
@@ -21,22 +49,49 @@ pub(super) struct Row {
     pub colour: [Option<f64>; 3],
     /// Vertices of a face by number, or of a strip.
     pub corners: Vec<i64>,
-    /// Numbers that the element has, those of list lengths included.
-    pub numbers: usize,
 }
 
-/// A number of any type, and the value of its type that is full strength in a colour.
-fn scalar(property: &Property) -> Option<(f64, f64)> {
-    Some(match *property {
-        Property::Char(value) => (value.into(), 127.0),
-        Property::UChar(value) => (value.into(), 255.0),
-        Property::Short(value) => (value.into(), 32_767.0),
-        Property::UShort(value) => (value.into(), 65_535.0),
+impl Row {
+    /// Forgets the last element.
+    pub(super) fn clear(&mut self) {
+        self.position = [0.0; 3];
+        self.colour = [None; 3];
+        self.corners.clear();
+    }
+
+    /// Takes a number of a type.
+    pub(super) fn set(&mut self, slot: Slot, value: f64, kind: &ScalarType) {
+        match slot {
+            Slot::Position(k) => self.position[k] = value,
+            Slot::Colour(k) => self.colour[k] = Some(value / full(kind)),
+            Slot::Corners | Slot::Unused => {}
+        }
+    }
+}
+
+/// The value of a type that is full strength in a colour.
+fn full(kind: &ScalarType) -> f64 {
+    match kind {
+        ScalarType::Char => 127.0,
         // Nobody's colours have 32 bits; programs that declare so mean octets.
-        Property::Int(value) => (value.into(), 255.0),
-        Property::UInt(value) => (value.into(), 255.0),
-        Property::Float(value) => (value.into(), 1.0),
-        Property::Double(value) => (value, 1.0),
+        ScalarType::UChar | ScalarType::Int | ScalarType::UInt => 255.0,
+        ScalarType::Short => 32_767.0,
+        ScalarType::UShort => 65_535.0,
+        ScalarType::Float | ScalarType::Double => 1.0,
+    }
+}
+
+/// A number of any type.
+fn scalar(property: &Property) -> Option<(f64, ScalarType)> {
+    Some(match *property {
+        Property::Char(value) => (value.into(), ScalarType::Char),
+        Property::UChar(value) => (value.into(), ScalarType::UChar),
+        Property::Short(value) => (value.into(), ScalarType::Short),
+        Property::UShort(value) => (value.into(), ScalarType::UShort),
+        Property::Int(value) => (value.into(), ScalarType::Int),
+        Property::UInt(value) => (value.into(), ScalarType::UInt),
+        Property::Float(value) => (value.into(), ScalarType::Float),
+        Property::Double(value) => (value, ScalarType::Double),
         _ => return None,
     })
 }
@@ -57,33 +112,17 @@ fn list(property: &Property) -> Option<Vec<i64>> {
     }
 }
 
-/// Numbers of a list with its length.
-fn length(property: &Property) -> usize {
-    1 + match property {
-        Property::ListFloat(values) => values.len(),
-        Property::ListDouble(values) => values.len(),
-        _ => list(property).map_or(0, |values| values.len()),
-    }
-}
-
+/// The library `ply-rs-bw` hands over the properties of binary files.
 impl PropertyAccess for Row {
     fn new() -> Row {
         Row::default()
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let Some((value, full)) = scalar(&property) else {
-            self.numbers += length(&property);
-            if CORNERS.contains(&name) {
-                self.corners = list(&property).unwrap_or_default();
-            }
-            return PropertyAccessResult::Set;
-        };
-        self.numbers += 1;
-        if let Some(k) = POSITION.iter().position(|&axis| axis == name) {
-            self.position[k] = value;
-        } else if let Some(k) = COLOUR.iter().position(|names| names.contains(&name)) {
-            self.colour[k] = Some(value / full);
+        match (scalar(&property), Slot::of(name)) {
+            (Some((value, kind)), slot) => self.set(slot, value, &kind),
+            (None, Slot::Corners) => self.corners = list(&property).unwrap_or_default(),
+            (None, _) => {}
         }
         PropertyAccessResult::Set
     }

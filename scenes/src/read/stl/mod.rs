@@ -26,7 +26,7 @@ use crate::model::Vec3;
 /// Errors: the first mistake.
 pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Report> {
     let bytes = bytes.into();
-    words::refuse_utf16(&bytes, name)?;
+    messages::refuse_utf16(&bytes, name)?;
     if binary::is_exact(&bytes) || !(is_text(&bytes) || bytes.is_empty()) {
         return binary::parse(bytes, name);
     }
@@ -36,6 +36,7 @@ pub fn parse<'a>(bytes: impl Into<Cow<'a, [u8]>>, name: &str) -> Result<Mesh, Re
 /// A file starts as text does. A binary file has zeros in the number of its triangles at least, if that is
 /// less than 2^24.
 fn is_text(bytes: &[u8]) -> bool {
+    let bytes = words::without_end_mark(bytes);
     let is_control = |&octet: &u8| octet < b' ' && !octet.is_ascii_whitespace() && octet != b'\x0b';
     !bytes[..bytes.len().min(512)].iter().any(is_control)
 }

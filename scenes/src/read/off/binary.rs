@@ -87,7 +87,7 @@ impl Numbers<'_> {
         Ok(value)
     }
 
-    /// Room for `count` things of at least `octets` each, where they may follow; somewhat too many pass, as in `Words::room`.
+    /// There is room for `count` things of at least `octets` each; somewhat too many pass, as in `Words::room`.
     fn room(&self, count: u32, octets: usize, what: &str) -> Result<usize, String> {
         let most = self.rest.len() / octets;
         if count as usize / 16 <= most {

@@ -1,18 +1,6 @@
-//! Who gets the bus next: one trait, one small file for each arbiter. When the bus is free is not decided here.
-
-mod fixed_priority;
-mod oldest_first;
-mod round_robin;
-mod tdma;
-mod weighted;
+//! Arbiters, which say who gets the bus next: one trait, one small file for each. When the bus is free is not decided here.
 
 use serde::{Deserialize, Serialize};
-
-pub use fixed_priority::FixedPriority;
-pub use oldest_first::OldestFirst;
-pub use round_robin::RoundRobin;
-pub use tdma::Tdma;
-pub use weighted::Weighted;
 
 use super::bus::Burst;
 use super::config::BusConfig;
@@ -21,13 +9,13 @@ use crate::code::quantity::Clocks;
 /// The bursts that masters ask for. A master's number is that of its core, the main processor comes after the last core.
 #[derive(Clone, Debug)]
 pub struct BusRequests {
-    /// When each begins to ask.
+    /// Clocks at which each begins to ask.
     pub(super) arrivals: Vec<Clocks>,
-    /// Its burst.
+    /// Bursts that they ask for.
     pub(super) bursts: Vec<Burst>,
 }
 
-/// When a master begins to ask that does not ask.
+/// Arrival of a master that does not ask.
 pub const NEVER: Clocks = Clocks(u64::MAX);
 
 impl BusRequests {
@@ -54,13 +42,13 @@ impl BusRequests {
         self.arrivals.len() as u32
     }
 
-    /// When a master began, or begins, to ask for its burst; beyond every clock for one that does not.
+    /// Clock at which a master began, or begins, to ask for its burst; beyond every clock for one that does not.
     #[inline]
     pub fn arrival(&self, master: u32) -> Clocks {
         self.arrivals[master as usize]
     }
 
-    /// How long a master's burst will hold the bus.
+    /// Length of a master's burst in clocks.
     #[inline]
     pub fn length(&self, master: u32) -> Clocks {
         self.bursts[master as usize].length
@@ -72,7 +60,7 @@ impl BusRequests {
         self.arrivals.iter().copied().min().filter(|&arrival| arrival != NEVER).map(|arrival| arrival.max(floor))
     }
 
-    /// Whether all that ask begin to before a clock.
+    /// True where all that ask begin to before a clock.
     pub(super) fn are_before(&self, clock: u64) -> bool {
         self.arrivals.iter().all(|&arrival| arrival.0 < clock || arrival == NEVER)
     }
@@ -94,7 +82,7 @@ impl BusRequests {
     }
 }
 
-/// What an arbiter decides.
+/// Decision of an arbiter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The bus goes to this master, which asks.
@@ -130,53 +118,57 @@ fn grant(master: Option<u32>, clock: Clocks) -> Verdict {
     master.map_or(Verdict::Later(clock + Clocks(1)), Verdict::Grant)
 }
 
-/// The arbiters that a machine can have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ArbiterKind {
-    /// [`FixedPriority`].
-    FixedPriority,
-    /// [`RoundRobin`].
-    #[default]
-    RoundRobin,
-    /// [`Weighted`].
-    Weighted,
-    /// [`OldestFirst`].
-    OldestFirst,
-    /// [`Tdma`].
-    Tdma,
+/// The arbiters that a machine can have: a line each, with its file, its type, its name in a machine's file, and how it is made for some masters.
+macro_rules! arbiters {
+    ($($file:ident $arbiter:ident $name:literal ($config:pat, $masters:pat) => $new:expr;)*) => {
+        $(mod $file;)*
+        $(pub use $file::$arbiter;)*
+
+        /// Kinds of arbiters that a machine can have.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        pub enum ArbiterKind {
+            $(
+                #[doc = concat!("[`", stringify!($arbiter), "`].")]
+                #[serde(rename = $name)]
+                $arbiter,
+            )*
+        }
+
+        impl ArbiterKind {
+            /// All of them, in the order of their names' first mention in the manual.
+            pub const ALL: [ArbiterKind; [$($name),*].len()] = [$(ArbiterKind::$arbiter),*];
+
+            /// Name, as in a machine's file.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(ArbiterKind::$arbiter => $name,)*
+                }
+            }
+
+            /// A new arbiter of the kind for that many masters, with its parameters.
+            pub fn build(self, config: &BusConfig, masters: u32) -> Box<dyn Arbiter> {
+                match self {
+                    $(ArbiterKind::$arbiter => {
+                        let ($config, $masters) = (config, masters);
+                        Box::new($new)
+                    })*
+                }
+            }
+        }
+    };
 }
 
-impl ArbiterKind {
-    /// All of them, in the order of their names' first mention in the manual.
-    pub const ALL: [ArbiterKind; 5] = [
-        ArbiterKind::FixedPriority,
-        ArbiterKind::RoundRobin,
-        ArbiterKind::Weighted,
-        ArbiterKind::OldestFirst,
-        ArbiterKind::Tdma,
-    ];
+arbiters! {
+    fixed_priority FixedPriority "fixed-priority" (_, _) => FixedPriority;
+    round_robin RoundRobin "round-robin" (_, _) => RoundRobin::new();
+    weighted Weighted "weighted" (config, masters) => Weighted::new(masters, &config.weights);
+    oldest_first OldestFirst "oldest-first" (_, _) => OldestFirst;
+    tdma Tdma "tdma" (config, masters) => Tdma::new(masters, Clocks(config.slot_clocks));
+}
 
-    /// Its name, as in a machine's file.
-    pub fn name(self) -> &'static str {
-        match self {
-            ArbiterKind::FixedPriority => "fixed-priority",
-            ArbiterKind::RoundRobin => "round-robin",
-            ArbiterKind::Weighted => "weighted",
-            ArbiterKind::OldestFirst => "oldest-first",
-            ArbiterKind::Tdma => "tdma",
-        }
-    }
-
-    /// A new arbiter of the kind for that many masters, with its parameters.
-    pub fn build(self, config: &BusConfig, masters: u32) -> Box<dyn Arbiter> {
-        match self {
-            ArbiterKind::FixedPriority => Box::new(FixedPriority),
-            ArbiterKind::RoundRobin => Box::new(RoundRobin::new()),
-            ArbiterKind::Weighted => Box::new(Weighted::new(masters, &config.weights)),
-            ArbiterKind::OldestFirst => Box::new(OldestFirst),
-            ArbiterKind::Tdma => Box::new(Tdma::new(masters, Clocks(config.slot_clocks))),
-        }
+impl Default for ArbiterKind {
+    fn default() -> ArbiterKind {
+        ArbiterKind::RoundRobin
     }
 }
 

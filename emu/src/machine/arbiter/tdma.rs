@@ -17,7 +17,7 @@ impl Tdma {
         Tdma { masters: u64::from(masters.max(1)), slot: slot.0.max(1) }
     }
 
-    /// When a master can get the bus for a time, at or after a clock.
+    /// Clock, at or after one, at which a master can get the bus for a time.
     fn next(&self, clock: Clocks, master: u32, length: Clocks) -> Clocks {
         let frame = self.slot * self.masters;
         let offset = u64::from(master) * self.slot;

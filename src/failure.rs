@@ -20,6 +20,16 @@ pub enum Exit {
     StepLimit = 5,
 }
 
+impl Exit {
+    /// Exit code of a command that ends with a trap.
+    pub fn of_trap(trap: &emu::trap::Trap) -> Exit {
+        match trap.kind {
+            emu::trap::Fault::StepLimit(_) => Exit::StepLimit,
+            _ => Exit::Trap,
+        }
+    }
+}
+
 /// A reason for which a command did not do its work.
 #[derive(Debug)]
 pub enum Failure {
@@ -55,10 +65,9 @@ impl From<Diagnostic> for Failure {
 
 impl From<emu::machine::Failure> for Failure {
     fn from(failure: emu::machine::Failure) -> Failure {
-        let exit = match failure.exit_code() {
-            3 => Exit::Trap,
-            5 => Exit::StepLimit,
-            _ => Exit::Input,
+        let exit = match &failure {
+            emu::machine::Failure::Setup(_) => Exit::Input,
+            emu::machine::Failure::Trap(trap) => Exit::of_trap(trap),
         };
         Failure::Message { report: failure.report(), exit }
     }

@@ -105,7 +105,7 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         None => Ok(Exit::Done),
         Some(trap) => {
             let mut report = Report::from(trap.diagnostic());
-            let exit = if trap.exit_code() == 5 { Exit::StepLimit } else { Exit::Trap };
+            let exit = Exit::of_trap(trap);
             if exit == Exit::StepLimit {
                 let hint = "a loop that does not end? --max-steps allows more";
                 report.0 = report.0.into_iter().map(|message| message.hint(hint)).collect();

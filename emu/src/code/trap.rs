@@ -1,4 +1,4 @@
-//! What stops a program that did not end by itself, and how that is told to a person.
+//! Traps: faults that stop a program, and their messages for a person.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use messages::{Diagnostic, Place};
 
 use crate::code::Code;
 
-/// What went wrong, without where.
+/// Fault of a program, without its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The word is no instruction.
@@ -23,7 +23,7 @@ pub enum Fault {
     Buffer {
         /// First octet.
         address: u32,
-        /// How many.
+        /// Number of octets.
         octets: u32,
         /// Octets of the buffer.
         size: u32,
@@ -32,7 +32,7 @@ pub enum Fault {
     Memory {
         /// First octet.
         address: u32,
-        /// How many.
+        /// Number of octets.
         octets: u32,
         /// Octets of the memory.
         size: u64,
@@ -57,7 +57,7 @@ pub enum Fault {
     Deadlock,
     /// More instructions than a work item may take.
     StepLimit(u64),
-    /// What the meaning in Rust of an extension instruction refuses, with its reason.
+    /// Refusal by the meaning in Rust of an extension instruction, with its reason.
     Refused(&'static str),
     /// A division by zero, where the machine traps on it.
     DivisionByZero,
@@ -97,7 +97,7 @@ fn span(address: u32, octets: u32) -> String {
     format!("{address}..{}", u64::from(address) + u64::from(octets))
 }
 
-/// Why an instruction was not executed.
+/// Reason for which an instruction was not executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// Something is wrong.
@@ -115,7 +115,7 @@ impl From<Fault> for Stop {
 /// A fault with the place where it happened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trap {
-    /// What went wrong.
+    /// Fault that stopped it.
     pub kind: Fault,
     /// Number of the core; the main processor is the number of cores.
     pub core: u32,
@@ -125,11 +125,11 @@ pub struct Trap {
     pub function: Option<String>,
     /// `file:line` of the instruction.
     pub place: Option<String>,
-    /// Its source line.
+    /// Source line of the instruction.
     pub line: Option<Place>,
     /// The line of the body of the extension instruction that went wrong there, if it is one.
     pub body: Option<Place>,
-    /// What else is known: the work item, what others wait for. Empty when nothing is.
+    /// Details: the work item, what others wait for. Empty when nothing is known.
     pub detail: String,
 }
 
@@ -152,15 +152,10 @@ impl Trap {
         }
     }
 
-    /// The same with more to say.
+    /// Trap with more to say.
     pub fn with_detail(mut self, detail: impl Into<String>) -> Trap {
         self.detail = detail.into();
         self
-    }
-
-    /// Exit code of a command that ends with this trap: 5 for a step limit, else 3.
-    pub fn exit_code(&self) -> u8 {
-        if matches!(self.kind, Fault::StepLimit(_)) { 5 } else { 3 }
     }
 
     /// The message with the source line.

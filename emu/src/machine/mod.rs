@@ -36,7 +36,7 @@ use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
 use crate::semantics::{Computes, Watch};
 
-/// What a machine runs.
+/// Setup of a run: a machine and its programs.
 #[derive(Clone)]
 pub struct Setup<'a> {
     /// The machine.
@@ -49,7 +49,7 @@ pub struct Setup<'a> {
     pub main: &'a Program,
     /// Names for ranges of global memory, for the totals by kind; ranges must not overlap, names may repeat.
     pub kinds: Vec<(Range<u32>, String)>,
-    /// What is recorded.
+    /// Records that are wanted.
     pub options: Options,
 }
 
@@ -70,7 +70,7 @@ impl Setup<'_> {
     }
 }
 
-/// What a run records beyond counts and times.
+/// Records of a run beyond counts and times, and the engine that it wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// Functions and regions: inclusive counts, calls, least and most a call. Costs time.
@@ -79,9 +79,9 @@ pub struct Options {
     pub has_items: bool,
     /// Losses in the results of each instruction: [`crate::code::tally::Losses`]. Costs time.
     pub has_losses: bool,
-    /// What every processor and the bus do in this window of clocks.
+    /// Trace of every processor and of the bus in this window of clocks.
     pub window: Option<Window>,
-    /// What runs the work items; see [`Setup::engine`].
+    /// Engine that is wanted for the work items; see [`Setup::engine`].
     pub engine: EngineKind,
     /// Vector instructions of the host that an engine may use at most; `None` for all that there are.
     pub simd: Option<HostSimd>,
@@ -96,7 +96,7 @@ impl Options {
     }
 }
 
-/// Why a run has no result.
+/// Reason for which a run has no result.
 #[derive(Clone, Debug)]
 pub enum Failure {
     /// The machine or the programs cannot be used.
@@ -106,14 +106,6 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Exit code of a command that ends with it: 1 for the setup, 3 for a trap, 5 for a step limit.
-    pub fn exit_code(&self) -> u8 {
-        match self {
-            Failure::Setup(_) => 1,
-            Failure::Trap(trap) => trap.exit_code(),
-        }
-    }
-
     /// The messages for a person.
     pub fn report(&self) -> Report {
         match self {
@@ -146,7 +138,7 @@ impl From<Report> for Failure {
     }
 }
 
-/// Whether a machine and its programs can be used.
+/// Check that a machine and its programs can be used.
 ///
 /// # Errors
 /// A machine out of its ranges, initial data that do not fit a buffer, or a cache of data that nothing is called.
@@ -173,7 +165,7 @@ pub(crate) fn on_arithmetic<W: Task>(setup: &Setup, task: W) -> W::Result {
     dispatch(setup.config.arithmetic.watching(setup.options.has_losses), setup.options.has_profile, task)
 }
 
-/// Whether what a program wants in its buffer fits.
+/// Check that the data that a program wants in its buffer fit.
 pub(crate) fn check_buffer(whose: &str, program: &Program, octets: u32) -> Result<(), Report> {
     if program.buffer.len() <= octets as usize {
         return Ok(());

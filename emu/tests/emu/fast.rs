@@ -14,7 +14,7 @@ use super::machine::dispatch;
 /// Octets of global memory; answers lie in front.
 const MEMORY: i64 = 2000;
 
-/// Where work items read.
+/// Address from which work items read.
 const DATA: i64 = 400;
 
 /// Items of a frame: more than a host thread takes at a time.

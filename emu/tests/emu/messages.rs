@@ -249,7 +249,7 @@ fn waiting_for_each_other_is_a_trap_that_names_all() {
             p.emit(Op::send5, &[0, 0]).emit(Op::recv2, &[0, 1]).emit(Op::halt, &[]);
         },
     );
-    assert_eq!((found.kind, found.core, found.exit_code()), (Fault::Deadlock, 0, 3));
+    assert_eq!((found.kind, found.core), (Fault::Deadlock, 0));
     assert_eq!(found.detail, "core 0 waits for a message at test.s:2, core 2 waits for a message at test.s:2");
 }
 
@@ -302,7 +302,7 @@ fn cores_cannot_play_on_among_themselves_for_ever() {
             p.emit(Op::send5, &[0, 0]).emit(Op::recv2, &[0, 1]).emit(Op::halt, &[]);
         },
     );
-    assert_eq!((found.kind, found.exit_code()), (Fault::StepLimit(10_000), 5));
+    assert_eq!(found.kind, Fault::StepLimit(10_000));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What functions and regions are said to cost.
+//! Costs that functions and regions are said to have.
 
 use emu::engine::Wish;
 use emu::machine::Config;

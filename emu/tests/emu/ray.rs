@@ -1,4 +1,4 @@
-//! What the rows of the ray unit hand back: rounded quotients, planes as patterns, addresses of children.
+//! Results of the ray unit: rounded quotients, planes as patterns, addresses of children.
 
 use emu::semantics::RayRoom;
 use isa::number::ray::Plane;

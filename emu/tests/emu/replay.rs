@@ -1,4 +1,4 @@
-//! What is replayed takes the same clocks, counts and octets as what is stepped, and what cannot be replayed is stepped.
+//! Replay takes the same clocks, counts and octets as stepping, and what cannot be replayed is stepped.
 
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::{BusConfig, CacheConfig};

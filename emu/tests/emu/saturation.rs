@@ -1,4 +1,4 @@
-//! Where the bus saturates: the report's estimate of a pixel as a load, against the closed form.
+//! Saturation of the bus: the report's estimate of a pixel as a load, against the closed form.
 
 use emu::machine::config::MainConfig;
 use emu::machine::{Config, Options, RunOutcome, Setup};

@@ -13,7 +13,7 @@ use super::builder::program;
 /// Copies of a row: more than twice as many as there are between two looks.
 const COPIES: usize = 36_000;
 
-/// What the standard library gives a thread.
+/// Stack that the standard library gives a thread.
 const STACK: usize = 2 << 20;
 
 /// Copies without a branch: the engine refuses runs that are longer than a quarter of what its sums hold.

@@ -80,7 +80,7 @@ fn written(functions: &[Vec<Piece>]) -> Program {
     })
 }
 
-/// What a call of a function adds, by the model: its own pieces and all that they call.
+/// Cost that a call of a function adds, by the model: its own pieces and all that they call.
 fn adds(functions: &[Vec<Piece>], function: usize) -> u64 {
     let Some(body) = functions.get(function) else { return 0 };
     body.iter().map(|piece| adds_of(functions, function, piece)).sum()

@@ -17,12 +17,12 @@ use crate::machine::single::{Single, SingleRun, run};
 /// Octets of the buffer and of global memory, filled at random, that the instruction may reach.
 const OCTETS: usize = 4096;
 
-/// What is compared, and how closely.
+/// Trial of a meaning: what is compared, and how closely.
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// Executions, each on other operands.
     pub cases: u32,
-    /// Where the random numbers start.
+    /// Seed of the random numbers.
     pub seed: u64,
     /// Largest difference of a result, in raw units, that is none: what an approximation is allowed.
     pub tolerance: u64,
@@ -38,7 +38,7 @@ impl Default for Trial {
     }
 }
 
-/// What a comparison found that has no mismatch.
+/// Agreement of a comparison without a mismatch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
     /// Executions that both ended.
@@ -54,9 +54,9 @@ pub struct Agreement {
 pub struct Mismatch {
     /// The instruction as assembly text.
     pub instruction: String,
-    /// What its operands held before: name and value.
+    /// Operands before the instruction: name and value.
     pub operands: Vec<(String, String)>,
-    /// What differs: name, value by the body, value by the meaning.
+    /// Differences: name, value by the body, value by the meaning.
     pub differences: Vec<(String, String, String)>,
 }
 

@@ -7,7 +7,7 @@ use isa::Kind;
 
 use crate::code::Code;
 
-/// What stands at a place of the order.
+/// Occupant of a place of the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// A slot.
@@ -65,7 +65,7 @@ impl Order {
         Order { stages, places, end: words }
     }
 
-    /// What stands at each place.
+    /// Occupants by place.
     #[inline]
     pub fn stages(&self) -> &[Stage] {
         &self.stages

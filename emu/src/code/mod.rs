@@ -34,7 +34,7 @@ pub const MOST_BODY_SLOTS: usize = 1 << 18;
 pub struct Slot {
     /// The instruction; `None` for a word that is none, which traps when it is executed.
     pub op: Option<Op>,
-    /// Its operands.
+    /// Operands.
     pub fields: Fields,
     /// Number of the pass through its first exit; those of its other exits follow.
     pub first_exit: u32,
@@ -42,20 +42,20 @@ pub struct Slot {
     pub next: u32,
 }
 
-/// What one exit of one slot adds to a run, apart from its units.
+/// Cost that one exit of one slot adds to a run, apart from its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ExitCost {
     /// Time.
     pub clocks: u32,
     /// Elementary operations: add, sub, mul, div and cmp.
     pub elementary: u32,
-    /// Whether its units take clocks or elementary operations; octets do not, as long as the bus accounts for them.
+    /// Units take clocks or elementary operations; octets do not, as long as the bus accounts for them.
     pub has_busy_units: bool,
-    /// Whether it is a step of a body that goes on: no instruction of the program ends with it.
+    /// True for a step of a body that goes on: no instruction of the program ends with it.
     pub is_inner: bool,
 }
 
-/// What a pass belongs to and counts.
+/// Owner of a pass, and what the pass counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pass {
     /// The word for which it counts.
@@ -78,16 +78,16 @@ struct Inner {
 pub struct Code<'a> {
     /// The program.
     pub program: &'a Program,
-    /// Where its rows come from.
+    /// Instruction set of its instructions.
     pub isa: &'a Isa,
-    /// What operations take.
+    /// Times of operations.
     pub timing: Timing,
     slots: Vec<Slot>,
     costs: Vec<ExitCost>,
     passes: Vec<Pass>,
     /// The first pass of each word, and the end of the last one's.
     starts: Vec<u32>,
-    /// What the slots behind the words belong to.
+    /// Owners of the slots behind the words.
     inner: Vec<Inner>,
     /// The words that bodies stand for, in their order.
     extended: Vec<(u32, Op)>,
@@ -114,7 +114,7 @@ impl From<TooLarge> for Diagnostic {
     }
 }
 
-/// Whether the bodies of a program's extension instructions fit.
+/// Check that the bodies of a program's extension instructions fit.
 ///
 /// # Errors
 /// They do not; then [`Code::new`] leaves the last ones without a meaning.
@@ -282,7 +282,7 @@ impl<'a> Code<'a> {
         self.inner.get(slot.checked_sub(self.words() + 1)? as usize).copied()
     }
 
-    /// Whether a control instruction in one slot leaves the program by leading to another: only a body leads behind the words.
+    /// True where a control instruction in one slot leaves the program by leading to another: only a body leads behind the words.
     #[inline]
     pub fn is_outside(&self, from: u32, to: u32) -> bool {
         to >= self.words() && (to as usize >= self.slots.len() || !self.is_in_body(from))
@@ -292,12 +292,12 @@ impl<'a> Code<'a> {
         slot > self.words() || self.has_body(slot)
     }
 
-    /// Whether a body stands in the place of a word.
+    /// True where a body stands in the place of a word.
     fn has_body(&self, word: u32) -> bool {
         self.extended.binary_search_by_key(&word, |&(word, _)| word).is_ok()
     }
 
-    /// Where the distance of a word's row leads: the word behind it where it has none, the program's end where it leads out.
+    /// Target of the distance of a word's instruction: the word behind it where it has none, the program's end where it leads out.
     pub fn distant(&self, word: u32) -> u32 {
         let slot = &self.slots[word as usize];
         let operands = slot.op.map_or(&[][..], |op| &self.isa.definition(op).operands);
@@ -324,19 +324,19 @@ impl<'a> Code<'a> {
         Some(self.isa.definition(self.slots.get(slot as usize)?.op?))
     }
 
-    /// Where the body stands that a slot is a step of.
+    /// Place in the source of the body that a slot is a step of.
     pub fn body_place(&self, slot: u32) -> Option<Place> {
         let word = self.word(slot);
         let body = self.isa.body(self.op(word)?).filter(|_| self.has_body(word))?;
         body.place(self.inner(slot).map_or(0, |inner| inner.step as usize))
     }
 
-    /// What the passes cost, by number.
+    /// Costs of the passes, by number.
     pub fn costs(&self) -> &[ExitCost] {
         &self.costs
     }
 
-    /// What the passes are, by number.
+    /// Owners of the passes, by number.
     pub fn passes(&self) -> &[Pass] {
         &self.passes
     }
@@ -349,7 +349,7 @@ impl<'a> Code<'a> {
         }
     }
 
-    /// What a pass costs, and what each of its units adds.
+    /// Cost of a pass, and what each of its units adds.
     pub fn pass_cost(&self, pass: usize) -> (Counts, Counts) {
         match self.passes.get(pass).and_then(|pass| pass.cost) {
             Some((op, exit)) => {

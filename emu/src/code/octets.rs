@@ -8,10 +8,10 @@ pub use memory::Memory;
 
 use crate::code::trap::Fault;
 
-/// What a work item finds where nobody has written: a pattern that stands out in a dump.
+/// Octet of a buffer that nobody has written: a pattern that stands out in a dump.
 pub const POISON: u8 = 0xa5;
 
-/// Where `length` octets from `address` on lie in something of `size` octets, if they do.
+/// Range of `length` octets from `address` on in something of `size` octets; `None` where they do not fit.
 #[inline]
 fn range(address: u32, length: u32, size: usize) -> Option<std::ops::Range<usize>> {
     let start = address as usize;

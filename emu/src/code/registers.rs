@@ -113,7 +113,7 @@ impl Registers {
         &self.vectors[usize::from(number)].0
     }
 
-    /// The same to write; the fourth lane is to stay 0.
+    /// Four words of a vector, to write; the fourth is to stay 0.
     #[inline]
     pub(crate) fn padded_mut(&mut self, number: u8) -> &mut [i32; 4] {
         &mut self.vectors[usize::from(number)].0

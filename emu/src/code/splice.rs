@@ -9,7 +9,7 @@ use isa::definition::{InstructionDef, Kind, Operand};
 use isa::extension::{Act, Body, Immediate, registers};
 use isa::{Fields, Isa, Op};
 
-/// Where a slot of a splice leads to.
+/// Target of a slot of a splice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SpliceTarget {
     /// To another slot of the splice.
@@ -20,7 +20,7 @@ pub(crate) enum SpliceTarget {
     Away(i32),
 }
 
-/// What the pass through a slot of a splice counts.
+/// Count of a pass through a slot of a splice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Passing {
     /// A step of the body: what its row costs, where the exits of the instruction cost what the body does.
@@ -39,7 +39,7 @@ pub(crate) struct SpliceSlot {
     pub op: Op,
     pub fields: Fields,
     pub way: SpliceTarget,
-    /// Where it branches to: the operand's letter and the slot of the splice.
+    /// Branch target: the operand's letter and the slot of the splice.
     pub branch: Option<(u8, usize)>,
     pub passing: Passing,
     /// The row whose cost a step has.
@@ -52,9 +52,9 @@ pub(crate) struct SpliceSlot {
 struct InstanceOperand {
     operand: Operand,
     file: char,
-    /// Its first register in the program.
+    /// First register in the program.
     outer: u8,
-    /// Its first register while the body runs.
+    /// First register while the body runs.
     inner: u8,
 }
 
@@ -143,7 +143,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
     pieces
 }
 
-/// Where each register operand is while the body runs.
+/// Registers of each operand while the body runs.
 fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<InstanceOperand> {
     let mut places: Vec<InstanceOperand> = (row.operands.iter())
         .filter_map(|&operand| {
@@ -168,7 +168,7 @@ fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<
     places
 }
 
-/// Whether a destination may be written before the body has ended.
+/// True where a destination may be written before the body has ended.
 fn is_safe(place: &InstanceOperand, places: &[InstanceOperand], body: &Body, isa: &Isa) -> bool {
     let others = places.iter().filter(|other| {
         other.operand.letter != place.operand.letter

@@ -1,4 +1,4 @@
-//! How often each exit of each word was taken, and what that folds into: classes, lines. Engines only add to it.
+//! Tally of passes: how often each outcome of each word was taken, folded into classes and lines afterwards. Engines only add to it.
 
 use std::collections::BTreeMap;
 
@@ -10,15 +10,15 @@ use crate::code::{Code, ExitCost};
 /// Passes through one exit of one word, beside what one pass takes: an engine looks at both for each instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Passes {
-    /// How often.
+    /// Number of passes.
     pub count: u64,
     /// Units of the per-unit cost, summed.
     pub units: u64,
-    /// What one pass takes, its units left out.
+    /// Cost of one pass, its units left out.
     pub cost: ExitCost,
 }
 
-/// What numeric results lost on their way into words: the flags of IEEE 1666, counted. A vector has three results.
+/// Losses of numeric results on their way into words: the flags of IEEE 1666, counted. A vector has three results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Losses {
     /// Results that lost bits below the last place.
@@ -44,7 +44,7 @@ pub struct Tally {
     losses: Vec<Losses>,
 }
 
-/// What one source line took.
+/// Cost of one source line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LineCount {
     /// Instructions executed.
@@ -75,7 +75,7 @@ impl Tally {
         (&mut self.passes, &mut self.losses)
     }
 
-    /// What the results of each word lost, those of its body included.
+    /// Losses of the results of each word, those of its body included.
     pub fn losses(&self, code: &Code) -> Vec<Losses> {
         let mut words = vec![Losses::default(); code.words() as usize];
         for (slot, &losses) in (0..).zip(&self.losses) {
@@ -138,7 +138,7 @@ impl Tally {
         total
     }
 
-    /// What each source line took, for lines that were executed.
+    /// Costs of the source lines that were executed.
     pub fn lines(&self, code: &Code) -> BTreeMap<Line, LineCount> {
         let mut lines: BTreeMap<Line, LineCount> = BTreeMap::new();
         for (pc, &line) in code.program.lines.iter().enumerate() {

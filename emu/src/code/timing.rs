@@ -1,4 +1,4 @@
-//! How many clocks an instruction takes, from what it costs in operations.
+//! Clocks of an instruction, from its cost in operations.
 
 use isa::{Class, Counts};
 

@@ -1,4 +1,4 @@
-//! What runs take: four numbers that are added up as one.
+//! Cost of runs: four numbers that are added up as one.
 
 use crate::code::ExitCost;
 
@@ -49,7 +49,7 @@ impl Cost {
         Cost(FIELDS.iter().map(|&field| self.part(field).max(other.part(field)) << field.0).sum())
     }
 
-    /// Whether none of the numbers has come to a quarter of the room for it: two runs and what their exits add fit on top of a half.
+    /// True where none of the numbers has come to a quarter of the room for it: two runs and what their exits add fit on top of a half.
     pub(super) fn is_small(self) -> bool {
         self.0 & (HALVES | HALVES >> 1) == 0
     }

@@ -3,7 +3,7 @@
 /// Vector instructions of a host, best last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HostSimd {
-    /// What every host can.
+    /// Instructions of every host.
     Baseline,
     /// Vectors of 256 bits.
     Avx2,
@@ -21,7 +21,7 @@ impl HostSimd {
         }
     }
 
-    /// Whether this host has them.
+    /// True where this host has them.
     #[cfg(target_arch = "x86_64")]
     pub fn is_present(self) -> bool {
         macro_rules! has {
@@ -34,7 +34,7 @@ impl HostSimd {
         }
     }
 
-    /// Whether this host has them.
+    /// True where this host has them.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn is_present(self) -> bool {
         self == HostSimd::Baseline

@@ -15,12 +15,12 @@ use crate::semantics::{
     Watch, WideRoom, split_operands,
 };
 
-/// What becomes of a program after an instruction.
+/// Course of a program after an instruction.
 #[derive(Clone, Copy)]
 enum After {
     Goes,
     Ends(End),
-    /// It leads outside of the program.
+    /// The instruction leads outside of the program.
     Strays,
 }
 

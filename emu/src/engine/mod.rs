@@ -31,7 +31,7 @@ use crate::code::trap::{Fault, Stop};
 use crate::profile::RunObserver;
 use crate::semantics::{Link, Message, Watch, methods};
 
-/// Why an engine does not run a program, as the end of a sentence.
+/// Reason for which an engine does not run a program, as the end of a sentence.
 pub type Refusal = &'static str;
 
 /// Takes octets that were read of a kind of data.
@@ -76,10 +76,10 @@ pub trait Engine<'a>: Sized {
 
 /// The machine as a work item sees it.
 pub trait TimedLink: Link {
-    /// Whether it wants to know when it is asked.
+    /// True for a link that is told when it is asked.
     fn keeps_time(&self) -> bool;
 
-    /// When and where it is asked next; the time only where it is kept.
+    /// Notice of when and where the link is asked next; the time only where it is kept.
     fn note(&mut self, time: RequestTime);
 
     /// The link as one whose memory may be read directly, where it is one.
@@ -91,7 +91,7 @@ pub trait TimedLink: Link {
 /// A link to which the time does not matter.
 pub struct Timeless<'a>(pub &'a mut dyn Link);
 
-/// Why the engine stopped. The state is that before the instruction at the program counter, but for `halt`, which has been executed.
+/// Reason for which an engine stopped. The state is that before the instruction at the program counter, but for `halt`, which has been executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stopped {
     /// The program executed `halt`.
@@ -104,7 +104,7 @@ pub enum Stopped {
     Bailout,
 }
 
-/// When and where a work item asks the machine for something.
+/// Time and place at which a work item asks the machine for something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RequestTime {
     /// Word of the instruction.

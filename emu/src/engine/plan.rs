@@ -19,13 +19,13 @@ pub struct Step {
     pub row: u8,
     /// Number of its exits.
     pub exits: u8,
-    /// Whether its exits take different times or numbers of operations.
+    /// The exits take different times or numbers of operations.
     pub is_uneven: bool,
-    /// Its operands.
+    /// Operands.
     pub fields: Fields,
     /// Number of its first exit: see [`Plan::pass`].
     pub exit: u32,
-    /// Its slot; of a hop that to which it leads.
+    /// Slot of the step; of a hop that to which it leads.
     pub slot: u32,
     /// Of a control row: what the exit that falls through and the run behind it take, then the same of the other exit, where its target is
     /// known; what has to be looked at has the [`FLAG`].
@@ -34,7 +34,7 @@ pub struct Step {
     pub target: u32,
     /// Number of the instruction whose meaning is in Rust.
     pub unit: u16,
-    /// What a run takes that begins here, with the [`FLAG`] where it has to be looked at.
+    /// Cost of the run that begins here, with the [`FLAG`] where it has to be looked at.
     pub cost: u64,
 }
 
@@ -47,7 +47,7 @@ impl Step {
     pub const BAILOUT: u8 = Step::UNIT + 1;
 }
 
-/// What a pass is called that belongs to no exit of the program: that through a hop.
+/// Number of a pass that belongs to no exit of the program: that through a hop.
 const NO_PASS: u32 = u32::MAX;
 
 /// A table by [`Step::row`]: what stands last is for all numbers behind it as well.
@@ -75,7 +75,7 @@ pub struct Plan<'a> {
     has_inner_steps: bool,
     /// Number of words.
     pub words: u32,
-    /// Whether their places are their numbers.
+    /// Places of words are their numbers.
     is_in_order: bool,
     /// By exit: what it adds to the cost of its run; 0 where all exits of the slot take the same.
     extra: Vec<Cost>,
@@ -84,7 +84,7 @@ pub struct Plan<'a> {
     steps: Vec<Step>,
     /// By place: the end of the run that begins there, behind the next control row or in front of the end of the program.
     run_ends: Vec<u32>,
-    /// How many places up to here matter to what is known of the cores: while no register holds their number, and while one does.
+    /// Number of places up to here that matter to the taint: while no register holds the number of cores, and while one does.
     asking: [Vec<u32>; 2],
 }
 
@@ -175,7 +175,7 @@ impl<'a> Plan<'a> {
         Some(plan)
     }
 
-    /// The same for those who do not ask what depends on the number of cores.
+    /// Plan for those who do not ask what depends on the number of cores.
     pub fn regardless_of_cores(mut self) -> Plan<'a> {
         self.asking.iter_mut().for_each(|sums| sums.fill(0));
         let firsts: Vec<usize> = self.steps().iter().map(|step| step.exit as usize).collect();
@@ -191,13 +191,13 @@ impl<'a> Plan<'a> {
         self.steps = ways.iter().flat_map(steps).collect();
     }
 
-    /// Whether there are steps that are no instructions.
+    /// True where there are steps that are no instructions.
     #[inline]
     pub fn has_inner_steps(&self) -> bool {
         self.has_inner_steps
     }
 
-    /// What a run takes, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
+    /// Cost of a run, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
     fn flagged_cost(&self, place: u32, is_held: bool) -> u64 {
         match place <= self.end() {
             true if self.asks(&(place..self.run_end(place)), is_held) => FLAG | self.run_cost(place).0,
@@ -280,19 +280,19 @@ impl<'a> Plan<'a> {
         self.passes.get(exit).filter(|&&pass| pass != NO_PASS).map(|&pass| pass as usize)
     }
 
-    /// How many exits there are.
+    /// Number of exits.
     pub fn exits(&self) -> usize {
         self.passes.len()
     }
 
-    /// Whether one of some places matters to what is known of the cores; `is_held` where a register holds their number.
+    /// True where one of some places matters to the taint; `is_held` where a register holds the number of cores.
     #[inline(always)]
     pub fn asks(&self, places: &Range<u32>, is_held: bool) -> bool {
         let sums = &self.asking[usize::from(is_held)];
         sums[places.start as usize] != sums[places.end as usize]
     }
 
-    /// What a place does with numbers of cores.
+    /// Taint effect of a place.
     pub fn effect(&self, place: u32) -> TaintEffect {
         self.effects[place as usize]
     }
@@ -303,7 +303,7 @@ impl<'a> Plan<'a> {
         &self.steps[..self.before.len()]
     }
 
-    /// The same for an item in which a register holds the number of cores, or in which none does.
+    /// Steps for an item in which a register holds the number of cores, or in which none does.
     #[inline(always)]
     pub fn steps_of(&self, is_held: bool) -> &[Step] {
         match self.steps.get(self.before.len()..) {
@@ -312,12 +312,12 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Whether a run ends behind a place.
+    /// True where a run ends behind a place.
     pub fn is_run_end(&self, place: u32) -> bool {
         self.run_end(place) == place + 1
     }
 
-    /// Whether control that leaves a run by the first exit of its last step goes on behind that, with no other sign of it.
+    /// True where control that leaves a run by the first exit of its last step goes on behind that, with no other sign of it.
     pub fn falls_through(&self, place: u32) -> bool {
         let step = &self.steps[place as usize];
         step.row != Step::UNIT && step.exits > 1
@@ -329,7 +329,7 @@ impl<'a> Plan<'a> {
         self.run_ends[place as usize]
     }
 
-    /// What a run takes, without what depends on exits.
+    /// Cost of a run, without what depends on exits.
     #[inline(always)]
     pub fn run_cost(&self, place: u32) -> Cost {
         self.cost(place, self.run_end(place))
@@ -349,12 +349,12 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Whether a row says how far away control may go.
+/// True for an instruction that says how far away control may go.
 fn branches(row: &InstructionDef) -> bool {
     row.operands.iter().any(|operand| operand.kind == Kind::Rel)
 }
 
-/// Whether control may go elsewhere than to the next place.
+/// True where control may go elsewhere than to the next place.
 fn ends_run(code: &Code, stage: Stage) -> bool {
     let Stage::Slot(slot) = stage else { return true };
     let Some(row) = code.slot_row(slot) else { return true };

@@ -9,9 +9,9 @@ use crate::extension::Units;
 /// Everything about one core that its program can see or change by itself, and how far it has come.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// Its registers.
+    /// Registers of the core.
     pub registers: Registers,
-    /// Its local buffer.
+    /// Local buffer of the core.
     pub buffer: Buffer,
     /// Slot of the next instruction: its word, or a step of a body behind the words.
     pub pc: u32,
@@ -23,7 +23,7 @@ pub struct State {
     pub clocks: u64,
     /// Elementary operations of those instructions.
     pub elementary: u64,
-    /// What executes instructions with a meaning in Rust.
+    /// Units that execute instructions with a meaning in Rust.
     pub(crate) units: Units,
 }
 
@@ -36,7 +36,7 @@ impl State {
         State { registers, buffer, pc, steps: 0, inner_steps: 0, clocks: 0, elementary: 0, units }
     }
 
-    /// The same core after another reset.
+    /// Reset of the same core.
     pub fn begin(&mut self, code: &Code, initial: &Buffer) {
         self.registers.reset();
         self.buffer.reset_to(initial);
@@ -46,10 +46,10 @@ impl State {
     }
 }
 
-/// Who and where a core is, and how long it may run.
+/// Number of a core among all, and how long it may run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoreId {
-    /// Its number.
+    /// Number of the core.
     pub core: u32,
     /// Number of cores, the main processor not counted.
     pub cores: u32,
@@ -57,7 +57,7 @@ pub struct CoreId {
     pub step_limit: u64,
 }
 
-/// Why an engine stopped.
+/// Reason for which an engine stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pause {
     /// The program executed `halt`.

@@ -1,4 +1,4 @@
-//! What a meaning in Rust works with: operands as values, results that wait for its end, the local buffer, octets from the bus.
+//! Call of a meaning in Rust: operands as values, results that wait for its end, the local buffer, octets from the bus.
 
 use isa::number::Vector;
 use isa::{Fields, Kind};
@@ -93,7 +93,7 @@ impl Operands<'_> {
 
 /// One execution of an instruction.
 pub struct Call<'a> {
-    /// Its operands.
+    /// Operands.
     pub operands: Operands<'a>,
     /// The core's local buffer. What is written there stays, also when the instruction traps.
     pub buffer: &'a mut Buffer,

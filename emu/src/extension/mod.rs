@@ -38,7 +38,7 @@ pub use crate::semantics::Numbers;
 use crate::code::Code;
 use crate::code::trap::Fault;
 
-/// What an extension instruction does.
+/// Meaning of an extension instruction.
 ///
 /// What is attached is the state after reset: each core works with a clone of it, and begins each work item with a new one, so that a
 /// work item's result depends on nothing but its message ([`Meaning::keeps_state`] says otherwise). A meaning is to be a function of that
@@ -59,7 +59,7 @@ pub trait Meaning: DynClone + fmt::Debug + Send + Sync + 'static {
     /// What stops the machine: a trap at the instruction, which then has written no register. [`Fault::Refused`] carries a text.
     fn execute(&mut self, call: &mut Call) -> Result<Ending, Fault>;
 
-    /// Whether a core keeps the state from one work item to the next, as a cache does. Frames are then stepped in the order of the machine's
+    /// True where a core keeps the state from one work item to the next, as a cache does. Frames are then stepped in the order of the machine's
     /// clocks instead of replayed, and what a work item computes may depend on the machine.
     fn keeps_state(&self) -> bool {
         false
@@ -85,14 +85,14 @@ impl Meaning for Box<dyn Meaning> {
 /// Most octets that an instruction with a meaning in Rust reads at once.
 pub const MOST_OCTETS: u32 = 1 << 16;
 
-/// How an instruction ended.
+/// Ending of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ending {
     /// Number of the exit in the row, from 0.
     pub exit: u8,
     /// Units that the exit costs by `each`.
     pub units: u32,
-    /// Whether the program goes on where the row's distance leads.
+    /// The program goes on where the instruction's distance leads.
     pub is_taken: bool,
 }
 
@@ -105,18 +105,18 @@ impl Ending {
         Ending { exit, units: 0, is_taken: false }
     }
 
-    /// The same with units of what the exit costs by `each`.
+    /// Ending with units of what the exit costs by `each`.
     pub const fn with_units(self, units: u32) -> Ending {
         Ending { units, ..self }
     }
 
-    /// The same, going on where the row's distance (`Rel`) leads.
+    /// Ending that goes on where the instruction's distance (`Rel`) leads.
     pub const fn taken(self) -> Ending {
         Ending { is_taken: true, ..self }
     }
 }
 
-/// What an instruction set keeps for an instruction with a meaning.
+/// Attachment that an instruction set keeps for an instruction with a meaning.
 struct Attached(Box<dyn Unit>);
 
 /// Says what the instruction of an extension does: from then on, every run on this instruction set executes the meaning, in the place of the
@@ -155,7 +155,7 @@ pub fn of(isa: &Isa, op: Op) -> Option<&dyn Meaning> {
     attached(isa, op).map(|attached| attached.0.meaning())
 }
 
-/// What executes an instruction, as it is after reset.
+/// Unit that executes an instruction, as it is after reset.
 fn attached(isa: &Isa, op: Op) -> Option<&Attached> {
     isa.semantics(op)?.downcast_ref()
 }

@@ -22,7 +22,7 @@ pub(super) struct Results {
     pub written: u8,
 }
 
-/// What a row says of its operands, by the places of their letters.
+/// Shape of an instruction's operands, by the places of their letters.
 #[derive(Clone, Debug)]
 pub(super) struct Shape {
     pub kinds: [Option<Kind>; 9],
@@ -37,10 +37,10 @@ impl Shape {
     }
 }
 
-/// How a unit reads words of global memory from an address on.
+/// Reader of words of global memory from an address on.
 pub(crate) type Read<'a> = &'a mut dyn FnMut(u32, &mut [i32]) -> Result<(), Stop>;
 
-/// What executes an instruction, whatever the type of its meaning.
+/// Unit that executes an instruction, whatever the type of its meaning.
 pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
     /// Executes the instruction; where that goes wrong, no register has changed.
     fn execute(
@@ -52,7 +52,7 @@ pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
         arithmetic: &Numbers,
     ) -> Result<Ending, Stop>;
 
-    /// Its meaning.
+    /// Meaning that the unit executes.
     fn meaning(&self) -> &dyn Meaning;
 }
 

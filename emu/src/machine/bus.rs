@@ -5,7 +5,7 @@ use super::config::BusConfig;
 use super::waits::Waits;
 use crate::code::quantity::{Clocks, Octets};
 
-/// What happened on the bus.
+/// Use of the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BusUse {
     /// Clocks in which a burst held it.
@@ -42,32 +42,32 @@ impl BusUse {
 /// A burst that was granted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grant {
-    /// Who got the bus.
+    /// Master that got the bus.
     pub master: u32,
-    /// When its burst begins.
+    /// Begin of its burst.
     pub start: Clocks,
-    /// When it ends and the bus is free again.
+    /// End of its burst, when the bus is free again.
     pub end: Clocks,
-    /// How long the master waited for it.
+    /// Clocks that the master waited for it.
     pub waited: Clocks,
     /// Octets that it moves.
     pub octets: Octets,
-    /// Whether the transfer is over with it; otherwise the master asks for the next burst at its end.
+    /// The transfer is over with it; otherwise the master asks for the next burst at its end.
     pub is_last: bool,
 }
 
 /// A burst of a transfer that has not ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Burst {
-    /// What it moves.
+    /// Octets that it moves.
     pub octets: Octets,
     /// Octets after that.
     pub rest: Octets,
-    /// How long it holds the bus.
+    /// Clocks for which it holds the bus.
     pub length: Clocks,
 }
 
-/// How long bursts are.
+/// Lengths of bursts.
 #[derive(Clone, Copy, Debug)]
 pub struct Lengths {
     longest_burst: Octets,
@@ -127,13 +127,13 @@ pub trait NextTransfer: Default {
 pub struct Alone {
     /// The burst that it asks for next.
     pub burst: Burst,
-    /// When it asks for that.
+    /// Clock at which the master asks for that.
     pub arrival: Clocks,
-    /// When the last one ended.
+    /// End of the last one.
     pub free: Clocks,
-    /// How long all held the bus.
+    /// Clocks for which all held the bus.
     pub held: Clocks,
-    /// What they moved.
+    /// Octets that they moved.
     pub octets: Octets,
     /// Transfers that ended.
     pub transfers: u64,
@@ -152,7 +152,7 @@ impl Alone {
 /// A bus with its arbiter and the requests that wait for it. Nothing is known here of what is transferred, nor whether a master executes a
 /// program or replays what one has done.
 pub struct Bus {
-    /// How long bursts are.
+    /// Lengths of bursts.
     pub lengths: Lengths,
     arbiter: Box<dyn Arbiter>,
     pub(crate) free_at: Clocks,
@@ -187,7 +187,7 @@ impl Bus {
         self.requests.ask(master, arrival, self.lengths.burst(octets));
     }
 
-    /// When the arbiter has something to decide, if nobody else begins to ask before.
+    /// Clock at which the arbiter has something to decide, if nobody else begins to ask before.
     #[inline]
     pub fn next_decision(&self) -> Option<Clocks> {
         self.requests.first_at(self.free_at.max(self.not_before))
@@ -236,7 +236,7 @@ impl Bus {
         }
     }
 
-    /// The same with any arbiter.
+    /// Service with any arbiter, which is asked turn by turn.
     pub(crate) fn serve_by_choice(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
         while let Some(clock) = self.next_decision().filter(|&clock| clock < until) {
             let Some(grant) = self.decide(clock) else { continue };
@@ -250,7 +250,7 @@ impl Bus {
         None
     }
 
-    /// The same for an arbiter that ranks its masters, of which there are at most `SIZE`. Who comes next is found without branches, since nobody
+    /// Service with an arbiter that ranks its masters, of which there are at most `SIZE`. The next one is found without branches, since nobody
     /// could foresee them: the smallest number of a clock and, in its last bits, a rank.
     fn serve_ranked<const SIZE: usize, M: NextTransfer>(
         &mut self,
@@ -336,12 +336,12 @@ impl Bus {
         granted
     }
 
-    /// What has happened so far.
+    /// Use of the bus so far.
     pub fn used(&self) -> BusUse {
         self.used
     }
 
-    /// How long each master waited, burst by burst.
+    /// Waits of each master, burst by burst.
     pub fn waits(&self) -> &[Waits] {
         &self.waits
     }

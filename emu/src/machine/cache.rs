@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::config::CacheConfig;
 use crate::code::quantity::Octets;
 
-/// What a cache did.
+/// Use of a cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CacheUse {
     /// Reads that found all their lines; they take no time.
@@ -71,7 +71,7 @@ impl Cache {
         Some(filled)
     }
 
-    /// What it did so far.
+    /// Use of the cache so far.
     pub fn used(&self) -> CacheUse {
         self.used
     }

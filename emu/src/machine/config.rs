@@ -77,7 +77,7 @@ pub struct ArithmeticConfig {
     /// Overflow, by its name in IEEE 1666 without `SC_`; SAT, the nearest number that fits.
     #[serde(with = "overflow_name")]
     pub overflow: Overflow,
-    /// Whether a division by zero stops the machine instead of saturating; no.
+    /// Stop at a division by zero instead of saturating; no.
     pub trap_division_by_zero: bool,
 }
 
@@ -189,14 +189,14 @@ pub struct BusConfig {
     pub setup_clocks: u64,
     /// Octets of the longest burst, 0 for no limit; 0. A longer transfer asks for the bus again after each burst.
     pub burst_octets: u64,
-    /// Whether a core goes on while its block load is on its way; no. Report 6.1 adds computing and waiting up.
+    /// Overlap: a core goes on while its block load is on its way; no. Report 6.1 adds computing and waiting up.
     ///
     /// The core goes on as soon as it has asked, up to the next thing that it wants of the machine (a transfer, a
     /// message, a barrier, its end); that begins when the load has ended. The data count as being there at once: the
     /// buffer's other half was filled ahead, and always with the right data, so this is the most that a second buffer
     /// can bring. Loads of single words are waited for.
     pub overlap: bool,
-    /// Who gets the bus next; round-robin.
+    /// Arbiter, which says who gets the bus next; round-robin.
     pub arbiter: ArbiterKind,
     /// Bursts that a master keeps its turn for, the main processor after the last core, for the weighted arbiter; 1
     /// where the list ends.
@@ -221,7 +221,7 @@ impl Default for BusConfig {
 }
 
 impl BusConfig {
-    /// How long a burst holds the bus.
+    /// Length of a burst in clocks.
     pub fn length(&self, octets: Octets) -> Clocks {
         Clocks(self.setup_clocks + octets.0.div_ceil(self.octets_per_beat) * self.clocks_per_beat)
     }
@@ -236,7 +236,7 @@ impl BusConfig {
         }
     }
 
-    /// How long a transfer that nobody disturbs holds the bus, all its bursts together.
+    /// Clocks for which a transfer that nobody disturbs holds the bus, all its bursts together.
     pub fn whole_length(&self, octets: Octets) -> Clocks {
         let burst = self.longest_burst();
         if octets <= burst {
@@ -269,7 +269,7 @@ impl Default for CacheConfig {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MainConfig {
-    /// Whether its transfers, and messages to and from it, use the bus; yes. Otherwise they take no time.
+    /// Use of the bus by its transfers and by messages to and from it; yes. Otherwise they take no time.
     pub traffic: bool,
     /// Octets of its local buffer; 65,536. The report does not limit it.
     pub buffer_octets: u32,
@@ -284,12 +284,12 @@ impl Default for MainConfig {
 }
 
 impl Config {
-    /// What operations take.
+    /// Times of operations.
     pub fn timing(&self) -> Timing {
         Timing { clocks: self.clocks.0, units: self.units.0 }
     }
 
-    /// Whether work items do the same on both machines, in the same clocks of computing: only cores, bus, caches and
+    /// True where work items do the same on both machines, in the same clocks of computing: only cores, bus, caches and
     /// main processor may differ.
     pub fn computes_like(&self, other: &Config) -> bool {
         let Config {

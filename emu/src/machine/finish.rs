@@ -28,7 +28,7 @@ impl<W: Worker> Machine<'_, W> {
         }
     }
 
-    /// Whether everybody has done what was begun.
+    /// Check that everybody has done what was begun.
     pub(super) fn check_end(&self) -> Result<(), Failure> {
         let is_stuck = |number: usize| {
             let processor = &self.processors[number];

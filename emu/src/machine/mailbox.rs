@@ -23,7 +23,7 @@ impl Mailboxes {
         Mailboxes { processors, letters: vec![None; processors * processors] }
     }
 
-    /// How many processors there are.
+    /// Number of processors.
     pub fn processors(&self) -> u32 {
         self.processors as u32
     }
@@ -32,7 +32,7 @@ impl Mailboxes {
         receiver as usize * self.processors + sender as usize
     }
 
-    /// Whether the receiver has not yet taken the sender's last message.
+    /// True where the receiver has not yet taken the sender's last message.
     pub fn is_full(&self, receiver: u32, sender: u32) -> bool {
         self.letters[self.place(receiver, sender)].is_some()
     }

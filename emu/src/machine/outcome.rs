@@ -1,4 +1,4 @@
-//! What a run of the machine gives: time, traffic, counts, memory. Nothing in it depends on the host.
+//! Outcome of a run of the machine: time, traffic, counts, memory. Nothing in it depends on the host.
 
 use isa::number::Vector;
 
@@ -11,7 +11,7 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::profile::Profile;
 
-/// Where one processor's clocks went; `busy + waiting + idle` is the length of the frame.
+/// Clocks of one processor by use; `busy + waiting + idle` is the length of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProcessorUse {
     /// Clocks of instructions.
@@ -37,9 +37,9 @@ pub struct Item {
     pub subject: Vector,
     /// The core that did it.
     pub core: u32,
-    /// When it got its first message, or was begun when it got none.
+    /// Clock at which it got its first message, or was begun when it got none.
     pub start: Clocks,
-    /// When it halted.
+    /// Clock at which it halted.
     pub end: Clocks,
     /// Instructions executed.
     pub instructions: u64,
@@ -56,14 +56,14 @@ pub struct KindUse {
     pub octets: Octets,
 }
 
-/// How a frame was run; its result does not depend on it.
+/// Method by which a frame was run; its result does not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Work items ran by themselves, and what they did was replayed on the machine's clock.
     Replayed,
     /// Everything happened in the order of the machine's clock.
     Stepped {
-        /// Why it could not be replayed; empty when stepping was asked for.
+        /// Reason for which it could not be replayed; empty when stepping was asked for.
         why: &'static str,
     },
 }
@@ -77,7 +77,7 @@ impl Method {
         }
     }
 
-    /// Why it was stepped; `None` when it was not.
+    /// Reason for which it was stepped; `None` when it was not.
     pub fn reason(self) -> Option<&'static str> {
         match self {
             Method::Replayed => None,
@@ -89,7 +89,7 @@ impl Method {
 /// The result of a run of the machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunOutcome {
-    /// How it was run.
+    /// Method of the run.
     pub method: Method,
     /// Length of the frame: until the last processor had nothing more to do.
     pub clocks: Clocks,
@@ -97,7 +97,7 @@ pub struct RunOutcome {
     pub processors: Vec<ProcessorUse>,
     /// The bus.
     pub bus: BusUse,
-    /// How long each master waited for its bursts: the cores, then the main processor where it uses the bus.
+    /// Waits of each master for its bursts: the cores, then the main processor where it uses the bus.
     pub waits: Vec<Waits>,
     /// The cores' caches together. What was asked for is what was moved over the bus and beside it, without the lines
     /// that were filled, and with what was asked of the caches.
@@ -120,7 +120,7 @@ pub struct RunOutcome {
     pub main_profile: Option<Profile>,
     /// Work items in the order of their start, where a record of them was asked for.
     pub items: Vec<Item>,
-    /// What happened in the window that was asked for.
+    /// Trace of the window that was asked for.
     pub trace: Option<Trace>,
     /// Number of work items finished.
     pub item_count: u64,

@@ -9,7 +9,7 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::{Fault, Stop};
 use crate::semantics::{Link, Message};
 
-/// What all processors share.
+/// State that all processors share.
 #[derive(Debug)]
 pub struct Shared {
     /// Global memory.
@@ -40,13 +40,13 @@ impl Shared {
 /// for, so that range errors show at once; with permission it happens.
 #[derive(Debug)]
 pub struct CorePort<'a> {
-    /// What it shares with the others.
+    /// State that it shares with the others.
     pub shared: &'a mut Shared,
     /// Number of the processor.
     pub processor: u32,
     /// Permission for one instruction, with the clock at which it is done.
     pub permission: Option<Clocks>,
-    /// What the core waits for, set when it stops to wait.
+    /// Request that the core waits for, set when it stops to wait.
     pub request: Option<Request>,
     /// The message that was taken with this permission, and its sender.
     pub taken: Option<(Message, u32)>,

@@ -7,7 +7,7 @@ use super::config::{BusConfig, CacheConfig, Config};
 /// A machine that is known by name.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
-    /// What the user types.
+    /// Name that the user types.
     pub name: &'static str,
     /// One line on what it is.
     pub description: &'static str,

@@ -14,58 +14,58 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
 
-/// What a processor does without the bus, at its own clock.
+/// Act of a processor without the bus, at its own clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Act {
-    /// It moves octets beside the bus.
+    /// Octets move beside the bus.
     Bypass,
-    /// It reads what its cache holds.
+    /// Reading what its cache holds.
     Hit,
-    /// It takes a message.
+    /// A message is taken.
     Receive,
-    /// It leaves a barrier.
+    /// A barrier is left.
     Leave,
-    /// It has halted.
+    /// The program has halted.
     Halt,
-    /// It stops the machine.
+    /// The machine stops.
     Stop,
 }
 
-/// What a processor is at.
+/// State of a processor between two things that concern others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProcessorState {
     /// Between two work items, the first thing of the next one being a receive: a message wakes it.
     Asleep,
-    /// It waits for the bus.
+    /// Waiting for the bus.
     Asks,
-    /// It does something at its own clock, or later.
+    /// About to do something at its own clock, or later.
     Acts {
-        /// When.
+        /// Clock of the act.
         at: Clocks,
-        /// What.
+        /// Kind of the act.
         act: Act,
     },
-    /// It waits until the mailbox that this receiver has for it is free.
+    /// Waiting until the mailbox that this receiver has for it is free.
     Blocked {
         /// The receiver.
         to: u32,
     },
-    /// It waits for a message.
+    /// Waiting for a message.
     Listens,
-    /// It waits for the others.
+    /// Waiting for the others at a barrier.
     Meets,
-    /// It has halted and is not to start again, unless a message comes.
+    /// Halted, not to start again unless a message comes.
     Rests,
 }
 
 /// The work item that a core is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// When it was begun.
+    /// Clock at which it was begun.
     pub start: Clocks,
     /// First vector of its first message; `None` before that.
     pub subject: Option<Vector>,
-    /// Whether it has used the bus, a mailbox or a barrier.
+    /// The bus, a mailbox or a barrier has been used.
     pub has_acted: bool,
 }
 
@@ -78,32 +78,32 @@ impl Work {
 
 /// One processor.
 pub struct Processor<'a, W> {
-    /// Its program.
+    /// Program of the processor.
     pub code: &'a Code<'a>,
-    /// Its number, and how long a work item may be.
+    /// Number of the processor, and how long a work item may be.
     pub core: CoreId,
     /// Whoever does its work.
     pub worker: W,
-    /// How far it has come.
+    /// Clock of the processor.
     pub clock: Clocks,
-    /// What it is at.
+    /// State of the processor.
     pub state: ProcessorState,
-    /// What it asked for last.
+    /// Request that was made last.
     pub request: Option<Request>,
-    /// Why its engine stopped, while a block load that it does not wait for is on its way: what comes next begins when
+    /// Pause of its engine, while a block load that it does not wait for is on its way: what comes next begins when
     /// that has ended.
     pub held: Option<Pause>,
-    /// Its cache.
+    /// Cache of the processor.
     pub cache: Option<Cache>,
-    /// What it does when, where that is watched.
+    /// Spans of what it does, where that is watched.
     pub spans: Option<Spans>,
-    /// What went wrong.
+    /// Fault that stopped it.
     pub fault: Option<Fault>,
-    /// Where its clocks went.
+    /// Clocks by use.
     pub used: ProcessorUse,
     /// The work item that it is at.
     pub work: Work,
-    /// Whether the first thing that its program does outside itself is a receive.
+    /// The first thing that its program does outside itself is a receive.
     pub begins_by_receiving: bool,
 }
 
@@ -193,13 +193,13 @@ impl<'a, W: Worker> Processor<'a, W> {
         self.state = ProcessorState::Acts { at: self.clock, act };
     }
 
-    /// It went wrong at its clock.
+    /// Stop by a fault at its clock.
     pub fn stop(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.act(Act::Stop);
     }
 
-    /// What it waits for, for a message about a deadlock.
+    /// Description of what it waits for, for a message about a deadlock.
     pub fn waits_for(&self) -> String {
         let what = match self.state {
             ProcessorState::Blocked { to } => format!("waits until core {to} takes its last message"),

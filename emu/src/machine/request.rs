@@ -2,18 +2,18 @@
 
 use crate::code::quantity::Octets;
 
-/// What a transfer does with global memory.
+/// Access of a transfer to global memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// It copies a block to the buffer.
+    /// A block is copied to the buffer.
     Load,
-    /// It reads a word.
+    /// Words are read.
     Read,
-    /// It writes, or reads and writes.
+    /// Words are written, or read and written.
     Write,
 }
 
-/// What a core waits for.
+/// Request that a core waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// A transfer between it and global memory.
@@ -22,7 +22,7 @@ pub enum Request {
         address: u32,
         /// Octets that go over the bus.
         octets: Octets,
-        /// What it does.
+        /// Access to global memory.
         access: Access,
     },
     /// A message to another processor.

@@ -73,7 +73,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     pub processors: Vec<Processor<'a, W>>,
     pub shared: Shared,
     pub bus: Bus,
-    /// Who watches the bus, where somebody does.
+    /// Watcher of the bus, where somebody watches.
     pub bus_watch: Option<BusWatch>,
     pub kinds: Kinds,
     pub bypassed: Octets,
@@ -183,7 +183,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         self.run_on(number, is_permitted, false);
     }
 
-    /// The same; who runs ahead of its own transfer does the next thing when that has ended.
+    /// Run of a processor up to the next thing that concerns others; one that is ahead of its own transfer does that thing when the transfer has ended.
     fn run_on(&mut self, number: usize, is_permitted: bool, is_ahead: bool) {
         let is_main = number == self.main();
         let steps_allowed = self.steps_allowed();

@@ -19,7 +19,7 @@ use crate::engine::{Choice, CoreId, Demand, Pause, State, Task, Wish, choose, di
 use crate::profile::{Profile, RunObserver};
 use crate::semantics::Watch;
 
-/// What is run.
+/// Program that runs on one core, with its machine.
 pub struct Single<'a> {
     /// The machine; its number of cores and main processor play no part.
     pub config: &'a Config,
@@ -31,7 +31,7 @@ pub struct Single<'a> {
     pub registers: Registers,
     /// Instructions that it may take.
     pub step_limit: u64,
-    /// Whether calls are measured.
+    /// Calls are measured.
     pub has_profile: bool,
     /// Losses of results are counted: [`crate::code::tally::Losses`].
     pub has_losses: bool,
@@ -52,10 +52,10 @@ impl<'a> Single<'a> {
     }
 }
 
-/// How a program left the core, whether it halted or trapped.
+/// State in which a program left the core, whether it halted or trapped.
 #[derive(Clone, Debug)]
 pub struct SingleRun {
-    /// What executed it.
+    /// Engine that executed it.
     pub engine: Choice,
     /// Registers, buffer, program counter, instructions.
     pub state: State,
@@ -69,7 +69,7 @@ pub struct SingleRun {
     pub tally: Tally,
     /// Functions and regions, where a profile was asked for.
     pub profile: Option<Profile>,
-    /// Why it stopped before its `halt`.
+    /// Trap that stopped it before its `halt`.
     pub trap: Option<Trap>,
 }
 
@@ -82,7 +82,7 @@ pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
     run_with(single, memory, Wish::default())
 }
 
-/// The same with an engine that is wanted. The results are the same.
+/// Run with an engine that is wanted. The results are the same.
 ///
 /// # Errors
 /// As [`run`].

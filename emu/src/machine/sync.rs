@@ -1,4 +1,4 @@
-//! Where processors wait for each other: mailboxes that are empty or full, and the barrier.
+//! Synchronisation of processors: mailboxes that are empty or full, and the barrier.
 
 use super::processor::{Act, Processor, ProcessorState};
 use super::schedule::Machine;

@@ -1,4 +1,4 @@
-//! What every processor and the bus did in a window of clocks. Only gathered here; file formats are no concern of this
+//! Trace of every processor and of the bus in a window of clocks. Only gathered here; file formats are no concern of this
 //! crate.
 
 use super::bus::Grant;
@@ -21,27 +21,27 @@ impl Window {
         (start < end).then_some((start, end))
     }
 
-    /// Whether any of a time that begins at `start` and is over at `end` lies in it; a time of no length may.
+    /// True where any of a time that begins at `start` and is over at `end` lies in it; a time of no length may.
     fn touches(&self, start: Clocks, end: Clocks) -> bool {
         start < self.end && end >= self.start
     }
 }
 
-/// What a processor does.
+/// Activity of a processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doing {
-    /// It executes instructions.
+    /// Executing instructions.
     Busy,
-    /// It waits for its transfer.
+    /// Waiting for its transfer.
     Waiting,
-    /// It is blocked by others, or has no work.
+    /// Blocked by others, or without work.
     Idle,
 }
 
-/// What a processor does for a time.
+/// Activity of a processor for a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// What.
+    /// Kind of the act.
     pub doing: Doing,
     /// From when on.
     pub start: Clocks,
@@ -77,7 +77,7 @@ impl Spans {
     }
 }
 
-/// What a burst carries.
+/// Cargo of a burst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cargo {
     /// Global memory is read from this address on.
@@ -91,15 +91,15 @@ pub enum Cargo {
 /// A burst on the bus, with the whole of its times even where they reach out of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TracedBurst {
-    /// Who has the bus: a core, or the main processor after the last core.
+    /// Master that has the bus: a core, or the main processor after the last core.
     pub master: u32,
-    /// When it asked for it.
+    /// Clock at which it asked for it.
     pub asked: Clocks,
-    /// When it got it.
+    /// Clock at which it got it.
     pub start: Clocks,
-    /// When the burst was over.
+    /// End of the burst.
     pub end: Clocks,
-    /// What it carries.
+    /// Cargo of the burst.
     pub cargo: Cargo,
     /// Octets that it moves.
     pub octets: Octets,
@@ -120,7 +120,7 @@ pub struct Trace {
 #[derive(Clone, Debug)]
 pub struct BusWatch {
     window: Window,
-    /// What each master's transfer carries, and octets of it that were moved.
+    /// Cargo of each master's transfer, and octets of it that were moved.
     carried: Vec<Option<(Cargo, Octets)>>,
     bursts: Vec<TracedBurst>,
 }
@@ -158,7 +158,7 @@ impl BusWatch {
         }
     }
 
-    /// What was seen, with what the processors did.
+    /// Trace of what was seen, with what the processors did.
     pub fn into_trace(self, processors: Vec<Vec<Span>>) -> Trace {
         Trace { window: self.window, processors, bursts: self.bursts }
     }

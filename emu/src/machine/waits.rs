@@ -1,4 +1,4 @@
-//! How long was waited, as a histogram whose columns double in width.
+//! Waits as a histogram whose columns double in width.
 
 use serde::Serialize;
 

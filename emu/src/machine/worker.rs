@@ -16,7 +16,7 @@ use crate::semantics::{Message, Watch};
 /// One advance of a worker: what it did, and what it waits for now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Advance {
-    /// Why it stopped.
+    /// Reason for which it stopped.
     pub pause: Pause,
     /// The request that it waits for, where it stopped to wait.
     pub request: Option<Request>,
@@ -30,7 +30,7 @@ pub struct Advance {
     pub octets: Octets,
 }
 
-/// How far a work item has come.
+/// Progress of a work item.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
     /// Slot of the next instruction.
@@ -64,13 +64,13 @@ pub trait Worker {
     /// Is told that the work item is over.
     fn end(&mut self);
 
-    /// How far the work item has come.
+    /// Progress of the work item.
     fn progress(&self) -> Progress;
 
-    /// Whether the first thing that a work item does outside itself is a receive.
+    /// True where the first thing that a work item does outside itself is a receive.
     fn receives_first(&self, shared: &mut Shared) -> bool;
 
-    /// Whether its octets are known from elsewhere, so that the machine does not add up what it asks for.
+    /// True where its octets are known from elsewhere, so that the machine does not add up what it asks for.
     fn is_accounted(&self) -> bool;
 
     /// Hands the work item over to its master when a transfer is asked for at a clock, where nothing but the bus is needed for what comes next.

@@ -1,4 +1,4 @@
-//! What functions and regions cost: who is told of each instruction, and the totals that come of it.
+//! Profiles of functions and regions: observers that are told of each instruction, and the totals that come of it.
 
 mod profiler;
 
@@ -14,7 +14,7 @@ use crate::semantics::Motion;
 
 /// Someone who is told of each executed instruction.
 pub trait Observer {
-    /// Whether engines have to tell at all.
+    /// Engines have to tell.
     const IS_ACTIVE: bool;
 
     /// For a program.
@@ -30,20 +30,20 @@ pub trait Observer {
     /// The run is over.
     fn end(&mut self);
 
-    /// What it found, given the passes of the same runs.
+    /// Profile that it found, given the passes of the same runs.
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile>;
 }
 
 /// An observer for engines that count several words at once, too: they call these instead of [`Observer::step`].
 pub trait RunObserver: Observer {
-    /// What stands at some places of the order of slots ended, one behind the other. What has several exits, and units, are told
+    /// Notice that the slots at some places of the order ended, one behind the other. Passes of those with several exits, and units, are told
     /// by [`RunObserver::pass`].
     fn walked(&mut self, places: Range<u32>);
 
     /// A pass through an exit: of a word with several, or with units of one that `is_only`.
     fn pass(&mut self, exit: usize, is_only: bool, units: u32);
 
-    /// Whether what stands behind a place belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
+    /// True where what stands behind a place belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
     fn is_border(&self, place: u32) -> bool;
 
     /// Control goes from one slot to another; what ended before was told.
@@ -84,16 +84,16 @@ impl RunObserver for Unobserved {
     fn go(&mut self, _: u32, _: u32, _: Motion) {}
 }
 
-/// What one function or region cost.
+/// Cost of one function or region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegionProfile {
-    /// Its name.
+    /// Name of the region.
     pub name: String,
-    /// Whether it is a function, entered by calls, or a region, entered by running into it.
+    /// True for a function, entered by calls; false for a region, entered by running into it.
     pub is_function: bool,
     /// The region around it, an index into [`Profile::regions`].
     pub parent: Option<u16>,
-    /// How often it was entered.
+    /// Number of times that it was entered.
     pub calls: u64,
     /// Instructions in it, inner regions and called functions left out.
     pub instructions: u64,
@@ -112,7 +112,7 @@ pub struct RegionProfile {
     pub most_elementary: u64,
 }
 
-/// What the functions and regions of a program cost in a run.
+/// Costs of the functions and regions of a program in a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     /// In the order of the program's regions.

@@ -19,7 +19,7 @@ const DEEPEST: usize = 1 << 16;
 enum Open {
     /// A call: the regions above it belong to the callee.
     Call {
-        /// Where the callee returns to.
+        /// Word to which the callee returns.
         back: u32,
     },
     /// A region or function.
@@ -36,19 +36,19 @@ enum Open {
 pub struct Profiler {
     /// Cost of each exit of the program, and what a unit of it adds.
     costs: Vec<(Counts, Counts)>,
-    /// Where the slots stand.
+    /// Order of the slots.
     order: Order,
-    /// What stands up to each place of the order costs together, what has several exits left out.
+    /// Costs of all up to each place of the order together, slots with several exits left out.
     before: Vec<Counts>,
     /// The innermost region of each slot.
     region_of: Vec<Option<u16>>,
     /// Regions from the outermost to a region itself.
     chains: Vec<Vec<u16>>,
     regions: Vec<RegionProfile>,
-    /// How often each region is open.
+    /// Number of open calls of each region.
     depth: Vec<u32>,
     open: Vec<Open>,
-    /// How many open calls return to each word.
+    /// Number of open calls that return to each word.
     returns_to: Vec<u32>,
     /// Calls deeper than [`DEEPEST`].
     deeper: u64,

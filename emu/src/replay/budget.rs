@@ -17,7 +17,7 @@ impl Budget {
         Budget { taken: AtomicUsize::new(0), most }
     }
 
-    /// Whether more was wanted than there is.
+    /// True where more was wanted than there is.
     pub fn is_full(&self) -> bool {
         self.taken.load(Ordering::Relaxed) > self.most
     }

@@ -21,7 +21,7 @@ pub struct BusCursor {
     computing: Clocks,
     /// That transfer's first burst.
     ahead: Burst,
-    /// When it was handed over.
+    /// Clock at which it was handed over.
     start: Clocks,
     /// Clocks of computing since then.
     busy: Clocks,
@@ -38,7 +38,7 @@ fn ahead_of(segments: &[Segment], next: usize, lengths: &Lengths) -> (Clocks, Bu
     }
 }
 
-/// Whether two ranges have an octet in common.
+/// True where two ranges have an octet in common.
 pub fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
     one.start < other.end && other.start < one.end
 }

@@ -11,7 +11,7 @@ use crate::machine::{Failure, Setup, check, on_arithmetic};
 use crate::profile::{Profile, RunObserver};
 use crate::semantics::Watch;
 
-/// What a frame computes and counts, whatever the time it takes.
+/// Totals of a frame: what it computes and counts, whatever the time it takes.
 #[derive(Clone, Debug)]
 pub struct FrameTotals {
     /// Global memory at the end.

@@ -17,7 +17,7 @@ const MOST_HELD: usize = 1 << 14;
 /// The recordings of one machine, each of which it uses once.
 #[derive(Debug)]
 pub struct Feed {
-    /// What every work item does before its message comes.
+    /// Prefix of every work item, before its message comes.
     pub prefix: Prefix,
     /// Number of cores that the items were recorded with.
     recorded_cores: u32,
@@ -26,7 +26,7 @@ pub struct Feed {
     batches: Receiver<Arc<Batch>>,
     /// In the order in which they were recorded.
     held: VecDeque<Arc<Recording>>,
-    /// Why the replay is worth nothing.
+    /// Reason for which the replay is worth nothing.
     pub lost: Option<Reason>,
 }
 
@@ -69,7 +69,7 @@ impl Feed {
         None
     }
 
-    /// Whether each recording was used; waits for the last one.
+    /// True where each recording was used; waits for the last one.
     pub fn is_used_up(&mut self) -> bool {
         self.held.is_empty() && self.batches.recv().is_err()
     }

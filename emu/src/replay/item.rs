@@ -10,7 +10,7 @@ use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
 use crate::semantics::{Link, Message};
 
-/// What is kept of work items beside their answers.
+/// Record level: what is kept of work items beside their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordLevel {
     /// Passes, and the segments that replaying them takes.

@@ -67,7 +67,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     results
 }
 
-/// What every work item does before its message comes.
+/// Prefix of every work item, before its message comes.
 pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) -> Result<Prefix, Reason> {
     let code = Code::new(setup.core, setup.isa, setup.config.timing());
     if extension::keeps_state(&code) {

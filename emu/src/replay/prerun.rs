@@ -121,7 +121,7 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
     found.into_iter().map(|(_, recording)| recording.map(Arc::new)).collect()
 }
 
-/// What all work items together counted.
+/// Totals of all work items together.
 pub struct PrerunTotals {
     /// Their passes.
     pub tally: Tally,
@@ -131,7 +131,7 @@ pub struct PrerunTotals {
     pub profile: Option<Profile>,
     /// Global memory, with all answers in it where all of them came.
     pub memory: Memory,
-    /// How the main processor's program ended.
+    /// End of the main processor's program.
     pub end: Pause,
 }
 

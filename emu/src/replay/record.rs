@@ -101,7 +101,7 @@ const WITHOUT_ROOM: Reason = "there is no room for it";
 const WRITES: Reason = "the cores write to global memory";
 const BEGINS: Reason = "a work item does not begin with a message";
 
-/// What a work item does before it takes its message.
+/// Prefix of a work item: what it does before it takes its message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Prefix {
     /// Clocks of computing.
@@ -122,7 +122,7 @@ pub struct Recorder<'a, T, O> {
     tally: Tally,
     /// Octets of all items.
     pub kinds: Kinds,
-    /// Who watches them.
+    /// Observer of all items.
     pub observer: TaintObserver<O>,
     runner: Runner<'a>,
     /// Segments of the last item, and so about those of the next one.
@@ -181,7 +181,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
     }
 
-    /// What every work item does before its message comes. The recorder's counts are worth nothing after that.
+    /// Prefix of every work item, before its message comes. The recorder's counts are worth nothing after that.
     ///
     /// # Errors
     /// Something else comes first.

@@ -1,4 +1,4 @@
-//! What a work item did, apart from when: computing, transfers and messages one after the other. How it is put on the
+//! Recording of a work item, apart from its clocks: computing, transfers and messages one after the other. How it is put on the
 //! clock is not said here.
 
 use std::ops::Range;
@@ -8,7 +8,7 @@ use crate::engine::{Pause, Read};
 use crate::machine::request::{Access, Request};
 use crate::semantics::Message;
 
-/// Why a program's work items cannot be replayed and have to be stepped.
+/// Reason for which a program's work items cannot be replayed and have to be stepped.
 pub type Reason = &'static str;
 
 /// Computing, and what the item asks for after it: 16 octets.
@@ -55,7 +55,7 @@ impl Segment {
         Octets((self.what >> 2).into())
     }
 
-    /// Whether global memory is read.
+    /// True where global memory is read.
     #[inline]
     pub fn is_read(&self) -> bool {
         matches!(self.what & 3, LOAD | READ)
@@ -91,7 +91,7 @@ pub fn reads(segments: &[Segment]) -> Range<u64> {
 pub struct Recording {
     /// The message that it began with.
     pub message: Message,
-    /// What it did after that.
+    /// Segments after that.
     pub segments: Vec<Segment>,
     /// From the first to the last octet of global memory that it read.
     pub reads: Range<u64>,
@@ -103,12 +103,12 @@ pub struct Recording {
     pub last_clocks: u64,
     /// Word of the instruction at which it ended.
     pub last_pc: u32,
-    /// How it ended: by halting or by a fault.
+    /// End of the item: by halting or by a fault.
     pub end: Pause,
     /// Instructions that it executed, those before its first message included.
     pub steps: u64,
     /// Elementary operations of those.
     pub elementary: u64,
-    /// Whether what it did may depend on the number of cores.
+    /// Dependence of what it did on the number of cores is possible.
     pub depends_on_cores: bool,
 }

@@ -67,7 +67,7 @@ pub trait Link {
     /// An address beyond the memory, or not yet.
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop>;
 
-    /// What a read finds, where that can be had at once; then it has been read. `None` says nothing, and then nothing has happened.
+    /// Octets that a read finds, where those can be had at once; then they have been read. `None` says nothing, and then nothing has happened.
     #[inline(always)]
     fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
         let _ = (address, octets);
@@ -175,7 +175,7 @@ impl<L: Link> Link for Peek<'_, L> {
     }
 }
 
-/// What the bus rows work on: a core's buffer and its link to the machine.
+/// Port of the bus instructions: a core's buffer and its link to the machine.
 pub struct Port<'a, L> {
     /// The local buffer.
     pub buffer: &'a mut Buffer,

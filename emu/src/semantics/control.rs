@@ -4,7 +4,7 @@ use isa::table::{Done, outcome};
 
 use super::ControlRoom;
 
-/// How control got to the next instruction, for those who keep a stack of calls.
+/// Motion of control to the next instruction, for those who keep a stack of calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// By running on, a branch or a jump.
@@ -15,7 +15,7 @@ pub enum Motion {
     Return,
 }
 
-/// Why a program ends by its own instruction.
+/// End of a program by its own instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// `halt`.
@@ -24,14 +24,14 @@ pub enum End {
     Trap(u32),
 }
 
-/// What the control rows work on: where the instruction stands, and where it leads.
+/// Flow of control instructions: where one stands, and where it leads.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow {
     /// Word of this instruction.
     pub pc: u32,
     /// Word of the next instruction.
     pub next: u32,
-    /// How it is reached.
+    /// Motion by which it is reached.
     pub motion: Motion,
     /// Set when the program ends here.
     pub end: Option<End>,

@@ -1,4 +1,4 @@
-//! What instructions do: one trait a room, stamped from the rows, so that a row without a meaning does not compile.
+//! Semantics of instructions: one trait a room, stamped from the table, so that an instruction without semantics does not compile.
 //! Moving registers, counting and choosing when a transfer happens belong to engines and machines.
 
 mod bus;
@@ -81,7 +81,7 @@ macro_rules! value {
     };
 }
 
-/// What a meaning hands back: the written values in the order of the row, then the exit.
+/// Results of semantics: the written values in the order of the table, then the outcome.
 macro_rules! outcome {
     ($name:ident []) => { outcome::$name::Outcome };
     ($name:ident [$(($letter:ident $kind:ident))+]) => { ($(value!($kind),)+ outcome::$name::Outcome) };

@@ -14,9 +14,9 @@ const PAGE: usize = 4096;
 /// Global memory: octet addresses from 0, little-endian, any alignment. A copy costs nothing but the pages that are then written.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
-    /// What it holds where there is no page.
+    /// Octets where there is no page.
     shared: Arc<Vec<u8>>,
-    /// What was written while there were copies: no page at all, or a place for each.
+    /// Pages that were written while there were copies: none at all, or a place for each.
     pages: Vec<Option<Box<[u8; PAGE]>>>,
 }
 
@@ -59,21 +59,14 @@ impl Memory {
     }
 
     /// Octets that this copy has for itself, beside those that it shares or may share.
-    pub fn own_octets(&self) -> usize {
+    #[cfg(test)]
+    fn own_octets(&self) -> usize {
         self.pages.iter().flatten().count() * PAGE
     }
 
     /// All octets; they are copied where pages were written.
     pub fn octets(&self) -> Cow<'_, [u8]> {
         self.cut(0..self.size())
-    }
-
-    /// All octets, without a copy where there is no other and never was.
-    pub fn into_octets(self) -> Vec<u8> {
-        match self.pages.is_empty() {
-            true => Arc::unwrap_or_clone(self.shared),
-            false => self.octets().into_owned(),
-        }
     }
 
     #[inline(always)]
@@ -86,7 +79,7 @@ impl Memory {
         }
     }
 
-    /// Whether the memory has `length` octets from `address` on.
+    /// Check that the memory has `length` octets from `address` on.
     ///
     /// # Errors
     /// A range that leaves the memory.
@@ -300,7 +293,7 @@ mod tests {
         memory.write(PAGE as u32, &[4]).unwrap();
         assert_eq!(memory.peek(4, 4), Some(&[memory.octets()[4], 1, 2, 3][..]));
         assert_eq!((memory.peek(SIZE as u32 - 7, 8), memory.peek(u32::MAX, 1)), (None, None));
-        assert_eq!((memory.own_octets(), memory.into_octets()[5..8].to_vec()), (0, vec![1, 2, 3]));
+        assert_eq!((memory.own_octets(), memory.octets().into_owned()[5..8].to_vec()), (0, vec![1, 2, 3]));
     }
 
     proptest! {
@@ -344,7 +337,7 @@ mod tests {
             }
             for (memory, model) in copies {
                 prop_assert_eq!(memory.octets(), model.as_slice());
-                prop_assert_eq!(memory.into_octets(), model);
+                prop_assert_eq!(memory.octets().into_owned(), model);
             }
         }
     }

@@ -1,15 +1,15 @@
-//! How often exits were taken and runs begun where nothing else says so: what is counted while a program runs, and how it folds into passes.
+//! Counts of a walk: exits taken and runs begun where nothing else says so, and how they fold into passes.
 
 use crate::code::tally::Tally;
 use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Taint;
 
-/// What is counted of a place beside its exits.
+/// Flow into and out of a place, beside its exits.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct RunFlow {
-    /// How often a run was begun here that no exit led to whose target is known.
+    /// Number of runs begun here to which no exit led whose target is known.
     pub begun: u64,
-    /// How often a run ended before this place.
+    /// Number of runs that ended before this place.
     pub cut: u64,
 }
 
@@ -21,9 +21,9 @@ pub struct FlowCounts {
     /// By exit: those of rows with several, the first one of branches left out, and of what always leads to the same place.
     pub(super) exits: Vec<u64>,
     units: Vec<u64>,
-    /// Whether it is to be found out what depends on the number of cores.
+    /// Dependence on the number of cores is followed.
     pub(super) is_following: bool,
-    /// What the item has learned of the cores.
+    /// Taint of the item.
     pub taint: Taint,
 }
 

@@ -27,7 +27,7 @@ fn vector(registers: &Registers, number: u8) -> __m256d {
     _mm256_cvtepi32_pd(_mm_setr_epi32(x, y, z, w))
 }
 
-/// Its fourth lane is 0. A lane is off by less than the filter's bound allows: one of the two products is not rounded.
+/// Cross product; the fourth lane is 0. A lane is off by less than the filter's bound allows: one of the two products is not rounded.
 #[target_feature(enable = "avx2,fma")]
 #[inline]
 fn cross(a: __m256d, b: __m256d) -> __m256d {
@@ -88,7 +88,7 @@ fn meet(registers: &Registers, fields: &Fields) -> Met {
     Met { direction, edge1, edge2, start, found }
 }
 
-/// How many of the tests a ray surely passes, and whether it surely fails the next one, where the determinants are off by at most the margins
+/// Number of tests that a ray surely passes, and whether it surely fails the next one, where the determinants are off by at most the margins
 /// and w = determinant - u - v by at most its own.
 #[target_feature(enable = "avx2,fma")]
 #[inline]
@@ -159,7 +159,7 @@ fn miss(registers: &mut Registers, fields: &Fields, passed: u32) -> Outcome {
     Outcome { way: WAYS[passed as usize & 7], units: 0 }
 }
 
-/// The same with closer bounds.
+/// Decision with closer bounds.
 #[target_feature(enable = "avx2,fma")]
 #[inline(never)]
 fn closely(registers: &mut Registers, fields: &Fields) -> Outcome {

@@ -1,4 +1,4 @@
-//! What an item took so far, and when it is to be looked at: four sums in one number of 64 bits, which are emptied before one of them is full
+//! Fuel of an item: four sums in one number of 64 bits, which are emptied before one of them is full
 //! or the step limit is reached.
 
 use crate::engine::cost::{Cost, FLAG, HALVES};
@@ -9,7 +9,7 @@ use crate::engine::{CoreId, State};
 /// The bits which say that something is to be looked at before a run begins: a sum has come to half of its room, or the run is flagged.
 pub(super) const LOOK: u64 = HALVES | FLAG;
 
-/// What an item took before its sums were emptied.
+/// Fuel of an item: what it took before its sums were emptied, and how much it may take.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fuel {
     steps: u64,
@@ -17,14 +17,14 @@ pub(super) struct Fuel {
     clocks: u64,
     elementary: u64,
     limit: u64,
-    /// Where the sums of the steps began, so that one is full before both come to the limit.
+    /// Start of the sums of the steps, so that one is full before both come to the limit.
     bias: Cost,
     is_following: bool,
-    /// What it knows of the cores.
+    /// Taint of the item.
     taint: Taint,
-    /// The same at the beginning of the run that was followed last.
+    /// Taint at the beginning of the run that was followed last.
     before: Taint,
-    /// Where that run began, and the steps up to its end.
+    /// Place of that run, and the steps up to its end.
     followed: (u32, u64),
 }
 
@@ -36,7 +36,7 @@ impl Fuel {
         Fuel { steps, inner_steps, clocks, elementary, limit, bias, is_following, taint, before: taint, followed }
     }
 
-    /// Whether a register holds the number of cores.
+    /// True while a register holds the number of cores.
     pub(super) fn is_held(&self) -> bool {
         self.taint.tainted != 0
     }
@@ -87,7 +87,7 @@ impl Fuel {
         self.begin(plan)
     }
 
-    /// What units of a pass take beside the sums.
+    /// Addition of what units of a pass take beside the sums.
     pub(super) fn add_units(&mut self, plan: &Plan, pass: usize, units: u32) {
         if plan.code.costs()[pass].has_busy_units {
             let (clocks, elementary) = plan.code.unit_cost(pass, units);

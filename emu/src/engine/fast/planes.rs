@@ -25,7 +25,7 @@ impl Meeting {
         Meeting { axis, run: i64::from(pattern as i32) - i64::from(taint[axis]), slope }
     }
 
-    /// Whether the ray, its direction moved, meets this plane before the other one; see [`isa::number::ray`]. A run has 33 bits with its sign and is
+    /// True where the ray, its direction moved, meets this plane before the other one; see [`isa::number::ray`]. A run has 33 bits with its sign and is
     /// never the least of them, so a product fits.
     #[inline(always)]
     fn is_before(self, other: Meeting) -> bool {

@@ -213,7 +213,7 @@ macro_rules! row {
     };
 }
 
-/// Whether an operand says where a branch leads to.
+/// True for an operand that says where a branch leads to.
 macro_rules! is_relative {
     (Rel) => {
         true
@@ -231,7 +231,7 @@ macro_rules! exact_ray {
     }};
 }
 
-/// The same, some of them in a way that suits the host.
+/// Instructions of the ray unit, some of them in a way that suits the host.
 #[cfg(target_arch = "x86_64")]
 macro_rules! wide_ray {
     (rtri $registers:ident $fields:ident $written:tt $($operand:tt)*) => {

@@ -23,20 +23,20 @@ pub(super) struct Position {
     pub sums: u64,
 }
 
-/// Where control goes from one run to the next, and what that and the next run take.
+/// Turn from one run to the next, and what that and the next run take.
 #[derive(Clone, Copy)]
 pub(super) struct Turn {
     pub step: *const Step,
     pub cost: u64,
 }
 
-/// How and where a walk stopped.
+/// End of a walk.
 #[derive(Clone, Copy)]
 pub(super) struct Ended {
     pub stopped: Stopped,
     pub place: u32,
     pub sums: u64,
-    /// Whether the rest of the current run is left.
+    /// The rest of the current run is left.
     pub is_cut: bool,
 }
 
@@ -259,7 +259,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
         self.pass_any(now, sums, number, units, E::OUTCOMES > 1)
     }
 
-    /// The same, whatever the row.
+    /// Count of an outcome, whatever the instruction.
     #[inline(always)]
     fn pass_any(&mut self, now: &Step, mut sums: u64, number: usize, units: u32, has_several: bool) -> u64 {
         if has_several {

@@ -39,7 +39,7 @@ impl Config {
         if wrong.is_empty() { Ok(config) } else { Err(Report(wrong)) }
     }
 
-    /// Whether every number lies in its range.
+    /// Check that every number lies in its range.
     ///
     /// # Errors
     /// One message for each that does not.
@@ -94,7 +94,7 @@ impl Config {
     }
 }
 
-/// Where the value of a key such as `bus.weights[2]` stands in a file.
+/// Place of the value of a key such as `bus.weights[2]` in a file.
 fn span(text: &str, key: &str) -> Option<Range<usize>> {
     let document = DeTable::parse(text).ok()?;
     let mut table = document.get_ref();

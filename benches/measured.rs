@@ -66,19 +66,23 @@ const LEVERS: &[(&str, &[&str])] = &[
         "line tables, nothing stripped",
         &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
     ),
+    ("everything at opt-level 3 but what prints", &["profile.release.opt-level=3"]),
     (
-        "every package at opt-level 3",
+        "what prints at opt-level 1",
         &[
-            "profile.release.package.\"*\".opt-level=3",
-            "profile.release.package.lancer.opt-level=3",
-            "profile.release.package.asm.opt-level=3",
+            "profile.release.package.annotate-snippets.opt-level=1",
+            "profile.release.package.image.opt-level=1",
+            "profile.release.package.papergrid.opt-level=1",
+            "profile.release.package.plotters.opt-level=1",
+            "profile.release.package.pulldown-cmark.opt-level=1",
+            "profile.release.package.schemars.opt-level=1",
+            "profile.release.package.tabled.opt-level=1",
         ],
     ),
     (
         "colour management at opt-level 3",
         &["profile.release.package.moxcms.opt-level=3", "profile.release.package.pxfm.opt-level=3"],
     ),
-    ("the command line at opt-level 3", &["profile.release.package.lancer.opt-level=3"]),
     ("one codegen unit", &["profile.release.codegen-units=1"]),
 ];
 

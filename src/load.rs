@@ -59,7 +59,7 @@ impl Load {
         Ok((Load { isa, build, memory, kinds, formats: Some(image.formats), engine: job.engine }, image))
     }
 
-    /// The report's estimate of [`ANNEX_PIXELS`] pixels.
+    /// The report's estimate of `ANNEX_PIXELS` pixels.
     ///
     /// # Errors
     /// None that a user could make.

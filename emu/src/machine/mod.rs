@@ -1,5 +1,5 @@
 //! The machine: cores, the main processor that feeds them, global memory and the bus between them, stepped in the order
-//! of their clocks. A processor's work is done by a [`worker::Worker`], which executes a program or replays what one has done.
+//! of their clocks. A processor's work is done by a `Worker`, which executes a program or replays what one has done.
 
 pub mod arbiter;
 pub mod bus;

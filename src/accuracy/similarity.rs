@@ -26,8 +26,8 @@ pub fn structural_similarity(a: &Picture, b: &Picture) -> Option<f64> {
 fn mean_similarity(a: &[f64], b: &[f64], width: usize) -> f64 {
     let height = a.len() / width;
     let mut sum = 0.0;
-    for top in (0..height).step_by(WINDOW) {
-        for left in (0..width).step_by(WINDOW) {
+    for left in (0..width).step_by(WINDOW) {
+        for top in (0..height).step_by(WINDOW) {
             let rows = top..height.min(top + WINDOW);
             let columns = left..width.min(left + WINDOW);
             let window: Vec<(f64, f64)> = rows

@@ -117,6 +117,8 @@ fn ppm(pixels: &Pixels) -> Vec<u8> {
     let (width, height) = pixels.size;
     let written = encoder.write_image(pixels.colours.as_flattened(), width, height, ExtendedColorType::Rgb8);
     written.expect("a picture with as many pixels as its size says fits a PPM in memory");
+    // The encoder sets a blank between the height and 255; a line of its own is what other writers have.
+    out[format!("P6\n{width} {height}").len()] = b'\n';
     out
 }
 

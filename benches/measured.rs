@@ -55,7 +55,7 @@ const PARTS: &[Part] = &[
         name: "trees",
         title: "Trees",
         about: "Building kd trees of landscapes.",
-        commands: &["cargo bench --package lancer-scenes --bench kdtree"],
+        commands: &["cargo bench --workspace --bench kdtree"],
     },
 ];
 

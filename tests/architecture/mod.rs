@@ -197,8 +197,8 @@ fn without_comments(text: &str) -> String {
 }
 
 /// First names of the paths that begin at the crate, also those in braces, and those that climb out of their wing: `crate::code::Slot`,
-/// `crate::{code, engine::Plan}`, `super::super::engine::Plan`.
-fn roots(text: &str) -> Vec<String> {
+/// `crate::{code, engine::Plan}`, `super::super::engine::Plan` in a file that lies two modules deep (`depth`).
+fn roots(text: &str, depth: usize) -> Vec<String> {
     let name = |text: &str| text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
     let mut found = Vec::new();
     for (at, _) in text.match_indices("crate::").filter(|(at, _)| !text[..*at].ends_with('$')) {
@@ -224,7 +224,8 @@ fn roots(text: &str) -> Vec<String> {
     for (at, _) in text.match_indices("super::") {
         let rest = &text[at + "super::".len()..];
         let next: String = name(rest);
-        if WINGS.contains(&&*next) && rest[next.len()..].starts_with("::") {
+        let steps = text[..at].rsplit("super::").take_while(|between| between.is_empty()).count() + 1;
+        if steps >= depth && WINGS.contains(&&*next) && rest[next.len()..].starts_with("::") {
             found.push(next);
         }
     }
@@ -245,7 +246,8 @@ fn wings_of_the_emulator_use_those_before_them() {
         let own =
             WINGS.iter().position(|other| *other == wing).unwrap_or_else(|| panic!("{name}: a wing without a place"));
         seen.insert(wing);
-        for used in roots(&without_comments(text)) {
+        let depth = place.trim_end_matches("/mod.rs").split('/').count();
+        for used in roots(&without_comments(text), depth) {
             let other = WINGS.iter().position(|other| *other == used);
             let other =
                 other.unwrap_or_else(|| panic!("{name}: `crate::{used}` is no wing; name the wing that it is in"));
@@ -259,5 +261,6 @@ fn wings_of_the_emulator_use_those_before_them() {
 fn imports_are_found_wherever_they_stand() {
     let text = "use crate::code::Slot;\nuse crate::{engine::{Plan, fast}, run};\nlet a = crate::machine::Bus; // crate::comment\n\
                 use super::super::replay::Feed; $crate::semantics";
-    assert_eq!(roots(&without_comments(text)), ["code", "engine", "run", "machine", "replay"]);
+    assert_eq!(roots(&without_comments(text), 2), ["code", "engine", "run", "machine", "replay"]);
+    assert_eq!(roots("use super::run::Host;", 3), [""; 0]);
 }

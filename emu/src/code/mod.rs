@@ -94,7 +94,7 @@ pub struct Code<'a> {
     shared: Shared,
 }
 
-/// What those who execute a program share.
+/// Data that those who execute a program share.
 #[derive(Clone, Debug, Default)]
 struct Shared(Arc<Mutex<Vec<Arc<dyn Any + Send + Sync>>>>);
 

@@ -55,19 +55,19 @@ impl Registers {
     /// The scalar that takes what is written to `s0` where nobody reads it.
     pub(crate) const NOWHERE: u8 = u8::MAX;
 
-    /// Where a scalar lies, in octets from the beginning.
+    /// Place of a scalar, in octets from the beginning.
     #[cfg(feature = "native")]
     pub(crate) const fn scalar_offset(number: u8) -> i32 {
         (std::mem::offset_of!(Registers, scalars) + size_of::<i32>() * number as usize) as i32
     }
 
-    /// Where a vector of four components lies, of which the last one is 0, in octets from the beginning.
+    /// Place of a vector of four components, of which the last one is 0, in octets from the beginning.
     #[cfg(feature = "native")]
     pub(crate) const fn vector_offset(number: u8) -> i32 {
         (std::mem::offset_of!(Registers, vectors) + size_of::<Padded>() * number as usize) as i32
     }
 
-    /// Where a wide accumulator lies, in octets from the beginning.
+    /// Place of a wide accumulator, in octets from the beginning.
     #[cfg(feature = "native")]
     pub(crate) const fn wide_offset(number: u8) -> i32 {
         (std::mem::offset_of!(Registers, wides) + size_of::<i64>() * number as usize) as i32

@@ -19,15 +19,15 @@ pub struct Demand<'a> {
     pub code: &'a Code<'a>,
     /// The engine that is wanted.
     pub wish: Wish,
-    /// What the arithmetic does.
+    /// The arithmetic: word, modes, and what it watches for.
     pub computes: Computes,
     /// Octets of the local buffer.
     pub buffer_octets: u32,
     /// Whether it is to be found out what depends on the number of cores.
     pub follows_cores: bool,
-    /// Whether functions and regions are measured.
+    /// Functions and regions are measured.
     pub has_profile: bool,
-    /// When the machine answers.
+    /// Time at which the machine answers.
     pub answers: Answers,
 }
 
@@ -39,14 +39,14 @@ impl<'a> Demand<'a> {
     }
 }
 
-/// When the machine answers a program that asks it for something.
+/// Time at which the machine answers a program that asks it for something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answers {
-    /// When it is ready, so that the program waits and asks again.
+    /// The machine answers when it is ready, so that the program waits and asks again.
     WhenReady,
     /// At once, on a link that is [`super::Quick`].
     AtOnce {
-        /// Whether the link wants to know when it is asked.
+        /// The link wants to know when it is asked.
         keeps_time: bool,
     },
 }
@@ -58,7 +58,7 @@ pub struct Wish {
     pub kind: EngineKind,
     /// The vector instructions.
     pub simd: HostSimd,
-    /// Whether what runs briefly is compiled as well.
+    /// Programs that run briefly are compiled as well.
     pub is_eager: bool,
 }
 

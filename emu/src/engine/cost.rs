@@ -54,7 +54,7 @@ impl Cost {
         self.0 & (HALVES | HALVES >> 1) == 0
     }
 
-    /// Whether none of the numbers has come to half of the room for it.
+    /// None of the numbers has come to half of the room for it.
     #[cfg(feature = "native")]
     pub(super) fn is_below_half(self) -> bool {
         self.0 & HALVES == 0

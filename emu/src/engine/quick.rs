@@ -17,7 +17,7 @@ pub struct Read {
 }
 
 impl Read {
-    /// Where the fields lie, in octets, in their order.
+    /// Places of the fields, in octets, in their order.
     pub const OFFSETS: [i32; 4] = [
         offset_of!(Read, clocks) as i32,
         offset_of!(Read, slot) as i32,

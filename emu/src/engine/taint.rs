@@ -72,7 +72,7 @@ impl TaintEffect {
         self.is_send.then_some(self.target)
     }
 
-    /// Whether it tells which core this is.
+    /// The instruction tells which core this is.
     pub fn tells_core(&self) -> bool {
         self.tells_core
     }

@@ -85,7 +85,7 @@ pub struct Options {
     pub engine: EngineKind,
     /// Vector instructions of the host that an engine may use at most; `None` for all that there are.
     pub simd: Option<HostSimd>,
-    /// Whether what runs briefly is compiled as well, where that is what the engine does.
+    /// Programs that run briefly are compiled as well, where that is what the engine does.
     pub is_eager: bool,
 }
 

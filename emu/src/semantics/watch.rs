@@ -16,7 +16,7 @@ pub trait Watch: Arithmetic {
     /// The same for meanings in Rust, which do not know its type.
     fn numbers(&self) -> Numbers<'_>;
 
-    /// What it does, for engines that are made for it beforehand.
+    /// Description of the arithmetic, for engines that are made for it beforehand.
     fn computes(&self) -> Computes {
         Computes::default()
     }
@@ -32,14 +32,14 @@ pub trait Watch: Arithmetic {
     }
 }
 
-/// What arithmetic does.
+/// Description of an arithmetic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Computes {
     /// Word length and modes.
     pub modes: Modes,
-    /// Whether a division by zero traps.
+    /// A division by zero traps.
     pub traps_division_by_zero: bool,
-    /// Whether it is counted what results lose.
+    /// Losses of results are counted.
     pub counts_losses: bool,
 }
 

@@ -7,7 +7,7 @@ use super::Recipe;
 use crate::engine::cost::Cost;
 use crate::engine::plan::{Plan, Step};
 
-/// What is known of the places of a program before code is generated. The place behind the last one is one of them.
+/// Facts about the places of a program, before code is generated. The place behind the last one is one of them.
 pub(super) struct Blocks {
     /// Places at which generated code can be entered, and to which branches lead.
     pub is_join: Vec<bool>,
@@ -27,7 +27,7 @@ pub(super) fn op(plan: &Plan, step: &Step) -> Option<Op> {
     }
 }
 
-/// Whether a row asks the machine for something, so that it may have to be tried again.
+/// A row asks the machine for something, so that it may have to be tried again.
 pub(super) fn asks(plan: &Plan, step: &Step) -> bool {
     op(plan, step).is_some_and(|_| plan.code.slot_row(step.slot).is_some_and(|row| row.room == "bus"))
 }
@@ -117,7 +117,7 @@ fn most(plan: &Plan, step: &Step) -> Cost {
     passes.map(|pass| Cost::new(&plan.code.costs()[pass])).fold(Cost::default(), Cost::max)
 }
 
-/// Whether a step is a branch that compares a scalar with 0, in that order.
+/// A step is a branch that compares a scalar with 0, in that order.
 pub(super) fn compares_with_zero(plan: &Plan, step: &Step, scalar: u8) -> bool {
     let is_branch = step.exits == 2 && step.target <= plan.end();
     let compares = matches!(op(plan, step), Some(Op::beq | Op::bne | Op::blt | Op::bge));

@@ -22,7 +22,7 @@ pub(super) type Helper = unsafe extern "C" fn(*mut Context, *mut Registers, *con
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
 pub(super) type Units = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
 
-/// What a row of values returns that has divided by zero where that traps. It has written nothing then.
+/// Result of a row of values that has divided by zero where that traps. It has written nothing then.
 pub(super) const STOPPED: u64 = u64::MAX;
 
 /// The bit that [`unit`] sets where control goes on as the row's distance says.

@@ -8,7 +8,7 @@ use super::Read;
 /// Reads that are noted before the link is told of them.
 pub(super) const NOTED: usize = 512;
 
-/// What generated code and the functions that it calls share during a run.
+/// State that generated code and the functions that it calls share during a run.
 #[repr(C)]
 pub(super) struct Context {
     /// Steps, inner steps, clocks and elementary operations since they were last emptied, packed as [`crate::engine::cost::Cost`].
@@ -37,7 +37,7 @@ pub(super) struct Context {
     pub noted_end: u64,
     /// Clocks at the last transfer, counted as [`Context::sums`] counts them; below 0 for one before the sums were last emptied.
     pub before: i64,
-    /// Where the arithmetic is that functions compute with.
+    /// Address of the arithmetic that functions compute with.
     pub arithmetic: *const (),
     /// The rest of the machine: see [`super::run::Host`].
     pub host: *mut (),
@@ -68,14 +68,14 @@ offsets! {
     READS reads
 }
 
-/// Where the counters stand behind the context, in octets from its beginning.
+/// Place of the counters behind the context, in octets from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
-    /// How often exits were taken: a number of 64 bits an exit.
+    /// Counts of exits that were taken: a number of 64 bits an exit.
     pub exits: i32,
-    /// How often runs were begun that no exit leads to whose target is known: one a place.
+    /// Counts of runs that were begun and that no exit leads to whose target is known: one a place.
     pub begun: i32,
-    /// Where reads found their kind the last time: start and length of 32 bits each, and how often, a read.
+    /// Memory of reads, where they found their kind the last time: start and length of 32 bits each, and how often, a read.
     pub sites: i32,
     /// All of it.
     pub octets: i32,

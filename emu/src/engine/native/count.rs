@@ -1,4 +1,4 @@
-//! What a core has counted in generated code, and how it folds into passes and octets.
+//! Counts of a core in generated code, and how they fold into passes and octets.
 
 use super::context::{Frame, Layout};
 use super::{AddOctets, Native, run};
@@ -9,7 +9,7 @@ use crate::engine::plan::{Plan, Step};
 #[derive(Clone, Debug)]
 pub(super) struct Counters {
     pub frame: Frame,
-    /// How often a run ended before each place.
+    /// Counts of runs that ended before each place.
     pub cut: Vec<u64>,
     /// Units by exit.
     pub units: Vec<u64>,

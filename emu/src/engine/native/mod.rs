@@ -31,12 +31,12 @@ use context::{Context, Layout};
 use count::Counters;
 use executable::Executable;
 
-/// What code is generated for.
+/// Settings that code is generated for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Recipe {
-    /// What the arithmetic does.
+    /// The arithmetic: word, modes, and what it watches for.
     computes: Computes,
-    /// Whether that is not the default one, so that it is one that watches: [`crate::semantics::Watching`].
+    /// The arithmetic is not the default one, so that it is one that watches: [`crate::semantics::Watching`].
     is_watching: bool,
     /// Vector instructions that may be used at most.
     simd: HostSimd,
@@ -44,7 +44,7 @@ struct Recipe {
     buffer_octets: u32,
     /// Scalars that may hold the number of cores, where that is followed.
     held: Option<u64>,
-    /// When the machine answers.
+    /// Time at which the machine answers.
     answers: Answers,
 }
 
@@ -61,18 +61,18 @@ impl Recipe {
         }
     }
 
-    /// Whether programs may have to wait, and are entered again at each instruction that asks the machine.
+    /// Programs may have to wait, and are entered again at each instruction that asks the machine.
     fn is_stepped(&self) -> bool {
         self.answers == Answers::WhenReady
     }
 
-    /// Whether inline reads are noted with their clocks.
+    /// Inline reads are noted with their clocks.
     fn keeps_time(&self) -> bool {
         self.answers == Answers::AtOnce { keeps_time: true }
     }
 }
 
-/// How generated code left.
+/// Way in which generated code left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 enum Status {
@@ -114,7 +114,7 @@ struct Compiled {
     sites: Vec<u32>,
     /// The place of each of them.
     site_places: Vec<u32>,
-    /// What the code points to.
+    /// Things that the code points to.
     _steps: Box<[Step]>,
     _extras: Box<[u64]>,
     _executable: Executable,

@@ -16,7 +16,7 @@ use crate::semantics::{Numbers, Watch};
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
 const AHEAD: u64 = 4 * Cost::WHOLE as u64;
 
-/// What a run took before its sums were emptied.
+/// Cost of a run before its sums were emptied.
 #[derive(Clone, Copy, Debug)]
 struct Totals {
     steps: u64,
@@ -35,7 +35,7 @@ pub(super) struct Host<'a> {
     totals: Totals,
     /// Units by exit.
     counted_units: &'a mut [u64],
-    /// What sites know: the kind of the data there.
+    /// Memory of the sites: the kind of the data there.
     kinds: &'a mut [u32],
     sites: &'a [u32],
     layout: Layout,
@@ -149,7 +149,7 @@ impl<'a> Host<'a> {
     }
 }
 
-/// Whether generated code might go beyond the step limit before it looks.
+/// Generated code might go beyond the step limit before it looks.
 pub(super) fn is_near_limit(core: CoreId, steps: u64) -> bool {
     steps + AHEAD > core.step_limit
 }
@@ -159,7 +159,7 @@ pub(super) fn octets(plan: &Plan, step: &Step) -> u64 {
     plan.code.slot_row(step.slot).map_or(0, |row| row.outcomes[0].cost[isa::Class::Octet])
 }
 
-/// Where notes of reads have to be handed over, in octets: at once where so many clocks have gone by that they may not fit a note.
+/// Place from which notes of reads have to be handed over, in octets: at once where so many clocks have gone by that they may not fit a note.
 fn end_of_notes(before: i64) -> u64 {
     if before < -(1 << 31) { 0 } else { (NOTED * size_of::<Read>()) as u64 }
 }

@@ -157,7 +157,7 @@ fn faces<'a>(
     let mut faces = Faces::with_room(room);
     let mut corners = Vec::new();
     let mut beyond: Option<Beyond<'a>> = None;
-    let mut colours = FaceColours::default();
+    let mut colours = ColourReader::default();
     let mut are_whole = true;
     for n in 0..polygons.0 {
         let Some(word) = words.next() else {
@@ -220,12 +220,12 @@ fn faces<'a>(
 
 /// Reads the colours of faces, and remembers the first that is none.
 #[derive(Default)]
-struct FaceColours {
+struct ColourReader {
     unused: Option<(u32, Range<usize>)>,
     more: usize,
 }
 
-impl FaceColours {
+impl ColourReader {
     /// The colour of face `n`: whatever stands between its last corner and the end of the line. `None` when that
     /// cannot be a colour, but is likely more faces.
     fn read(&mut self, words: &mut Words<'_>, n: u32) -> Option<Spec> {

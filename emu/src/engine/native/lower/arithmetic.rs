@@ -14,7 +14,7 @@ impl Lower<'_, '_> {
         self.source.recipe.computes.modes.word
     }
 
-    /// Whether results are brought into their bits by instructions here.
+    /// Results are brought into their bits by instructions here.
     pub fn has_form(&self) -> bool {
         matches!(
             self.source.recipe.computes.modes.overflow,
@@ -22,7 +22,7 @@ impl Lower<'_, '_> {
         )
     }
 
-    /// Whether a sum that left its bits becomes the nearest number that fits.
+    /// A sum that left its bits becomes the nearest number that fits.
     pub fn saturates(&self) -> bool {
         matches!(self.source.recipe.computes.modes.overflow, Overflow::Sat | Overflow::SatSym)
     }

@@ -66,7 +66,7 @@ impl Lower<'_, '_> {
         self.leave_with(status, word, 0);
     }
 
-    /// What leads out of the program, or is executed in a body, is for the interpreter.
+    /// Rows that lead out of the program, or are executed in a body, are for the interpreter.
     fn unless_in_words(&mut self, word: Value) {
         let words = self.source.plan.words;
         let is_in_body = self.source.steps[self.place as usize].slot >= words;

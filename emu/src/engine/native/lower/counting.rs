@@ -1,4 +1,4 @@
-//! What generated code counts, where it looks at the sums, and how it leaves.
+//! Counting in generated code: what it counts, where it looks at the sums, and how it leaves.
 
 use cranelift_codegen::ir::types::{I32, I64};
 use cranelift_codegen::ir::{Block, InstBuilder, Value};
@@ -49,7 +49,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// What the places of a block take from one on.
+    /// Costs of the places of a block from one on.
     fn span(&self, place: u32) -> u64 {
         self.source.plan.cost(place, self.source.blocks.end[place as usize]).0
     }
@@ -59,7 +59,7 @@ impl Lower<'_, '_> {
         self.add_to_sums(self.span(place));
     }
 
-    /// What the block takes from the current place on, added already.
+    /// Cost of the block from the current place on, added already.
     pub fn rest(&self) -> u64 {
         self.span(self.place)
     }
@@ -70,7 +70,7 @@ impl Lower<'_, '_> {
         self.leave_with(status, place, rest);
     }
 
-    /// The same, which way and where being known only then.
+    /// Leaves generated code, which way and where being known only then.
     pub fn leave_with(&mut self, status: Value, place: Value, rest: u64) {
         self.store_sums(rest);
         self.b.ins().store(aligned(), place, self.context, PLACE);
@@ -96,7 +96,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The same with a look at the sums: where one of them has come to half of its room, they are emptied first.
+    /// Goes on with a look at the sums: where one of them has come to half of its room, they are emptied first.
     pub fn watch(&mut self, to: u32, block: Block) {
         let sums = self.b.use_var(self.sums);
         let halves = self.b.ins().band_imm_s(sums, HALVES as i64);

@@ -4,7 +4,7 @@ use cranelift_codegen::ir::Value;
 
 use super::{Form, S, V, W};
 
-/// What a form gets for an operand: registers by number, immediates by value, because they are known when code is generated.
+/// Value that a form gets for an operand: registers by number, immediates by value, because they are known when code is generated.
 macro_rules! operand {
     (S) => {
         S
@@ -35,7 +35,7 @@ macro_rules! operand {
     };
 }
 
-/// What a form makes for an operand that is written.
+/// Value that a form makes for an operand that is written.
 macro_rules! made {
     (V2) => {
         [Value; 2]

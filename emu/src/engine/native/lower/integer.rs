@@ -16,7 +16,7 @@ macro_rules! binary {
     };
 }
 
-/// The same of a scalar and a constant.
+/// Emits the operation on a scalar and a constant.
 macro_rules! with_constant {
     ($($name:ident $instruction:ident)*) => {
         $(fn $name(&mut self, a: S, i: i32) -> Form<(Value,)> {

@@ -11,15 +11,15 @@ use crate::engine::native::context::{BUFFER, WRITTEN};
 /// A place in the buffer.
 #[derive(Clone, Copy)]
 struct Place {
-    /// Where it lies in the host's memory, without the offset.
+    /// Address in the host's memory, without the offset.
     base: Value,
     offset: i32,
-    /// Its address in the buffer, and the same where it is known when code is generated.
+    /// Address in the buffer, and the same where it is known when code is generated.
     address: Value,
     known: Option<u32>,
 }
 
-/// How vectors of other types are seen as one of four components.
+/// Flags by which vectors of other types are seen as one of four components.
 fn little() -> MemFlagsData {
     MemFlagsData::new().with_endianness(Endianness::Little)
 }

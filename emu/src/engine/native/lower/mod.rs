@@ -41,7 +41,7 @@ struct V(u8);
 #[derive(Clone, Copy)]
 struct W(u8);
 
-/// What a row is in generated code.
+/// Form of a row in generated code.
 enum Form<R> {
     /// Instructions that make these values, to be written as the row says.
     Made(R),
@@ -51,7 +51,7 @@ enum Form<R> {
     Left,
 }
 
-/// Whether what comes behind a row is reached from it.
+/// The code behind a row is reached from it.
 enum After {
     Goes,
     Left,
@@ -62,7 +62,7 @@ pub(super) struct Source<'a> {
     pub plan: &'a Plan<'a>,
     /// The plan's steps where they will be as long as the code.
     pub steps: &'a [Step],
-    /// What exits add to the sums, where that will be as long as the code.
+    /// Additions of exits to the sums, where that will be as long as the code.
     pub extras: &'a [u64],
     pub recipe: &'a Recipe,
     pub layout: Layout,
@@ -93,7 +93,7 @@ fn flags() -> MemFlagsData {
     MemFlagsData::new().with_notrap()
 }
 
-/// The same of registers, which are aligned.
+/// Flags for accesses to registers, which are aligned.
 fn aligned() -> MemFlagsData {
     MemFlagsData::trusted()
 }
@@ -182,7 +182,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// What stands at the current place.
+    /// Step at the current place.
     fn step(&mut self) -> After {
         let place = self.place;
         let step = &self.source.steps[place as usize];
@@ -334,7 +334,7 @@ impl Lower<'_, '_> {
         self.b.ins().iconst(I64, value)
     }
 
-    /// The same number in all four components.
+    /// A vector with one number in all four components.
     fn splat(&mut self, value: i32) -> Value {
         let value = self.c32(value);
         self.b.ins().splat(I32X4, value)
@@ -395,7 +395,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The same as 64 bits.
+    /// A component of a vector as 64 bits.
     fn component64(&mut self, vector: V, component: usize) -> Value {
         match self.vectors[usize::from(vector.0)] {
             Some(known) => {

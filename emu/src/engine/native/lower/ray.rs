@@ -22,7 +22,7 @@ struct Meeting {
 }
 
 impl Lower<'_, '_> {
-    /// How a ray meets the plane in a pattern.
+    /// Comparison of a ray with the plane in a pattern.
     fn meet(&mut self, pattern: Value, ray: V) -> Meeting {
         let axis = self.b.ins().ushr_imm_s(pattern, 32);
         let axis = self.b.ins().band_imm_s(axis, 3);
@@ -94,7 +94,7 @@ impl Lower<'_, '_> {
     }
 }
 
-/// Whether the branch at a place is taken where `e` is `known`; `None` for anything else than a branch that compares it with 0.
+/// The branch at a place is taken where `e` is `known`; `None` for anything else than a branch that compares it with 0.
 fn decides(lower: &Lower, place: u32, e: S, known: i32) -> Option<bool> {
     let step = lower.source.steps.get(place as usize)?;
     let is_plain = !lower.source.blocks.is_watched[place as usize] && !step.is_uneven;

@@ -68,7 +68,7 @@ impl Lower<'_, '_> {
         Form::Made((self.vector(components),))
     }
 
-    /// Where components have left 32 bits, the end on the side of `a`; `overflowed` has their signs set.
+    /// Saturation: where components have left 32 bits, the end on the side of `a`; `overflowed` has their signs set.
     fn saturated(&mut self, a: Value, wrapped: Value, overflowed: Value) -> Value {
         let mask = self.b.ins().sshr_imm_s(overflowed, 31);
         let sign = self.b.ins().sshr_imm_s(a, 31);

@@ -38,12 +38,6 @@ const fn is_heavy(op: Op) -> bool {
     )
 }
 
-/// Rows that read global memory and nothing else of the machine: mostly what they read is in reach at once. A row that is missing here costs
-/// time and nothing else.
-const fn is_read(op: Op) -> bool {
-    matches!(op, Op::ldw | Op::ldwide | Op::ldv3)
-}
-
 /// On to a step: at once where calls in the last place of a function become jumps, so that each row has a jump of its own, else by the loop.
 macro_rules! thread {
     ($place:expr, ($registers:ident $walk:ident $L:ident $O:ident)) => {{
@@ -165,7 +159,7 @@ macro_rules! row {
         function! { $features $name (registers step walk sums now fields L O) {
             one_outcome!($name);
             walk.note(Position { step, sums }, now);
-            if is_read(Op::$name) {
+            if const { has_results!($written) && (false $(|| is_address!($kind))*) } {
                 let port = &mut Port { buffer: &mut *walk.buffer, link: &mut Peek(&mut *walk.link) };
                 if let Ok(result) = $trait::$name(port $(, read!(registers, fields, $letter $kind))*) {
                     let _: outcome::$name::Outcome = finish!(registers fields, result, $written);
@@ -210,6 +204,26 @@ macro_rules! row {
             }
             turn!(walk.turn::<outcome::$name::Outcome>(has_target, now, step, flow, exit), sums, (registers walk L O))
         }}
+    };
+}
+
+/// True for an operand that is an address. What takes one to the bus and has results is a read, which is mostly in reach at once.
+macro_rules! is_address {
+    (A) => {
+        true
+    };
+    ($kind:ident) => {
+        false
+    };
+}
+
+/// True for an instruction that writes registers.
+macro_rules! has_results {
+    ([]) => {
+        false
+    };
+    ($written:tt) => {
+        true
     };
 }
 
@@ -269,7 +283,7 @@ macro_rules! stamp {
                 use super::super::super::operands::put;
                 use super::super::super::walk::{Position, Walk, Turn};
                 use crate::engine::{Stopped, TimedLink};
-                use super::super::{RowFunction, goes_back, is_read};
+                use super::super::{RowFunction, goes_back};
                 #[allow(unused_imports, reason = "hosts differ in what they do in doubles")]
                 use crate::semantics::RayRoom;
                 use crate::semantics::{

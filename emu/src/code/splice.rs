@@ -73,7 +73,17 @@ impl InstanceOperand {
 }
 
 /// The slots of a body for an instruction with these fields.
+///
+/// `turn s1, s2` with the body `neg d, a` becomes one slot, `neg s1, s2`, which carries the outcome too. With the body `neg d, a`, `iadd d, d, a` a
+/// write to `s1` in `turn s1, s1` would change what the second step reads, so `d` is hidden in `s63` and copied at the end:
+///
+/// | slot | instruction | counts |
+/// | --- | --- | --- |
+/// | 0 | `neg s63, s1` | a step |
+/// | 1 | `iadd s63, s63, s1` | a step |
+/// | 2 | `mov s1, s63` | the outcome |
 pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<SpliceSlot> {
+    // Choose registers, and find out where the slots of each step begin
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
     let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
@@ -97,9 +107,11 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
         counted: op,
         step,
     };
+    // Copy in what hidden registers have to hold
     for made in before {
         pieces.push(plain(made, SpliceTarget::Inside(pieces.len() + 1), Passing::Move, 0));
     }
+    // Write the steps; an end becomes the copies out, of which the last one leaves
     for (number, step) in body.steps.iter().enumerate() {
         let (instruction, immediates) = match step.act {
             Act::Execute { instruction, immediates } => (instruction, immediates),
@@ -124,6 +136,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
             });
         let mut piece =
             plain((instruction.op, filled), SpliceTarget::Inside(starts[number + 1]), Passing::Step, number as u32);
+        // Let the step leave by itself where an end without copies follows
         match (target, body.steps.get(number + 1).map(|next| next.act)) {
             // A jump inside is where its slot leads to.
             (Some((_, target)), _) if instruction.op == Op::jump => {

@@ -90,9 +90,22 @@ pub struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     /// Finds the runs; `None` for timings with which an instruction takes so long that costs do not fit.
+    ///
+    /// Clocks of three words at 1 clock each, of which the last one branches and takes 2 clocks more when it does:
+    ///
+    /// | word | `before` | `extra` of its outcomes | run |
+    /// | --- | --- | --- | --- |
+    /// | 0 `iadd` | 0 | 0 | ends at 3, takes 2 clocks |
+    /// | 1 `imul` | 1 | 0 | ends at 3, takes 1 |
+    /// | 2 `beq` | 2 | 1 fallen through, 3 taken | ends at 3, takes 0, and what the outcome adds |
+    /// | end | 2 | | |
+    ///
+    /// What a run takes is a difference of two of `before`, wherever it begins. A word whose outcomes differ puts all of its cost into `extra`
+    /// but the step itself.
     pub fn new(code: &'a Code<'a>) -> Option<Plan<'a>> {
         let order = Order::new(code);
         let stages = order.stages();
+        // Number the outcomes in the order of the places
         let mut passes = Vec::with_capacity(code.costs().len());
         let mut firsts = Vec::with_capacity(stages.len());
         for &stage in stages {
@@ -106,6 +119,7 @@ impl<'a> Plan<'a> {
             }
         }
         firsts.push(passes.len());
+        // Add up what all take, and set aside what depends on outcomes
         let mut sums = Vec::with_capacity(stages.len() + 1);
         let mut extra = vec![Cost::default(); passes.len()];
         let mut before = Cost::default();
@@ -131,6 +145,7 @@ impl<'a> Plan<'a> {
             before = Cost(before.0.wrapping_add(whole.0));
         }
         sums.push(before);
+        // Find the ends of runs from behind, and refuse those that a sum has no room for
         let mut run_ends = vec![stages.len() as u32; stages.len() + 1];
         let mut of_run = Cost::default();
         for place in (0..stages.len()).rev() {
@@ -141,6 +156,7 @@ impl<'a> Plan<'a> {
                 return None;
             }
         }
+        // Count the places that have to be looked at for the number of cores
         let effect = |stage: &Stage| match stage {
             Stage::Slot(slot) => TaintEffect::new(code, *slot),
             Stage::Hop(_) => TaintEffect::default(),
@@ -155,6 +171,7 @@ impl<'a> Plan<'a> {
             std::iter::once(0).chain(places).collect()
         };
         let asking = [counted(&TaintEffect::asks), counted(&|effect| effect.asks() || effect.touches(held))];
+        // Lay out a step for each place
         let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
         let mut plan = Plan {

@@ -209,6 +209,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         } else {
             self.settle(number, pause);
         }
+        // Wake those who waited for it
         // What was permitted may be what another processor waits for.
         if let Some((_, sender)) = advance.taken {
             self.unblock(sender as usize, number as u32, at);
@@ -306,6 +307,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         if self.meeting != 0 {
             self.leave_barrier();
         }
+        // Find the next act: the earliest, at equal clocks by its kind, then by the processor's number
         let acts = self.processors.iter().enumerate().filter_map(|(number, processor)| match processor.state {
             ProcessorState::Acts { at, act } => Some((at, act, number)),
             _ => None,

@@ -97,10 +97,12 @@ impl NextTransfer for BusCursor {
 
     #[inline(never)]
     fn go_alone(&mut self, lengths: &Lengths, first: Burst, arrival: Clocks, limit: Clocks) -> Alone {
+        // Copy the state, so that it stays in registers
         let mut alone = Alone::none(first, arrival);
         let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
         let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
         let before = (next, arrival);
+        // Take burst after burst; each begins when it is asked for, because nobody else holds the bus
         while alone.arrival < limit {
             let Burst { octets, rest, length } = alone.burst;
             let is_last = rest == Octets(0);
@@ -119,6 +121,7 @@ impl NextTransfer for BusCursor {
             next += 1;
             (computing, ahead) = ahead_of(segments, next, lengths);
         }
+        // Put back what has changed: all that was not holding the bus was computing
         alone.transfers = (next - before.0) as u64;
         self.busy += alone.arrival - before.1 - alone.held;
         (self.next, self.computing, self.ahead) = (next, computing, ahead);

@@ -49,15 +49,20 @@ impl FlowCounts {
     }
 
     /// Adds the passes to a tally of the same program, and forgets them.
+    ///
+    /// Control is conserved: what comes to a place goes on from it. A loop of three words, `0: movi`, `1: isubi`, `2: bne 1`, that is begun once
+    /// at 0 and goes back 4 times has counted `begun[0] = 1` and 4 for the taken outcome of `bne`. So 1 came to word 0, 1 + 4 to words 1 and 2,
+    /// and 5 - 4 = 1 fell through at the end.
     pub fn fold(&mut self, plan: &Plan, tally: &mut Tally) {
         let steps = &plan.steps()[..plan.end() as usize];
+        // Let what was taken begin runs where it leads
         // Behind instructions with a meaning in Rust a run was begun wherever they led.
         for step in steps.iter().filter(|step| step.exits != 0 && step.row != Step::UNIT) {
             if let Some(run) = self.runs.get_mut(step.target as usize) {
                 run.begun += self.exits[step.exit as usize + usize::from(step.exits) - 1];
             }
         }
-        // How often control came from the place before.
+        // Go through the places with the number of times that control came from the one before
         let mut count = 0;
         for (place, (step, run)) in (0..).zip(steps.iter().zip(&mut self.runs)) {
             count = count + run.begun - run.cut;
@@ -69,6 +74,7 @@ impl FlowCounts {
                 count = if plan.falls_through(place) { *first } else { 0 };
             }
         }
+        // Forget the runs, and hand the passes over
         for run in &mut self.runs {
             (run.begun, run.cut) = (0, 0);
         }

@@ -8,7 +8,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use emu::engine::Wish;
 use emu::extension::{Call, Ending, Meaning, Numbers, Operands, attach};
 use emu::machine::Config;
-use emu::machine::single::{Single, run_with};
+use emu::machine::one_core::{OneCore, run_with};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use emu::semantics::{ScalarRoom, VectorRoom, WideRoom};
@@ -129,8 +129,8 @@ fn measure(criterion: &mut Criterion) {
             let program = program.unwrap_or_else(|report| panic!("{report}")).program;
             let once = || {
                 let registers = registers.clone();
-                let single = Single { registers, step_limit: u64::MAX, ..Single::new(&config, isa, &program) };
-                let run = run_with(&single, Memory::new(Vec::new()), wish);
+                let one_core = OneCore { registers, step_limit: u64::MAX, ..OneCore::new(&config, isa, &program) };
+                let run = run_with(&one_core, Memory::new(Vec::new()), wish);
                 run.expect("the machine is the default one").state.registers
             };
             let after = once();

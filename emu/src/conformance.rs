@@ -12,7 +12,7 @@ use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::registers::{Registers, SCALARS, VECTORS, WIDES};
 use crate::machine::Config;
-use crate::machine::single::{Single, SingleRun, run};
+use crate::machine::one_core::{OneCore, OneCoreRun, run};
 
 /// Octets of the buffer and of global memory, filled at random, that the instruction may reach.
 const OCTETS: usize = 4096;
@@ -191,13 +191,13 @@ impl Case {
         Case { program, registers, memory: Memory::new(octets(random)) }
     }
 
-    fn run(&self, isa: &Isa, trial: &Trial) -> SingleRun {
-        let single = Single {
+    fn run(&self, isa: &Isa, trial: &Trial) -> OneCoreRun {
+        let one_core = OneCore {
             registers: self.registers.clone(),
             step_limit: 1 << 20,
-            ..Single::new(&trial.config, isa, &self.program)
+            ..OneCore::new(&trial.config, isa, &self.program)
         };
-        run(&single, self.memory.clone()).expect("the machine holds the case")
+        run(&one_core, self.memory.clone()).expect("the machine holds the case")
     }
 
     fn instruction(&self, isa: &Isa) -> String {
@@ -221,7 +221,7 @@ impl Case {
         &self,
         isa: &Isa,
         op: Op,
-        [body, meaning]: [&SingleRun; 2],
+        [body, meaning]: [&OneCoreRun; 2],
         tolerance: u64,
         largest: &mut u64,
     ) -> Vec<(String, String, String)> {
@@ -240,7 +240,7 @@ impl Case {
         if let Some((at, (a, b))) = buffers.enumerate().find(|(_, (a, b))| a != b) {
             found.push((format!("octet {at} of the buffer"), a.to_string(), b.to_string()));
         }
-        let exit = |isa: &Isa, run: &SingleRun| exit(isa, row, &self.program, run);
+        let exit = |isa: &Isa, run: &OneCoreRun| exit(isa, row, &self.program, run);
         let mut by_body = isa.clone();
         by_body.set_semantics(op, None);
         let exits = (exit(&by_body, body), exit(isa, meaning));
@@ -248,7 +248,7 @@ impl Case {
             found.push(("exit".to_owned(), exits.0, exits.1));
         }
         if body.state.pc != meaning.state.pc {
-            let way = |run: &SingleRun| if run.state.pc == 1 { "behind it" } else { "at the distance" };
+            let way = |run: &OneCoreRun| if run.state.pc == 1 { "behind it" } else { "at the distance" };
             found.push(("goes on".to_owned(), way(body).to_owned(), way(meaning).to_owned()));
         }
         found
@@ -256,7 +256,7 @@ impl Case {
 }
 
 /// The exit by which the first word ended.
-fn exit(isa: &Isa, row: &InstructionDef, program: &Program, run: &SingleRun) -> String {
+fn exit(isa: &Isa, row: &InstructionDef, program: &Program, run: &OneCoreRun) -> String {
     let code = Code::new(program, isa, Default::default());
     let taken = (0..row.outcomes.len()).find(|&exit| run.tally.passes(&code, 0, exit).count != 0);
     taken.map_or_else(|| "none".to_owned(), |exit| row.outcomes[exit].name.to_string())

@@ -8,7 +8,7 @@ pub mod scene;
 pub mod text;
 
 use emu::machine::Config;
-use emu::machine::single::{self, Single};
+use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
 use emu::profile::{Profile, RegionProfile};
 use isa::{Class, Counts, Isa, Program};
@@ -93,8 +93,8 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
 /// Runs a driver.
 fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure> {
     let config = Config::default();
-    let single = Single { has_profile: true, ..Single::new(&config, isa, program) };
-    let run = single::run(&single, Memory::new(memory))?;
+    let one_core = OneCore { has_profile: true, ..OneCore::new(&config, isa, program) };
+    let run = one_core::run(&one_core, Memory::new(memory))?;
     match run.trap {
         Some(trap) => Err(emu::machine::Failure::from(trap).into()),
         None => Ok(run.profile.unwrap_or_default()),

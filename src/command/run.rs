@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use emu::code::Code;
 use emu::engine::{EngineKind, Wish};
-use emu::machine::single::{self, Single};
+use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
@@ -84,15 +84,15 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
     for value in &arguments.registers {
         value.set(&mut registers);
     }
-    let single = Single {
+    let one_core = OneCore {
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
         has_profile: true,
         has_losses: arguments.flags,
-        ..Single::new(&config, &isa, &program)
+        ..OneCore::new(&config, &isa, &program)
     };
     let wish = Wish { kind: arguments.engine, ..Wish::default() };
-    let run = single::run_with(&single, Memory::new(memory), wish)?;
+    let run = one_core::run_with(&one_core, Memory::new(memory), wish)?;
     let file = arguments.file.display().to_string();
     let code = Code::new(&program, &isa, config.timing());
     let flags = arguments.flags.then(|| result::losses(&code, &run.tally));

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use emu::machine::single::SingleRun;
+use emu::machine::one_core::OneCoreRun;
 use emu::profile::Profile;
 use emu::registers::Registers;
 use isa::Class;
@@ -113,7 +113,7 @@ impl RunResult {
     pub fn new(
         program: String,
         machine: String,
-        run: &SingleRun,
+        run: &OneCoreRun,
         flags: Option<Vec<Loss>>,
         dumps: &[Dump],
     ) -> Result<RunResult, Failure> {
@@ -211,7 +211,7 @@ fn is_zero(contents: &RegisterContents) -> bool {
     matches!(contents, RegisterContents::One(0) | RegisterContents::Three([0, 0, 0]))
 }
 
-fn dumped(run: &SingleRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> {
+fn dumped(run: &OneCoreRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> {
     let (space, address, octets) = match dump {
         Dump::Registers => return None,
         Dump::Memory(address, octets) => ("memory", address, run.memory.slice(address, octets)),

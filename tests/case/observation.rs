@@ -3,7 +3,7 @@
 use emu::code::Code;
 use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
-use emu::machine::single::{self, Single, SingleRun};
+use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::Memory;
 use isa::{Counts, Isa, Program};
 use messages::{Report, Severity, Source};
@@ -16,16 +16,16 @@ pub struct Engine {
     /// Name of the engine.
     pub name: &'static str,
     /// Runs a program on one core up to its halt, its trap or its step limit, which it meets exactly.
-    pub run: fn(&Single, Memory) -> Result<SingleRun, Report>,
+    pub run: fn(&OneCore, Memory) -> Result<OneCoreRun, Report>,
 }
 
 /// All engines; the first one is the specification.
 pub const ENGINES: &[Engine] = &[
-    Engine { name: "checked", run: |single, memory| single::run_with(single, memory, Wish::CHECKED) },
-    Engine { name: "fast", run: single::run },
+    Engine { name: "checked", run: |one_core, memory| one_core::run_with(one_core, memory, Wish::CHECKED) },
+    Engine { name: "fast", run: one_core::run },
     Engine {
         name: "fast, baseline",
-        run: |single, memory| single::run_with(single, memory, Wish::fast(HostSimd::Baseline)),
+        run: |one_core, memory| one_core::run_with(one_core, memory, Wish::fast(HostSimd::Baseline)),
     },
 ];
 
@@ -52,13 +52,13 @@ pub struct Observation {
 pub struct Run {
     isa: Isa,
     config: Config,
-    engine: fn(&Single, Memory) -> Result<SingleRun, Report>,
+    engine: fn(&OneCore, Memory) -> Result<OneCoreRun, Report>,
     memory: usize,
     /// The program.
     pub program: Program,
     /// Word and exit of each instruction that ended.
     pub steps: Vec<(u32, usize)>,
-    end: SingleRun,
+    end: OneCoreRun,
     formats: Vec<(String, i64)>,
 }
 
@@ -122,7 +122,7 @@ impl Run {
         Code::new(&self.program, &self.isa, self.config.timing())
     }
 
-    fn after_steps(&self, steps: u64) -> SingleRun {
+    fn after_steps(&self, steps: u64) -> OneCoreRun {
         run(&self.isa, &self.config, &self.program, self.engine, self.memory, steps).expect("it ran before")
     }
 
@@ -141,7 +141,7 @@ impl Run {
     }
 
     /// The machine after the line's last instruction was executed the last time, or as a trap on the line left it.
-    fn after(&self, line: usize) -> Result<SingleRun, String> {
+    fn after(&self, line: usize) -> Result<OneCoreRun, String> {
         if self.end.trap.as_ref().is_some_and(|trap| self.line(trap.pc) == line) {
             return Ok(self.end.clone());
         }
@@ -224,11 +224,11 @@ fn run(
     isa: &Isa,
     config: &Config,
     program: &Program,
-    engine: fn(&Single, Memory) -> Result<SingleRun, Report>,
+    engine: fn(&OneCore, Memory) -> Result<OneCoreRun, Report>,
     memory: usize,
     step_limit: u64,
-) -> Result<SingleRun, Report> {
-    engine(&Single { step_limit, ..Single::new(config, isa, program) }, Memory::new(vec![0; memory]))
+) -> Result<OneCoreRun, Report> {
+    engine(&OneCore { step_limit, ..OneCore::new(config, isa, program) }, Memory::new(vec![0; memory]))
 }
 
 /// The formats that a source defines.

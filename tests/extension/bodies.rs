@@ -175,7 +175,7 @@ fn an_instruction_does_and_counts_what_its_body_does() {
                     prop_assert_eq!(a.wide(number), b.wide(number), "w{} {} {}", number, &short, &long);
                 }
             }
-            let counts = |run: &emu::machine::single::SingleRun, program| {
+            let counts = |run: &emu::machine::one_core::OneCoreRun, program| {
                 let code = Code::new(program, &isa, Default::default());
                 run.tally.counts(&code)
             };

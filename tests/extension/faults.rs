@@ -102,7 +102,7 @@ fn more_bodies_than_fit_are_refused() {
     let (isa, _) = isa_of(&text);
     let program = program(".rept 300\n    long s1\n.endr\n    halt", &isa);
     let config = emu::machine::Config::default();
-    let single = emu::machine::single::Single::new(&config, &isa, &program);
-    let report = emu::machine::single::run(&single, emu::octets::Memory::new(vec![0; 16])).expect_err("too many");
+    let one_core = emu::machine::one_core::OneCore::new(&config, &isa, &program);
+    let report = emu::machine::one_core::run(&one_core, emu::octets::Memory::new(vec![0; 16])).expect_err("too many");
     assert!(report.to_string().contains("more than 262144 instructions"), "{report}");
 }

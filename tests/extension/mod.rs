@@ -12,7 +12,7 @@ mod study;
 use asm::extension::{Loaded, load};
 use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
-use emu::machine::single::{self, Single, SingleRun};
+use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use isa::{Isa, Program};
@@ -33,18 +33,18 @@ pub fn program(text: &str, isa: &Isa) -> Program {
 }
 
 /// A run on one core of the default machine, the same on the fast engine and on the interpreter.
-pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> SingleRun {
+pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> OneCoreRun {
     let config = Config::default();
     let run = |has_profile, wish| {
-        let single =
-            Single { registers: registers.clone(), step_limit, has_profile, ..Single::new(&config, isa, program) };
-        single::run_with(&single, Memory::new((0..=255).collect()), wish).expect("the machine is the default one")
+        let one_core =
+            OneCore { registers: registers.clone(), step_limit, has_profile, ..OneCore::new(&config, isa, program) };
+        one_core::run_with(&one_core, Memory::new((0..=255).collect()), wish).expect("the machine is the default one")
     };
     let checked = run(true, Wish::CHECKED);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
         for has_profile in [true, false] {
             let fast = run(has_profile, Wish::fast(features));
-            let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone());
+            let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone());
             assert!(parts(&fast) == parts(&checked), "{}\n{fast:#?}\n{checked:#?}", features.name());
             assert_eq!(fast.trap, checked.trap, "{}", features.name());
             assert_eq!(fast.profile, checked.profile.clone().filter(|_| has_profile), "{}", features.name());

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 use emu::code::Code;
 use emu::machine::Config;
 use emu::machine::config::ArithmeticConfig;
-use emu::machine::single::{self, Single, SingleRun};
+use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::Memory;
 use emu::registers::Registers;
 use isa::number::{Modes, Overflow, Quantization};
@@ -146,7 +146,7 @@ impl Oracle<'_> {
     }
 
     /// The results that a run left.
-    fn results(&self, run: &SingleRun) -> Vec<i64> {
+    fn results(&self, run: &OneCoreRun) -> Vec<i64> {
         let registers = &run.state.registers;
         let written = self.row.operands.iter().filter(|operand| operand.is_written());
         written
@@ -162,13 +162,13 @@ impl Oracle<'_> {
     }
 }
 
-fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (SingleRun, Counts) {
+fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (OneCoreRun, Counts) {
     let Modes { word, quantization, overflow } = modes;
     let arithmetic = ArithmeticConfig { word, quantization, overflow, trap_division_by_zero: false };
     let config = Config { arithmetic, ..Config::default() };
     let registers = registers.clone();
-    let single = Single { registers, step_limit: 10_000, ..Single::new(&config, isa, program) };
-    let run = single::run(&single, Memory::default()).unwrap();
+    let one_core = OneCore { registers, step_limit: 10_000, ..OneCore::new(&config, isa, program) };
+    let run = one_core::run(&one_core, Memory::default()).unwrap();
     if let Some(trap) = &run.trap {
         panic!("{trap}");
     }

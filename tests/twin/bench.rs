@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use emu::machine::single::{Single, run};
+use emu::machine::one_core::{OneCore, run};
 use emu::octets::Memory;
 use isa::{Isa, Program};
 use kernels::Function;
@@ -108,8 +108,8 @@ impl<'a> Bench<'a> {
         // Where the next case would begin.
         memory.resize(memory.len() + 1024, 0);
         let (isa, config) = (Isa::base(), self.subject.machine());
-        let single = Single { step_limit: 1_000_000_000, ..Single::new(&config, &isa, &self.program) };
-        let run = run(&single, Memory::new(memory)).unwrap_or_else(|report| panic!("{}", report.render(false)));
+        let one_core = OneCore { step_limit: 1_000_000_000, ..OneCore::new(&config, &isa, &self.program) };
+        let run = run(&one_core, Memory::new(memory)).unwrap_or_else(|report| panic!("{}", report.render(false)));
         if let Some(trap) = run.trap {
             panic!("{trap}");
         }

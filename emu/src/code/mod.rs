@@ -37,14 +37,14 @@ pub struct Slot {
     /// Operands.
     pub fields: Fields,
     /// Number of the pass through its first exit; those of its other exits follow.
-    pub first_exit: u32,
+    pub first_outcome: u32,
     /// The slot after it, unless it leads elsewhere.
     pub next: u32,
 }
 
 /// Cost that one exit of one slot adds to a run, apart from its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExitCost {
+pub struct OutcomeCost {
     /// Time.
     pub clocks: u32,
     /// Elementary operations: add, sub, mul, div and cmp.
@@ -83,7 +83,7 @@ pub struct Code<'a> {
     /// Times of operations.
     pub timing: Timing,
     slots: Vec<Slot>,
-    costs: Vec<ExitCost>,
+    costs: Vec<OutcomeCost>,
     passes: Vec<Pass>,
     /// The first pass of each word, and the end of the last one's.
     starts: Vec<u32>,
@@ -147,9 +147,9 @@ impl<'a> Code<'a> {
         let mut behind: Vec<Slot> = Vec::new();
         for (word, &text) in (0..).zip(&program.words) {
             let instruction = isa.decode(text);
-            let first_exit = code.costs.len() as u32;
-            code.starts.push(first_exit);
-            let mut slot = Slot { op: None, fields: Fields::default(), first_exit, next: word + 1 };
+            let first_outcome = code.costs.len() as u32;
+            code.starts.push(first_outcome);
+            let mut slot = Slot { op: None, fields: Fields::default(), first_outcome, next: word + 1 };
             if let Some(instruction) = instruction {
                 (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
                 let runs_body = isa.runs_body(instruction.op);
@@ -167,7 +167,7 @@ impl<'a> Code<'a> {
         code.starts.push(code.costs.len() as u32);
         if !behind.is_empty() {
             // What runs off the end of the program must not get into a body.
-            code.slots.push(Slot { op: None, fields: Fields::default(), first_exit: 0, next: words as u32 });
+            code.slots.push(Slot { op: None, fields: Fields::default(), first_outcome: 0, next: words as u32 });
             code.slots.append(&mut behind);
         }
         code
@@ -176,7 +176,7 @@ impl<'a> Code<'a> {
     fn add(&mut self, pass: Pass, is_inner: bool) -> u32 {
         let cost = pass.cost.map(|(op, exit)| &self.isa.definition(op).outcomes[usize::from(exit)]);
         let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
-        self.costs.push(ExitCost {
+        self.costs.push(OutcomeCost {
             clocks: cost.map_or(0, |exit| fit(self.timing.clocks(&exit.cost).0)),
             elementary: cost.map_or(0, |exit| fit(exit.cost.elementary())),
             has_busy_units: cost
@@ -210,7 +210,7 @@ impl<'a> Code<'a> {
         let mut first = outer;
         for (at, piece) in pieces.iter().enumerate() {
             let exits = isa.definition(piece.counted).outcomes.len() as u8;
-            let first_exit = match piece.passing {
+            let first_outcome = match piece.passing {
                 Passing::Step if costs_body => {
                     let first = self.passes.len() as u32;
                     for exit in 0..exits {
@@ -222,7 +222,7 @@ impl<'a> Code<'a> {
                     self.add(Pass { word, exit: Some(exit), cost: Some((piece.counted, 0)) }, false)
                 }
                 Passing::Step | Passing::Move => free,
-                Passing::Exit(exit) | Passing::StepAndExit(exit) => outer.first_exit + u32::from(exit),
+                Passing::Exit(exit) | Passing::StepAndExit(exit) => outer.first_outcome + u32::from(exit),
             };
             let next = match piece.way {
                 SpliceTarget::Inside(to) => place(to),
@@ -233,7 +233,7 @@ impl<'a> Code<'a> {
             if let Some((letter, to)) = piece.branch {
                 fields.set(letter, place(to).wrapping_sub(place(at)) as i32);
             }
-            let slot = Slot { op: Some(piece.op), fields, first_exit, next };
+            let slot = Slot { op: Some(piece.op), fields, first_outcome, next };
             if at == 0 {
                 first = slot;
             } else {
@@ -332,7 +332,7 @@ impl<'a> Code<'a> {
     }
 
     /// Costs of the passes, by number.
-    pub fn costs(&self) -> &[ExitCost] {
+    pub fn costs(&self) -> &[OutcomeCost] {
         &self.costs
     }
 

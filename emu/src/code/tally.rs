@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use isa::Counts;
 use isa::program::Line;
 
-use crate::code::{Code, ExitCost};
+use crate::code::{Code, OutcomeCost};
 
 /// Passes through one exit of one word, beside what one pass takes: an engine looks at both for each instruction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub struct Passes {
     /// Units of the per-unit cost, summed.
     pub units: u64,
     /// Cost of one pass, its units left out.
-    pub cost: ExitCost,
+    pub cost: OutcomeCost,
 }
 
 /// Losses of numeric results on their way into words: the flags of IEEE 1666, counted. A vector has three results.
@@ -56,14 +56,14 @@ pub struct LineCount {
 impl Tally {
     /// Nothing yet, for a program.
     pub fn new(code: &Code) -> Tally {
-        let none_yet = |&cost: &ExitCost| Passes { count: 0, units: 0, cost };
+        let none_yet = |&cost: &OutcomeCost| Passes { count: 0, units: 0, cost };
         Tally {
             passes: code.costs().iter().map(none_yet).collect(),
             losses: vec![Losses::default(); code.slots().len()],
         }
     }
 
-    /// All passes, by number: see [`crate::code::Slot::first_exit`].
+    /// All passes, by number: see [`crate::code::Slot::first_outcome`].
     #[inline]
     pub fn passes_mut(&mut self) -> &mut [Passes] {
         &mut self.passes

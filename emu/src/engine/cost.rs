@@ -1,6 +1,6 @@
 //! Cost of runs: four numbers that are added up as one.
 
-use crate::code::ExitCost;
+use crate::code::OutcomeCost;
 
 /// The numbers of a [`Cost`]: where each begins, and its bits. The sign of all is the [`FLAG`].
 const STEPS: (u32, u32) = (0, 15);
@@ -25,7 +25,7 @@ impl Cost {
     pub const WHOLE: u32 = 1 << 14;
 
     /// The cost of a step through an exit that costs as much; of a number that is too large, what makes the plan be refused.
-    pub(super) fn new(cost: &ExitCost) -> Cost {
+    pub(super) fn new(cost: &OutcomeCost) -> Cost {
         let fit = |number: u32, (start, bits): (u32, u32)| u64::from(number.min(1 << (bits - 1))) << start;
         Cost::step(cost.is_inner).plus(Cost(fit(cost.clocks, CLOCKS) | fit(cost.elementary, ELEMENTARY)))
     }

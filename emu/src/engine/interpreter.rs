@@ -162,7 +162,7 @@ pub fn run<T: Watch, O: Observer>(
 
         let (exit, units): (usize, u32) = isa::instructions!(dispatch);
 
-        let number = slot.first_exit as usize + exit;
+        let number = slot.first_outcome as usize + exit;
         let pass = &mut passes[number];
         pass.count += 1;
         steps += 1;

@@ -8,7 +8,7 @@ use isa::{Fields, InstructionDef, Kind, Op};
 use super::cost::{Cost, FLAG};
 use crate::code::layout::{Order, Stage};
 use crate::code::registers::Registers;
-use crate::code::{Code, ExitCost, Slot};
+use crate::code::{Code, OutcomeCost, Slot};
 use crate::engine::taint::TaintEffect;
 
 /// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
@@ -112,7 +112,7 @@ impl<'a> Plan<'a> {
             firsts.push(passes.len());
             match stage {
                 Stage::Slot(slot) => {
-                    let first = code.slots()[slot as usize].first_exit;
+                    let first = code.slots()[slot as usize].first_outcome;
                     passes.extend((first..).take(code.slot_row(slot).map_or(0, |row| row.outcomes.len())));
                 }
                 Stage::Hop(_) => passes.push(NO_PASS),
@@ -130,7 +130,8 @@ impl<'a> Plan<'a> {
             if let Stage::Hop(_) = stage {
                 continue;
             }
-            let costs: Vec<ExitCost> = passes[exits.clone()].iter().map(|&pass| code.costs()[pass as usize]).collect();
+            let costs: Vec<OutcomeCost> =
+                passes[exits.clone()].iter().map(|&pass| code.costs()[pass as usize]).collect();
             let is_alike = costs.iter().all(|cost| cost == &costs[0]);
             let bare = Cost::step(costs.first().is_some_and(|cost| cost.is_inner));
             let whole = if is_alike { costs.first().map_or(bare, Cost::new) } else { bare };

@@ -147,7 +147,7 @@ impl Observer for Profiler {
             if let Stage::Slot(slot) = stage
                 && code.slot_row(slot).is_some_and(|row| row.outcomes.len() == 1)
             {
-                sum += code.pass_cost(code.slots()[slot as usize].first_exit as usize).0;
+                sum += code.pass_cost(code.slots()[slot as usize].first_outcome as usize).0;
             }
             before.push(sum);
         }

@@ -3,7 +3,7 @@
 use emu::code::Code;
 use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
-use emu::machine::single::{self, Single, SingleRun};
+use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
 use emu::tally::Losses;
@@ -14,14 +14,15 @@ use proptest::test_runner::RngSeed;
 
 use super::builder::{Builder, program};
 
-fn run_with(config: &Config, program: &Program, registers: Registers) -> SingleRun {
+fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCoreRun {
     let isa = Isa::base();
-    let single = Single { registers, step_limit: 500, has_profile: true, ..Single::new(config, &isa, program) };
-    let run = |wish| single::run_with(&single, Memory::new((0..=255).collect()), wish).expect("the setup is right");
+    let one_core = OneCore { registers, step_limit: 500, has_profile: true, ..OneCore::new(config, &isa, program) };
+    let run = |wish| one_core::run_with(&one_core, Memory::new((0..=255).collect()), wish).expect("the setup is right");
     let checked = run(Wish::CHECKED);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
         let fast = run(Wish::fast(features));
-        let parts = |run: &SingleRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
+        let parts =
+            |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
         assert_eq!(parts(&fast), parts(&checked), "{}", features.name());
         assert_eq!(fast.profile, checked.profile, "{}", features.name());
     }
@@ -59,7 +60,7 @@ fn sums_of_long_times_are_right_on_all_engines() {
     }
 }
 
-fn run(body: impl FnOnce(&mut Builder)) -> SingleRun {
+fn run(body: impl FnOnce(&mut Builder)) -> OneCoreRun {
     let program = program(|p| {
         body(p);
         p.emit(Op::halt, &[]);
@@ -84,8 +85,8 @@ fn what_results_lose_is_counted_word_by_word() {
     });
     let (isa, config) = (Isa::base(), Config::default());
     let losses = |config: &Config, has_losses| {
-        let single = Single { step_limit: 500, has_losses, ..Single::new(config, &isa, &program) };
-        let run = single::run(&single, Memory::default()).expect("the setup is right");
+        let one_core = OneCore { step_limit: 500, has_losses, ..OneCore::new(config, &isa, &program) };
+        let run = one_core::run(&one_core, Memory::default()).expect("the setup is right");
         let code = Code::new(&program, &isa, config.timing());
         let losses = (0..).zip(run.tally.losses(&code)).filter(|(_, losses)| *losses != Losses::default());
         let named = losses

@@ -2,7 +2,7 @@
 
 use emu::engine::Wish;
 use emu::machine::Config;
-use emu::machine::single::{self, Single};
+use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
 use emu::profile::{Profile, RegionProfile};
 use isa::program::Line;
@@ -13,9 +13,9 @@ use super::builder::program;
 /// Runs a program to its end, and gives what its regions and the whole of it cost.
 pub fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
-    let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, &isa, program) };
-    let run = single::run(&single, Memory::default()).expect("the setup is right");
-    let checked = single::run_with(&single, Memory::default(), Wish::CHECKED).expect("the setup is right");
+    let one_core = OneCore { step_limit: 10_000_000, has_profile: true, ..OneCore::new(&config, &isa, program) };
+    let run = one_core::run(&one_core, Memory::default()).expect("the setup is right");
+    let checked = one_core::run_with(&one_core, Memory::default(), Wish::CHECKED).expect("the setup is right");
     assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());

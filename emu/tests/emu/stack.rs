@@ -4,7 +4,7 @@
 
 use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
-use emu::machine::single::{self, Single};
+use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
 use isa::{Isa, Kind, Op};
 
@@ -54,9 +54,9 @@ fn no_row_takes_more_stack_than_there_is() {
             let steps = std::thread::scope(|scope| {
                 let run = || {
                     let config = Config::default();
-                    let single = Single { has_profile, ..Single::new(&config, &isa, &program) };
-                    let run =
-                        single::run_with(&single, Memory::new(vec![0; 4096]), Wish::fast(features)).expect("it runs");
+                    let one_core = OneCore { has_profile, ..OneCore::new(&config, &isa, &program) };
+                    let run = one_core::run_with(&one_core, Memory::new(vec![0; 4096]), Wish::fast(features))
+                        .expect("it runs");
                     (run.state.steps, run.trap.map(|trap| trap.to_string()))
                 };
                 let small = std::thread::Builder::new().name(format!("{op:?} {features:?}")).stack_size(STACK);

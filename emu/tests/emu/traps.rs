@@ -1,6 +1,6 @@
 //! Programs that go wrong, and what a person is told.
 
-use emu::machine::single::{self, Single, SingleRun};
+use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::machine::{Config, Failure, Options, Setup};
 use emu::octets::Memory;
 use emu::trap::{Fault, Trap};
@@ -9,10 +9,10 @@ use isa::{Isa, Op, Program};
 use super::builder::{Builder, program};
 
 /// Runs a program on one core with 100 octets of memory and a limit of 1000 instructions.
-fn run_with(config: &Config, program: &Program) -> SingleRun {
+fn run_with(config: &Config, program: &Program) -> OneCoreRun {
     let isa = Isa::base();
-    let single = Single { step_limit: 1000, ..Single::new(config, &isa, program) };
-    single::run(&single, Memory::new(vec![0; 100])).expect("the setup is right")
+    let one_core = OneCore { step_limit: 1000, ..OneCore::new(config, &isa, program) };
+    one_core::run(&one_core, Memory::new(vec![0; 100])).expect("the setup is right")
 }
 
 fn trap(body: impl FnOnce(&mut Builder)) -> Trap {
@@ -211,7 +211,7 @@ fn data_that_do_not_fit_the_buffer_are_refused() {
     let isa = Isa::base();
     let config = Config { buffer_octets: 3, ..Config::default() };
     let program = Program { words: vec![0], buffer: vec![1; 4], ..Program::default() };
-    let single = Single::new(&config, &isa, &program);
-    let report = single::run(&single, Memory::default()).expect_err("it does not fit").render(false);
+    let one_core = OneCore::new(&config, &isa, &program);
+    let report = one_core::run(&one_core, Memory::default()).expect_err("it does not fit").render(false);
     assert!(report.contains("the program's data take 4 octets, but the buffer of a core has 3"), "{report}");
 }

@@ -5,7 +5,7 @@ use emu::code::Code;
 use emu::engine::interpreter::run;
 use emu::engine::{CoreId, Pause, State};
 use emu::machine::Config;
-use emu::machine::single::{self, Single};
+use emu::machine::one_core::{self, OneCore};
 use emu::octets::{Buffer, Memory};
 use emu::profile::{Observer, Profile};
 use emu::semantics::{Link, Message, Motion};
@@ -39,9 +39,9 @@ fn searched(row: &Row, isa: &Isa) -> (Program, Vec<u8>) {
 /// Calls of a row's region by the machine's profile.
 fn profiled(row: &Row, program: &Program, memory: &[u8], isa: &Isa) -> Calls {
     let config = Config::default();
-    let single = Single { step_limit: 10_000_000, has_profile: true, ..Single::new(&config, isa, program) };
-    let run =
-        single::run(&single, Memory::new(memory.to_vec())).unwrap_or_else(|report| panic!("{}", report.render(false)));
+    let one_core = OneCore { step_limit: 10_000_000, has_profile: true, ..OneCore::new(&config, isa, program) };
+    let run = one_core::run(&one_core, Memory::new(memory.to_vec()))
+        .unwrap_or_else(|report| panic!("{}", report.render(false)));
     assert!(run.trap.is_none(), "{}: {:?}", row.id, run.trap);
     let regions = run.profile.expect("a profile was asked for").regions;
     let region = regions.iter().find(|region| region.name == row.region).expect("the region is in the program");

@@ -20,7 +20,7 @@ use crate::profile::{Profile, RunObserver};
 use crate::semantics::Watch;
 
 /// Program that runs on one core, with its machine.
-pub struct Single<'a> {
+pub struct OneCore<'a> {
     /// The machine; its number of cores and main processor play no part.
     pub config: &'a Config,
     /// The rows of the program.
@@ -37,10 +37,10 @@ pub struct Single<'a> {
     pub has_losses: bool,
 }
 
-impl<'a> Single<'a> {
+impl<'a> OneCore<'a> {
     /// A program from reset, with the machine's step limit; neither calls nor losses are measured.
-    pub fn new(config: &'a Config, isa: &'a Isa, program: &'a Program) -> Single<'a> {
-        Single {
+    pub fn new(config: &'a Config, isa: &'a Isa, program: &'a Program) -> OneCore<'a> {
+        OneCore {
             config,
             isa,
             program,
@@ -54,7 +54,7 @@ impl<'a> Single<'a> {
 
 /// State in which a program left the core, whether it halted or trapped.
 #[derive(Clone, Debug)]
-pub struct SingleRun {
+pub struct OneCoreRun {
     /// Engine that executed it.
     pub engine: Choice,
     /// Registers, buffer, program counter, instructions.
@@ -78,44 +78,44 @@ pub struct SingleRun {
 ///
 /// # Errors
 /// A machine out of its ranges, or initial data that do not fit the buffer.
-pub fn run(single: &Single, memory: Memory) -> Result<SingleRun, Report> {
-    run_with(single, memory, Wish::default())
+pub fn run(one_core: &OneCore, memory: Memory) -> Result<OneCoreRun, Report> {
+    run_with(one_core, memory, Wish::default())
 }
 
 /// Run with an engine that is wanted. The results are the same.
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_with(single: &Single, memory: Memory, wish: Wish) -> Result<SingleRun, Report> {
-    single.config.check()?;
-    check_buffer("a core", single.program, single.config.buffer_octets)?;
-    check_bodies(single.program, single.isa).map_err(Diagnostic::from)?;
-    let watching = single.config.arithmetic.watching(single.has_losses);
-    Ok(dispatch(watching, single.has_profile, OneCoreTask { single, memory, wish }))
+pub fn run_with(one_core: &OneCore, memory: Memory, wish: Wish) -> Result<OneCoreRun, Report> {
+    one_core.config.check()?;
+    check_buffer("a core", one_core.program, one_core.config.buffer_octets)?;
+    check_bodies(one_core.program, one_core.isa).map_err(Diagnostic::from)?;
+    let watching = one_core.config.arithmetic.watching(one_core.has_losses);
+    Ok(dispatch(watching, one_core.has_profile, OneCoreTask { one_core, memory, wish }))
 }
 
 struct OneCoreTask<'a> {
-    single: &'a Single<'a>,
+    one_core: &'a OneCore<'a>,
     memory: Memory,
     wish: Wish,
 }
 
 impl Task for OneCoreTask<'_> {
-    type Result = SingleRun;
+    type Result = OneCoreRun;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> SingleRun {
-        run_on::<T, O>(self.single, self.memory, arithmetic, self.wish)
+    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> OneCoreRun {
+        run_on::<T, O>(self.one_core, self.memory, arithmetic, self.wish)
     }
 }
 
-fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic: &T, wish: Wish) -> SingleRun {
-    let code = Code::new(single.program, single.isa, single.config.timing());
-    let core = CoreId { core: 0, cores: 1, step_limit: single.step_limit };
-    let buffer_octets = single.config.buffer_octets;
+fn run_on<T: Watch, O: RunObserver>(one_core: &OneCore, memory: Memory, arithmetic: &T, wish: Wish) -> OneCoreRun {
+    let code = Code::new(one_core.program, one_core.isa, one_core.config.timing());
+    let core = CoreId { core: 0, cores: 1, step_limit: one_core.step_limit };
+    let buffer_octets = one_core.config.buffer_octets;
     let demand = Demand::new(&code, wish, arithmetic.computes(), buffer_octets);
     let runner = choose(&Demand { has_profile: O::IS_ACTIVE, ..demand });
     let mut worker: Executor<T, O> = Executor::new(&code, core, buffer_octets, runner, arithmetic);
-    worker.state.registers = single.registers.clone();
+    worker.state.registers = one_core.registers.clone();
     worker.observer.begin(worker.state.pc);
     let mut processor = Processor::new(&code, core, worker);
     let mut shared = Shared::new(memory, 1);
@@ -137,7 +137,7 @@ fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic:
         let octets = processor.asked_octets();
         if octets.0 != 0 {
             let start = processor.clock;
-            processor.wait_until(start + single.config.bus.whole_length(octets));
+            processor.wait_until(start + one_core.config.bus.whole_length(octets));
         }
         is_permitted = true;
     };
@@ -145,7 +145,7 @@ fn run_on<T: Watch, O: RunObserver>(single: &Single, memory: Memory, arithmetic:
     worker.observer.end();
     let tally = worker.take_tally();
     let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, &code));
-    SingleRun {
+    OneCoreRun {
         engine: worker.engine(),
         profile: worker.observer.into_profile(&code, &tally),
         state: worker.state,

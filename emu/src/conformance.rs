@@ -105,6 +105,7 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
                 agreement.trapped += 1;
                 continue;
             }
+            // Only runs that both end have results; how a trapped one leaves its registers is no promise.
             (None, None) => case.differences(isa, op, [&body, &meaning], trial.tolerance, &mut agreement.largest),
             traps => {
                 let text = |trap: &Option<crate::code::trap::Trap>| match trap {
@@ -137,6 +138,7 @@ impl Random {
 
     /// A number of `bits` bits: small ones, edges, and any, down to few bits.
     fn number(&mut self, bits: u32) -> i64 {
+        // Uniform numbers of 32 bits would nearly all be large: the number of bits is chosen first, then they.
         let (least, most) = (i64::MIN >> (64 - bits), i64::MAX >> (64 - bits));
         match self.below(8) {
             0 => self.below(7) as i64 - 3,
@@ -174,6 +176,7 @@ impl Case {
             })
             .collect();
         let tested = isa.encode(op, &fields).expect("the fields are in their ranges");
+        // Two ends, so that the program counter tells which way the instruction went on
         let halt = isa.encode(Op::halt, &[]).expect("it has no operands");
         let mut registers = Registers::default();
         (0..SCALARS as u8).for_each(|number| registers.set_scalar(number, random.number(word) as i32));
@@ -231,6 +234,7 @@ impl Case {
         for place in written.flat_map(|operand| self.places(isa, operand.letter, operand.kind)) {
             let (a, b) = (&body.state.registers, &meaning.state.registers);
             let apart = place.apart(a, b);
+            // Differences that are refused stand in the message; the largest tells of those that are allowed.
             *largest = (*largest).max(if apart <= tolerance { apart } else { 0 });
             if apart > tolerance {
                 found.push((place.name(), place.show(a), place.show(b)));

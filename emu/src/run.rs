@@ -51,9 +51,11 @@ pub fn run_all(
             results[first] = Some(Err(failure));
             continue;
         }
+        // A group begins with the first machine that has no result, and takes later ones that can share its recordings.
         let is_alike = |at: &usize| {
             results[*at].is_none() && machines[*at].computes_like(&machines[first]) && check(&setups[*at]).is_ok()
         };
+        // A machine that cannot run has its own failure and must not fail the group.
         let alike: Vec<usize> = (first..setups.len()).filter(is_alike).take(at_once(memory)).collect();
         let group: Vec<Setup> = alike.iter().map(|&at| setups[at].clone()).collect();
         for (&at, result) in alike.iter().zip(run_alike(&group, memory, progress)) {

@@ -42,6 +42,7 @@ impl Order {
         let mut stages = Vec::with_capacity(slots.len());
         let mut inner = words + 1;
         for word in 0..words {
+            // Bodies stand in the order of their words, so that of this word begins where the last one ended.
             let body = inner..slots.len() as u32;
             let body = inner..inner + body.take_while(|&slot| code.word(slot) == word).count() as u32;
             let is_reached = reached(code, word, &body);
@@ -56,6 +57,7 @@ impl Order {
                 here = following;
             }
         }
+        // Slots that nothing reaches have the end for a place, where an engine stops and asks the interpreter.
         let mut places = vec![stages.len() as u32; slots.len().max(words as usize + 1)];
         for (place, stage) in (0..).zip(&stages) {
             if let Stage::Slot(slot) = stage {
@@ -88,6 +90,7 @@ impl Order {
 /// back itself.
 fn reached(code: &Code, word: u32, body: &Range<u32>) -> Vec<bool> {
     let mut is_reached = vec![false; body.len()];
+    // Search from the word on; each slot is opened once, so loops end.
     let mut open = vec![word];
     while let Some(slot) = open.pop() {
         let decoded = &code.slots()[slot as usize];

@@ -124,6 +124,7 @@ pub fn check_bodies(program: &Program, isa: &Isa) -> Result<(), TooLarge> {
     }
     let code = Code::new(program, isa, Timing::default());
     let is_left_out = |slot: &Slot| slot.op.is_some_and(|op| isa.runs_body(op));
+    // A body that found no room left its instruction in the word's slot, which is how it shows.
     if code.slots.iter().any(is_left_out) { Err(TooLarge) } else { Ok(()) }
 }
 
@@ -152,6 +153,7 @@ impl<'a> Code<'a> {
             let mut slot = Slot { op: None, fields: Fields::default(), first_outcome, next: word + 1 };
             if let Some(instruction) = instruction {
                 (slot.op, slot.fields) = (Some(instruction.op), instruction.fields);
+                // An expanded body counts as if its steps stood in the program: they are the instructions and have the cost.
                 let runs_body = isa.runs_body(instruction.op);
                 let is_expanded = runs_body && isa.is_expanded(instruction.op);
                 for exit in 0..isa.definition(instruction.op).outcomes.len() as u8 {
@@ -175,6 +177,7 @@ impl<'a> Code<'a> {
 
     fn add(&mut self, pass: Pass, is_inner: bool) -> u32 {
         let cost = pass.cost.map(|(op, exit)| &self.isa.definition(op).outcomes[usize::from(exit)]);
+        // Costs beyond 32 bits saturate: engines that add up whole runs refuse such a program.
         let fit = |number: u64| u32::try_from(number).unwrap_or(u32::MAX);
         self.costs.push(OutcomeCost {
             clocks: cost.map_or(0, |exit| fit(self.timing.clocks(&exit.cost).0)),
@@ -196,6 +199,7 @@ impl<'a> Code<'a> {
         if behind.len() + pieces.len() > MOST_BODY_SLOTS {
             return outer;
         }
+        // The body's slot 0 stands at the word, and one slot is kept free behind the words: so slot `at` is at `base + at`.
         let base = self.words() + behind.len() as u32;
         let place = |at: usize| if at == 0 { word } else { base + at as u32 };
         let is_expanded = isa.is_expanded(op);
@@ -224,12 +228,14 @@ impl<'a> Code<'a> {
                 Passing::Step | Passing::Move => free,
                 Passing::Exit(exit) | Passing::StepAndExit(exit) => outer.first_outcome + u32::from(exit),
             };
+            // Inside, places are those of slots; what leaves goes by words, and outside the program to its end.
             let next = match piece.way {
                 SpliceTarget::Inside(to) => place(to),
                 SpliceTarget::Behind => word + 1,
                 SpliceTarget::Away(distance) => word.wrapping_add_signed(distance).min(self.words()),
             };
             let mut fields = piece.fields;
+            // A branch inside the body has a distance in slots from where it stands now.
             if let Some((letter, to)) = piece.branch {
                 fields.set(letter, place(to).wrapping_sub(place(at)) as i32);
             }

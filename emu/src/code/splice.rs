@@ -86,6 +86,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
     // Choose registers, and find out where the slots of each step begin
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
+    // An end takes as many slots as there are copies out, or one that only carries the outcome.
     let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
     let mut starts = Vec::with_capacity(body.steps.len() + 1);
     starts.push(before.len());
@@ -116,6 +117,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
         let (instruction, immediates) = match step.act {
             Act::Execute { instruction, immediates } => (instruction, immediates),
             Act::End { outcome: exit, jumps } => {
+                // A copy of s0 into itself does nothing and takes no time, but can have an outcome.
                 let nothing = [copy('s', 0, 0)];
                 let made = if after.is_empty() { &nothing[..] } else { &after[..] };
                 for (at, &moved) in made.iter().enumerate() {
@@ -128,6 +130,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
                 continue;
             }
         };
+        // Put the instance's registers and immediates in, and turn distances in steps into slots
         let inner = isa.definition(instruction.op);
         let filled = filled(inner, &instruction.fields, immediates, fields, &places);
         let target =
@@ -164,9 +167,11 @@ fn places(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fields) -> Vec<
             operand.kind.register_file().map(|file| InstanceOperand { operand, file, outer, inner: outer })
         })
         .collect();
+    // Hidden registers are given out from above, of each file by itself; a program cannot name them.
     let mut ends = [64u8, 64, 16];
     for at in 0..places.len() {
         let place = &places[at];
+        // What is only read stays where it is. A destination s0 is hidden always, since the body may read what it wrote there.
         if !place.operand.is_written() || (!place.is_zero() && is_safe(place, &places, body, isa)) {
             continue;
         }

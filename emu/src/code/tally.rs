@@ -120,6 +120,7 @@ impl Tally {
         let mut total = LineCount::default();
         for number in code.passes_of(word) {
             let Some(passes) = self.passes.get(number).filter(|passes| passes.count != 0) else { continue };
+            // Steps of a body cost, but the program has written one instruction.
             if !passes.cost.is_inner {
                 total.instructions += passes.count;
             }

@@ -186,6 +186,7 @@ pub fn choose<'a>(demand: &Demand<'a>) -> Runner<'a> {
     for kind in EngineKind::ALL.into_iter().skip_while(|kind| *kind != demand.wish.kind) {
         match Ready::new(kind, demand) {
             Ok(ready) => return Runner { code: demand.code, ready, choice: Choice { kind, refusal } },
+            // The first reason is that of the engine which was wanted, and the one that users are told.
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
     }
@@ -217,6 +218,7 @@ impl Runner<'_> {
         observer: &mut O,
     ) -> Pause {
         loop {
+            // Links of stepped machines are called through a table: they wait for the machine after each request anyway.
             let timed: &mut &mut dyn TimedLink = &mut (&mut Timeless(&mut *link) as _);
             match self.run_ahead(core, state, arithmetic, timed, &mut Taint::default(), observer) {
                 Some(Stopped::Halt) => return Pause::Halt,
@@ -227,6 +229,7 @@ impl Runner<'_> {
             // The interpreter goes on as long as the engine likes.
             let before = state.steps + state.inner_steps;
             let patience = self.ready.as_ref().map_or(u64::MAX, |ready| ready.patience(core, state));
+            // Patience is a step limit of its own. The engine is asked again only if that one was met, not the machine's.
             let limit = before.saturating_add(patience);
             let patient = CoreId { step_limit: core.step_limit.min(limit), ..core };
             let pause = interpreter::run(self.code, patient, state, arithmetic, link, tally, observer);

@@ -40,6 +40,7 @@ pub fn run<T: Watch, O: Observer>(
     let (slots, (passes, losses), link) = (code.slots(), tally.parts_mut(), &mut { link });
     let State { registers, buffer, units, .. } = state;
     let numbers = arithmetic.numbers();
+    // Sums of the loop stand in variables of their own, so that the host can keep them in registers.
     let mut next = state.pc;
     let mut pc;
     let mut steps = state.steps + state.inner_steps;
@@ -52,6 +53,7 @@ pub fn run<T: Watch, O: Observer>(
         let Some(slot) = slots.get(pc as usize) else {
             break Pause::Fault(Fault::OutsideProgram { words: code.words() });
         };
+        // Before the instruction, so that a limit of n executes n instructions, and the trap names the next one.
         if steps >= seat.step_limit {
             break Pause::Fault(Fault::StepLimit(seat.step_limit));
         }
@@ -111,6 +113,7 @@ pub fn run<T: Watch, O: Observer>(
                 (next, motion) = (flow.next, flow.motion);
                 if let Some(end) = flow.end {
                     after = After::Ends(end);
+                // The first comparison is enough for programs without bodies, and nearly always decides.
                 } else if next >= code.words() && code.is_outside(pc, next) {
                     after = After::Strays;
                 }
@@ -163,6 +166,7 @@ pub fn run<T: Watch, O: Observer>(
         let (exit, units): (usize, u32) = isa::instructions!(dispatch);
 
         let number = slot.first_outcome as usize + exit;
+        // Account for the outcome; what units add is seldom and takes a way of its own
         let pass = &mut passes[number];
         pass.count += 1;
         steps += 1;

@@ -126,6 +126,7 @@ impl<'a> Plan<'a> {
         let mut most = vec![Cost::default(); stages.len()];
         for (place, stage) in stages.iter().enumerate() {
             sums.push(before);
+            // A slot without an instruction has no outcomes: its range is empty, and it takes the bare step.
             let exits = firsts[place]..firsts[place + 1];
             if let Stage::Hop(_) = stage {
                 continue;
@@ -137,6 +138,7 @@ impl<'a> Plan<'a> {
             let whole = if is_alike { costs.first().map_or(bare, Cost::new) } else { bare };
             most[place] = whole;
             for (exit, cost) in exits.zip(&costs) {
+                // The dearest outcome counts for the room of a sum, whichever is taken.
                 most[place] = most[place].max(Cost::new(cost));
                 if !is_alike {
                     extra[exit] = Cost(Cost::new(cost).0 - bare.0);
@@ -158,6 +160,7 @@ impl<'a> Plan<'a> {
             }
         }
         // Count the places that have to be looked at for the number of cores
+        // Sums again, so that a run is asked for by two numbers: it matters where they differ.
         let effect = |stage: &Stage| match stage {
             Stage::Slot(slot) => TaintEffect::new(code, *slot),
             Stage::Hop(_) => TaintEffect::default(),
@@ -175,6 +178,7 @@ impl<'a> Plan<'a> {
         // Lay out a step for each place
         let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
+        // Steps need the plan's own sums and ends, so they come when those are in place.
         let mut plan = Plan {
             code,
             is_in_order: order.stages().len() == words as usize,
@@ -196,6 +200,7 @@ impl<'a> Plan<'a> {
     /// Plan for those who do not ask what depends on the number of cores.
     pub fn regardless_of_cores(mut self) -> Plan<'a> {
         self.asking.iter_mut().for_each(|sums| sums.fill(0));
+        // The flags of costs depend on `asking`, so the steps are laid out a second time.
         let firsts: Vec<usize> = self.steps().iter().map(|step| step.exit as usize).collect();
         self.lay_out(&firsts, false);
         self
@@ -239,6 +244,7 @@ impl<'a> Plan<'a> {
             unit: 0,
             cost: self.flagged_cost(place, is_held),
         };
+        // Behind the last place stands a step that hands over to the interpreter, which traps there.
         let Some(&stage) = self.order.stages().get(place as usize) else { return step };
         let target = target(code, &self.order, stage);
         step.target = target.unwrap_or(self.end() + 1);
@@ -251,6 +257,7 @@ impl<'a> Plan<'a> {
         let extra = &self.extra[first..first + row.outcomes.len()];
         step.is_uneven = extra.iter().any(|extra| *extra != Cost::default());
         let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
+        // An edge has what the outcome adds and what the run behind it takes, so that a branch costs one addition.
         step.edges = [
             self.flagged_cost(place + 1, is_held) + extra_of(0),
             self.flagged_cost(step.target, is_held) + extra_of(row.outcomes.len().saturating_sub(1)),

@@ -31,6 +31,7 @@ impl TaintEffect {
         effect.tells_core = slot.op == Some(Op::core);
         for operand in row.operands.iter().filter(|operand| matches!(operand.kind, Kind::S | Kind::A)) {
             let bit = 1 << (slot.fields.get(operand.letter) & 63);
+            // The target of a message is no use of a value: to send to the main processor depends on nothing.
             match operand.is_read() {
                 true if effect.is_send => effect.target |= bit,
                 true => effect.reads |= bit,
@@ -38,6 +39,7 @@ impl TaintEffect {
             }
             if operand.is_written() {
                 effect.writes |= bit;
+                // A receive writes its sender's number, which for work items is the main processor's and so that of the cores.
                 if matches!(slot.op, Some(Op::cores | Op::recv2 | Op::recv5)) {
                     // s0 stays zero.
                     effect.counts |= bit & !1;

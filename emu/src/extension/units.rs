@@ -103,6 +103,7 @@ impl<M> TypedUnit<M> {
             _ => {}
         }
         for &(place, letter, kind) in &self.destinations {
+            // Results have a bit each, in the order of `WRITTEN`: 0b0101 is `d` and `x`.
             let is_set = results.written >> place & 1 == 1;
             // What is read too stays as it was.
             if !is_set && matches!(letter, b'x' | b'y') {
@@ -142,6 +143,7 @@ impl<M: Meaning + Clone> Unit for TypedUnit<M> {
         let operands = Operands { registers, fields, shape: &self.shape };
         if let Some(range) = self.meaning.reads(&operands).filter(|range| !range.is_empty()) {
             let octets = range.end - range.start;
+            // Before the words are allocated: the range comes from a register, which may hold anything.
             if octets > MOST_OCTETS {
                 return Err(Fault::Refused("it would read more of global memory than an instruction may").into());
             }
@@ -154,6 +156,7 @@ impl<M: Meaning + Clone> Unit for TypedUnit<M> {
         self.results.written = 0;
         let mut call = Call { operands, buffer, words: &self.words, arithmetic, results: &mut self.results };
         let ending = self.meaning.execute(&mut call)?;
+        // Before anything is written, so that a fault leaves registers as they were.
         if ending.exit >= self.exits {
             return Err(Fault::Refused("it ended by an exit that its row does not have").into());
         }
@@ -191,6 +194,7 @@ impl Units {
     /// Their state at the start of a work item.
     pub fn begin(&mut self, isa: &Isa) {
         for (op, unit) in isa.extensions().zip(&mut self.0) {
+            // A clone of the first one forgets whatever the last work item left in it.
             if let (Some(unit), Some(first)) = (unit, attached(isa, op))
                 && !first.0.meaning().keeps_state()
             {

@@ -199,8 +199,10 @@ impl Bus {
         let master = match self.arbiter.choose(clock, &self.requests) {
             Verdict::Grant(master) => master,
             Verdict::Later(later) => {
+                // Ask again when the arbiter says so, or as soon as a master comes that it has not seen.
                 let others = (0..self.requests.masters()).map(|master| self.requests.arrival(master));
                 let next = others.filter(|&arrival| arrival > clock).min().map_or(later, |arrival| arrival.min(later));
+                // At least a clock on, so that an arbiter which errs cannot hold the machine at one clock.
                 self.not_before = next.max(clock + Clocks(1));
                 return None;
             }
@@ -224,6 +226,7 @@ impl Bus {
     /// Decides as long as that is before a clock and concerns nobody but the bus and its masters, and yields the grant that ends a transfer of a master
     /// who has something else to do then.
     pub fn serve(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
+        // Clocks share their number with six bits of rank, and half of what is left is room for what this adds.
         let is_ranked =
             self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.requests.are_before(1 << 57);
         match (is_ranked, self.requests.masters()) {
@@ -266,6 +269,7 @@ impl Bus {
         let masters = self.requests.masters() as usize;
         let (lengths, waits, all_masters) = (self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
         let (all, bursts) = (&mut self.requests.arrivals[..masters], &mut self.requests.bursts[..masters]);
+        // Places behind the last master stay beyond every clock and never win.
         let mut arrivals = [NEVER.0; SIZE];
         for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
             *arrival = *known;

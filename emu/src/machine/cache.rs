@@ -56,6 +56,7 @@ impl Cache {
         if octets == Octets(0) || !self.cached.iter().any(is_in) {
             return None;
         }
+        // Lines of 16 octets: octets 120 to 135 touch lines 7 and 8, and each of them comes in or is there by itself.
         let mut missing = 0;
         for line in address / self.line..=((end - 1) / u64::from(self.line)) as u32 {
             let place = line as usize % self.lines.len();

@@ -52,8 +52,10 @@ impl<W: Worker> Machine<'_, W> {
     pub(super) fn finish(mut self) -> RunOutcome {
         let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
         for processor in &mut self.processors {
+            // All end at the same clock, so that busy, waiting and idle of each add up to the whole time.
             processor.idle_until(clocks);
         }
+        // Items ended in the order of clocks; they are listed by when they began.
         self.items.sort_by_key(|item| (item.start, item.core));
         let caches = self.processors.iter().filter_map(|processor| processor.cache.as_ref());
         let cache = caches.map(Cache::used).sum();
@@ -65,6 +67,7 @@ impl<W: Worker> Machine<'_, W> {
         let main = self.processors.pop().expect("a machine has a main processor");
         let main_code = main.code;
         let (main_tally, main_profile) = main.worker.into_counts();
+        // All cores have one program, so their tallies can be added up.
         let core_code = self.processors.first().map_or(main_code, |core| core.code);
         let mut tally = Tally::new(core_code);
         let mut profile: Option<Profile> = None;

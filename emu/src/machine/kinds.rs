@@ -30,6 +30,7 @@ impl Kinds {
             kinds.ranges.push((range.clone(), number));
         }
         kinds.ranges.sort_by_key(|(range, _)| range.start);
+        // Behind the loader's kinds, so that tables begin with those.
         kinds.message = kinds.number("messages");
         kinds.other = kinds.number("other");
         kinds
@@ -73,6 +74,7 @@ impl Kinds {
         let (start, end, kind) = match self.ranges[..after].last() {
             Some(&(Range { start, end }, kind)) if address < end => (start, end, kind),
             last => {
+                // The gap between two named ranges is remembered as a range too, or each access to it would search again.
                 let next = self.ranges.get(after).map_or(u32::MAX, |(range, _)| range.start);
                 (last.map_or(0, |(range, _)| range.end), next, self.other)
             }

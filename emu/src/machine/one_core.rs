@@ -126,6 +126,7 @@ fn run_on<T: Watch, O: RunObserver>(one_core: &OneCore, memory: Memory, arithmet
             Pause::Fault(fault) => break Some(fault),
             Pause::Wait => {}
         }
+        // Nobody else can send or receive, so waiting for either would last for ever.
         let is_stuck = match processor.request {
             Some(Request::Receive) => shared.mailboxes.next(0).is_none(),
             Some(Request::Send { .. }) => shared.mailboxes.is_full(0, 0),
@@ -136,6 +137,7 @@ fn run_on<T: Watch, O: RunObserver>(one_core: &OneCore, memory: Memory, arithmet
         }
         let octets = processor.asked_octets();
         if octets.0 != 0 {
+            // All bursts follow each other at once: the bus has no other master.
             let start = processor.clock;
             processor.wait_until(start + one_core.config.bus.whole_length(octets));
         }

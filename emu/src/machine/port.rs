@@ -117,6 +117,7 @@ impl Link for CorePort<'_> {
         let largest = self.shared.mailboxes.processors() - 1;
         let receiver =
             u32::try_from(to).ok().filter(|&to| to <= largest).ok_or(Fault::NoSuchCore { number: to, largest })?;
+        // The permission's clock is when the message has gone over the bus.
         let arrival = self.enter(Request::Send { to: receiver, octets: Octets(message.octets().into()) })?;
         self.shared.mailboxes.put(receiver, self.processor, arrival, message);
         Ok(())

@@ -115,6 +115,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             processors.push(processor);
         }
         let window = setup.options.window;
+        // The main processor comes last: at equal clocks and acts a core goes first.
         processors.push(Processor::new(main_code, setup.main_id(), main));
         for processor in &mut processors {
             processor.spans = window.map(Spans::new);
@@ -123,6 +124,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             setup,
             processors,
             shared: Shared::new(memory, cores + 1),
+            // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
             bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             kinds: Kinds::new(&setup.kinds),
@@ -188,6 +190,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         let is_main = number == self.main();
         let steps_allowed = self.steps_allowed();
         let processor = &mut self.processors[number];
+        // The clock and the request before the advance: what was permitted happens then, and the advance overwrites both.
         let (at, asked) = (processor.clock, processor.request);
         let advance = processor.advance(&mut self.shared, is_permitted);
         self.steps_without_main = if is_main { 0 } else { self.steps_without_main + advance.steps };
@@ -266,10 +269,12 @@ impl<'a, W: Worker> Machine<'a, W> {
             return;
         }
         let mut octets = processor.asked_octets();
+        // Only reads go through a cache, and only block loads of cores may be run ahead of.
         let mut is_ahead = false;
         if let Some(Request::Transfer { address, access: access @ (Access::Load | Access::Read), .. }) =
             processor.request
         {
+            // A cache is asked once a request, since asking also brings lines in. What misses goes over the bus in whole lines.
             match processor.cache.as_mut().and_then(|cache| cache.read(address, octets)) {
                 Some(Octets(0)) => return processor.act(Act::Hit),
                 Some(filled) => octets = filled,
@@ -336,6 +341,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     fn play(&mut self, until: Clocks) -> bool {
         let Some(masters) = &mut self.masters else { return false };
         if self.written != self.shared.written {
+            // Masters look only at recordings, so they have to be told of what might make those wrong.
             self.written = self.shared.written.clone();
             masters.iter_mut().for_each(|master| W::stop_at(master, &self.written));
         }
@@ -421,6 +427,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             });
         }
         (self.progress)(self.item_count);
+        // A message that is there already is work, also when the main processor has halted since.
         let has_letter = self.shared.mailboxes.next(number as u32).is_some();
         // A program that does nothing with the machine would start over for ever at the same clock.
         let is_going_on = !self.has_main_halted && (processor.begins_by_receiving || processor.work.has_acted);

@@ -23,6 +23,7 @@ impl<W: Worker> Machine<'_, W> {
             ProcessorState::Rests if !is_main => {
                 if let Some((arrival, _)) = self.shared.mailboxes.next(receiver as u32) {
                     let processor = &mut self.processors[receiver];
+                    // A core at rest is not asked for its clock again, so the time without work is accounted for here.
                     processor.idle_until(arrival.max(processor.clock));
                 }
                 self.start(receiver);
@@ -54,6 +55,7 @@ impl<W: Worker> Machine<'_, W> {
             return;
         }
         let meets = |processor: &&mut Processor<W>| processor.state == ProcessorState::Meets;
+        // Not before now: a core that went to rest just now may have been the last one.
         let last = self.processors.iter_mut().filter(meets).map(|processor| processor.clock).max();
         let at = last.unwrap_or_default().max(self.now);
         for processor in self.processors.iter_mut().filter(meets) {

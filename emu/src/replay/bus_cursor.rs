@@ -85,6 +85,7 @@ impl BusCursor {
 impl NextTransfer for BusCursor {
     #[inline(always)]
     fn next_transfer(&mut self, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+        // What comes next was worked out when the last transfer began, so that the bus's loop need not wait for it.
         let (computing, ahead) = (self.computing, self.ahead);
         if computing == NEVER {
             return None;

@@ -53,6 +53,7 @@ impl Task for CountTask<'_> {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {
                     item_count += batch.len() as u64;
+                    // A trap stops a machine at a clock, and what others have done by then only a run on the clock knows.
                     if batch.iter().any(|recording| recording.end != Pause::Halt) {
                         unfit = Some("a work item traps");
                     }

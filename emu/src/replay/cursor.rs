@@ -45,6 +45,7 @@ impl<'a> Cursor<'a> {
     /// Does what the core waits for, and yields the message that it took with its sender.
     fn act(&mut self, shared: &mut Shared, at: Clocks) -> Option<(crate::semantics::Message, u32)> {
         let own = self.core.core;
+        // No segment is behind it, so it waits for its message, and the message tells which recording it is.
         let Some(segment) = self.asked() else {
             let (_, sender) = shared.mailboxes.next(own)?;
             let message = shared.mailboxes.take(own, sender)?;
@@ -53,11 +54,13 @@ impl<'a> Cursor<'a> {
         };
         match segment.request(self.core.cores) {
             Request::Send { to, .. } => {
+                // The address of a segment that sends is the number of its message.
                 let sent = self.recording.as_ref().and_then(|recording| recording.sent.get(segment.address as usize));
                 if let Some(&message) = sent {
                     shared.mailboxes.put(to, own, at, message);
                 }
             }
+            // The recording saw memory as it was at first, and the octets may be others by now.
             Request::Transfer { access: Access::Load | Access::Read, .. }
                 if overlap(&segment.range(), &shared.written) =>
             {
@@ -85,6 +88,7 @@ impl Worker for Cursor<'_> {
     fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {
         // Do what is permitted.
         let taken = permission.and_then(|at| self.act(shared, at));
+        // Octets of the whole item are added when it begins: the bus cursor then has nothing to account for.
         let has_begun = taken.is_some() && self.recording.is_some();
         let octets = self.recording.as_ref().filter(|_| has_begun).map_or(Octets(0), |recording| recording.octets);
         // Go on to the next request.

@@ -45,6 +45,7 @@ impl Feed {
             if let Some(place) = self.held.range(from..).position(is_it) {
                 return self.held.remove(from + place);
             }
+            // What was looked at does not match; only the next batch can have it.
             from = self.held.len();
             let batch = self.batches.recv().ok().filter(|_| from < MOST_HELD);
             match batch.as_deref() {
@@ -56,6 +57,7 @@ impl Feed {
     }
 
     fn hold(&mut self, batch: &[Arc<Recording>]) -> Option<()> {
+        // On as many cores as it was recorded with, an item may depend on their number.
         if self.recorded_cores != self.cores && batch.iter().any(|recording| recording.depends_on_cores) {
             return self.lose("the work items depend on the number of cores");
         }

@@ -74,6 +74,7 @@ impl Quick for ItemRecorder<'_> {
 
     fn keep(&mut self, reads: &[Read], before: u64) -> bool {
         let record = &mut *self.record;
+        // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
         let portions = record.segments.len() / Budget::PORTION;
         record.segments.extend(reads.iter().map(Segment::of_read));
         record.octets += Octets(reads.iter().map(|read| u64::from(read.octets)).sum());
@@ -109,6 +110,7 @@ impl ItemRecorder<'_> {
         let (record, RequestTime { pc, clocks }) = (&mut *self.record, self.time);
         let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
         let segment = Segment::new(clocks - record.before, pc, request, 0)?;
+        // A full list would have to grow, and a portion that ends would ask the budget: both take the longer way, once in a while.
         let count = record.segments.len();
         if count == record.segments.capacity() || (count + 1).is_multiple_of(Budget::PORTION) {
             return None;
@@ -189,6 +191,7 @@ impl Link for ItemRecorder<'_> {
     }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
+        // To stop here loses nothing: the interpreter tries the instruction again, and says what is wrong with it.
         if u32::try_from(to).ok() != Some(self.main) {
             return Err(Stop::Wait);
         }

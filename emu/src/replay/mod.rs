@@ -52,6 +52,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
         let frame = schedule::run::<T, O>(setup, memory.clone(), arithmetic, progress)?;
         Ok(RunOutcome { method: Method::Stepped { why }, ..frame })
     };
+    // One prefix serves all machines: they differ in time only, and the prefix asks nothing of others.
     let prefix = match prefix(first, memory, arithmetic) {
         Ok(prefix) => prefix,
         Err(why) => return setups.iter().map(|setup| step(setup, why, progress)).collect(),
@@ -59,6 +60,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let (totals, endings) = replay::<T, O>(setups, prefix, memory, arithmetic, progress);
     let mut results = Vec::with_capacity(setups.len());
     for (setup, ending) in setups.iter().zip(endings) {
+        // A machine that could not use the recordings is stepped alone; the others keep their results.
         results.push(match ending {
             Ok(frame) => frame.map(|frame| with_counts(frame, setup, &totals)),
             Err(why) => step(setup, why, progress),
@@ -93,6 +95,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
         let own = arithmetic.clone();
         let prerun = scope.spawn(move || {
             prerun::run::<T, O>(&setups[0], memory, own, RecordLevel::Segments, &mut |batch| {
+                // The count goes over all senders, since `any` would stop at the first machine that takes the batch.
                 senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
             })
         });
@@ -104,6 +107,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
                 scope.spawn(move || on_clock::<T, O>(setup, memory.clone(), &own, feed, &mut |_| {}))
             })
             .collect();
+        // The first machine stays on this thread, because only that may call `progress`.
         let feed = feed(first, batches);
         let mut endings = vec![on_clock::<T, O>(first, memory.clone(), arithmetic, feed, progress)];
         let panicless = "a machine does not panic";
@@ -131,6 +135,7 @@ fn on_clock<T: Watch, O: RunObserver>(
     let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, &main_code, arithmetic)));
     let done = Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run();
     let mut feed = feed.into_inner();
+    // Recordings that nobody asked for mean that the prerun was given other work than this machine.
     if done.is_ok() && feed.lost.is_none() && !feed.is_used_up() {
         feed.lose::<()>("the main processor hands out other work than it would to many cores");
     }

@@ -68,6 +68,7 @@ impl Link for InstantCores<'_> {
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         let core = u32::try_from(to).ok().filter(|&to| to < CORES);
         let core = core.ok_or(Fault::NoSuchCore { number: to, largest: CORES })?;
+        // A program that never receives would hand out work without end; a batch of this size is recorded first.
         if self.work.len() >= 2 * CORES as usize {
             return Err(Stop::Wait);
         }
@@ -93,6 +94,7 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
     let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
     let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Recording, Reason>)>| {
+        // Portions go to whoever is free: items differ much in length.
         while !budget.is_full()
             && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
             && let Some(rest) = work.get(at..).filter(|rest| !rest.is_empty())
@@ -117,6 +119,7 @@ fn record<T: Watch + Send, O: RunObserver + Send>(
         return Err(TOO_LONG);
     }
     let mut found: Vec<_> = found.into_iter().flatten().collect();
+    // The order of the messages, so that results do not depend on which thread was faster.
     found.sort_unstable_by_key(|(at, _)| *at);
     found.into_iter().map(|(_, recording)| recording.map(Arc::new)).collect()
 }
@@ -147,6 +150,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let core_code = Code::new(setup.core, setup.isa, config.timing());
     let main_code = Code::new(setup.main, setup.isa, config.timing());
     let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), level);
+    // A recorder a host thread, kept for all batches: engines and buffers are made once.
     let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
     let mut memory = memory.clone();
     let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
@@ -154,6 +158,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     let mut tally = Tally::new(&main_code);
     let computes = arithmetic.computes();
     let mut runner = choose(&Demand::new(&main_code, setup.options.wish(), computes, config.main.buffer_octets));
+    // Let the main processor hand out work until it waits, record all of that, and answer it
     let end = loop {
         let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
         let seat = CoreId { core: CORES, cores: CORES, step_limit };
@@ -163,6 +168,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
             break pause;
         }
         let batch = record(&mut recorders, &cores.work);
+        // Answers come in the order of the work, which is as if all cores had taken equally long.
         if let Ok(batch) = &batch {
             for (&(core, _), recording) in cores.work.iter().zip(batch) {
                 cores.answers.extend(recording.sent.iter().map(|&message| (message, core)));
@@ -174,6 +180,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
             break pause;
         }
     };
+    // Add up what all threads counted; sums do not depend on who recorded what
     let mut totals =
         PrerunTotals { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None, memory, end };
     for mut recorder in recorders {

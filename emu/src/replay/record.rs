@@ -30,6 +30,7 @@ struct CheckedLink<'a> {
 
 impl CheckedLink<'_> {
     fn enter(&mut self, request: Request) -> Result<(), Stop> {
+        // An instruction is tried twice: the first time it says what it asks for, the second time it gets it.
         if std::mem::take(&mut self.is_permitted) {
             return Ok(());
         }
@@ -74,6 +75,7 @@ impl Link for CheckedLink<'_> {
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         let receiver = u32::try_from(to).ok().filter(|&to| to <= self.main);
+        // A number without a processor is a fault of the item and is recorded; another core is a reason not to record it.
         let receiver = receiver.ok_or(Fault::NoSuchCore { number: to, largest: self.main })?;
         if receiver != self.main {
             return Err(self.refuse("the cores send messages to each other"));
@@ -135,6 +137,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let config = setup.config;
         let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
+        // Only segments need the time, and an engine that need not keep it is faster.
         let demand = Demand {
             follows_cores: true,
             has_profile: O::IS_ACTIVE,
@@ -188,6 +191,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
         let mut link = self.link(Some(Message::new([[0; 3]])));
         match self.run(&mut link) {
+            // On another core an item might begin otherwise, and its prefix take other clocks.
             _ if self.observer.taint.depends_on_core || self.observer.taint.depends_on_cores => {
                 Err("what comes before the message depends on the core")
             }
@@ -212,6 +216,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, time };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
+        // Profiles are seldom taken, so they share one function for all links; without one the link's own is compiled in.
         match O::IS_ACTIVE {
             false => self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, &mut Unobserved),
             true => {
@@ -228,6 +233,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     pub fn record(&mut self, message: Message, budget: &Budget) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
+        // Items of one scene are much alike, so the last one tells how much room this one wants.
         let segments = Vec::with_capacity(self.usual);
         let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
         let stopped = self.run_quickly(&mut record, budget);
@@ -237,6 +243,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let steps = self.state.steps;
         let mut link = CheckedLink { sent: record.sent, ..self.link(record.message) };
         let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
+        // Go on from there with the interpreter, request by request, and refuse what an item may not do
         let end = loop {
             match stopped {
                 Some(Stopped::Halt) => break Pause::Halt,
@@ -261,6 +268,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
                 octets += segment.octets();
                 self.kinds.add(self.state.pc, Some(request));
                 segments.push(segment);
+                // Room is taken in portions, since all host threads share one number.
                 if segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
                     return Err(WITHOUT_ROOM);
                 }
@@ -271,6 +279,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         if link.message.is_some() {
             return Err(BEGINS);
         }
+        // Account for what was recorded, and give back room that was kept in vain
         self.runner.interpreted(self.state.steps - steps);
         self.observer.end();
         budget.take(segments.len() % Budget::PORTION);

@@ -68,6 +68,7 @@ impl Task for RecordTask<'_> {
             batches.push(batch);
             true
         });
+        // A reason ends the prerun, so only the last batch can be one.
         if let Some(Err(reason)) = batches.last().map(AsRef::as_ref) {
             return Err(reason);
         }
@@ -85,6 +86,7 @@ impl Task for ReplayTask<'_> {
     type Result = Result<Result<RunOutcome, Failure>, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+        // The channel holds all batches before anybody reads, so it must have no bound.
         let (sender, receiver) = channel();
         for batch in &self.recorded.batches {
             sender.send(batch.clone()).expect("the receiver is below");

@@ -39,6 +39,7 @@ impl Segment {
             Request::Send { octets, .. } => (u32::try_from(sent).ok()?, octets, 0),
             Request::Receive | Request::Barrier => return None,
         };
+        // Octets and access share a word: 9 octets that are read are 9 << 2 | 2 = 38.
         let octets = u32::try_from(octets.0).ok().filter(|&octets| octets < 1 << 30)?;
         Some(Segment { clocks: u32::try_from(clocks).ok()?, pc, address, what: octets << 2 | kind })
     }

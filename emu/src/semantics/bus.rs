@@ -205,6 +205,7 @@ impl<L: Link> BusRoom for Port<'_, L> {
     #[inline(always)]
     fn ldwide(&mut self, a: u32, i: i32) -> Result<(i64, Done), Stop> {
         let [low, high] = self.link.words(a.wrapping_add_signed(i))?;
+        // Only the upper word has the sign; the lower one is 32 bits without any.
         Ok((i64::from(high) << 32 | i64::from(low as u32), Done))
     }
 

@@ -40,6 +40,7 @@ fn pieces(start: usize, length: usize) -> impl Iterator<Item = Piece> {
     let end = start + length;
     let mut at = start;
     std::iter::from_fn(move || {
+        // A piece ends with its page or with the range. Octets 4090 to 4109 are 6 in page 0 and 14 in page 1.
         let (page, offset) = (at / PAGE, at % PAGE);
         let length = (PAGE - offset).min(end - at);
         at += length;
@@ -165,6 +166,7 @@ impl Memory {
     pub fn write(&mut self, address: u32, octets: &[u8]) -> Result<(), Fault> {
         let range = self.range(address, octets.len())?;
         if self.pages.is_empty() {
+            // Without other copies nobody sees the change, so a frame that runs alone never pays for pages.
             if let Some(alone) = Arc::get_mut(&mut self.shared) {
                 alone[range].copy_from_slice(octets);
                 return Ok(());
@@ -175,6 +177,7 @@ impl Memory {
         for Piece { page, offset, length } in pieces(range.start, octets.len()) {
             let shared = &self.shared[page * PAGE..];
             let page = self.pages[page].get_or_insert_with(|| {
+                // The last page may be short; octets behind the memory are never read, because ranges are checked.
                 let mut copy = Box::new([0; PAGE]);
                 let length = shared.len().min(PAGE);
                 copy[..length].copy_from_slice(&shared[..length]);

@@ -66,6 +66,7 @@ impl FlowCounts {
         let mut count = 0;
         for (place, (step, run)) in (0..).zip(steps.iter().zip(&mut self.runs)) {
             count = count + run.begun - run.cut;
+            // The first outcome has what the others leave over, and so is not counted at all while the program runs.
             let Some((first, others)) = self.exits[step.exit as usize..][..step.exits.into()].split_first_mut() else {
                 continue;
             };

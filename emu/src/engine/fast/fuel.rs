@@ -48,6 +48,7 @@ impl Fuel {
     /// The sums at the beginning.
     pub(super) fn begin(&mut self, plan: &Plan) -> u64 {
         const FULL: u64 = Cost::WHOLE as u64;
+        // A sum starts so high that it is full when the limit is reached: with 100 steps left, at full less 100.
         let room = self.limit.saturating_sub(self.all_steps());
         // Where there are two kinds of steps, each of the two sums may come to half of what is left.
         self.bias = match plan.has_inner_steps() {
@@ -62,6 +63,7 @@ impl Fuel {
     #[cold]
     #[inline(never)]
     pub(super) fn look(&mut self, plan: &Plan, place: u32, sums: u64, cost: u64) -> (u64, bool) {
+        // The cost has the outcome and the run; the run is taken off again, because it may not begin.
         let run = plan.run_cost(place);
         let sums = self.empty(plan, sums + ((cost & !FLAG) - run.0));
         let after = self.all_steps() + run.steps() + run.inner_steps();
@@ -69,6 +71,7 @@ impl Fuel {
             return (sums, false);
         }
         let end = plan.run_end(place);
+        // The run's effect is taken beforehand; where the run is cut short, `settle` goes back to `before` and takes a part of it.
         if self.is_following && plan.asks(&(place..end), self.is_held()) {
             (self.before, self.followed) = (self.taint, (place, after));
             for place in place..end {
@@ -106,6 +109,7 @@ impl Fuel {
     pub(super) fn settle(mut self, plan: &Plan, state: &mut State, sums: u64, place: u32, rest: Option<Cost>) -> Taint {
         self.empty(plan, sums);
         if let Some(rest) = rest {
+            // Only if the run that was cut is the one whose effect was taken last.
             if self.followed.1 == self.all_steps() {
                 self.taint = self.before;
                 for place in self.followed.0..place {

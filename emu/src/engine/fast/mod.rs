@@ -41,6 +41,7 @@ impl<'a> Engine<'a> for Fast<'a> {
             return Err(ARITHMETIC);
         }
         let plan = Plan::new(demand.code).ok_or(TOO_LONG)?;
+        // Flags that nobody asks for would make each run with a message be looked at.
         let plan = if demand.follows_cores { plan } else { plan.regardless_of_cores() };
         Ok(Fast { count: FlowCounts::new(&plan, demand.follows_cores), plan, simd: demand.wish.simd.present() })
     }
@@ -118,6 +119,7 @@ fn walk<L: TimedLink, O: RunObserver>(
     let first = walk.begin(from, sums);
     run(registers, first, &mut walk);
     let Ended { stopped, place, sums, is_cut } = walk.stop;
+    // A run is paid for as a whole when it begins, so what was not executed of it is given back.
     let rest = is_cut.then(|| plan.run_cost(place));
     if is_cut {
         walk.count.runs[place as usize].cut += 1;

@@ -131,6 +131,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     #[inline(never)]
     pub fn look(&mut self, step: *const Step, cost: u64, sums: u64) -> Position {
         let place = self.place(step);
+        // The look may change what is known of the cores, and with it the steps that are walked on.
         let (sums, begins) = self.fuel.look(self.plan, place, sums, cost);
         self.steps = self.plan.steps_of(self.fuel.is_held()).as_ptr();
         if begins {
@@ -162,6 +163,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
         exit: E,
     ) -> Turn {
         let number = now.exit as usize + exit.index();
+        // Falling through is not counted: `FlowCounts::fold` finds it from the others.
         let is_falling = E::OUTCOMES > 1 && exit.index() == 0;
         if O::IS_ACTIVE {
             if E::OUTCOMES > 1 {
@@ -196,6 +198,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
     pub fn hop(&mut self, now: &Step, step: *const Step) -> Turn {
         if O::IS_ACTIVE {
             let place = self.place(step);
+            // A hop is no instruction: control leaves from the step before it.
             self.observer.walked(self.from..place);
             self.observer.go(self.plan.steps()[place as usize - 1].slot, now.slot, Motion::Jump);
             self.from = now.target;
@@ -209,6 +212,7 @@ impl<L: TimedLink, O: RunObserver> Walk<'_, L, O> {
         let at = Position { step, sums };
         let Some(unit) = self.units.get_mut(now.unit) else { return self.stop_before(Stopped::Bailout, at) };
         let (plan, fuel, link) = (self.plan, &self.fuel, &mut *self.link);
+        // Units ask for time only when they read, so it is worked out there.
         let mut read = |address, words: &mut [i32]| {
             note(plan, fuel, link, (now.slot, plan.place_of(now.slot)), sums);
             link.read(address, words)

@@ -22,6 +22,7 @@ impl Config {
             if let Some(span) = error.span() {
                 message = message.at(Place::new(source, span), "");
             }
+            // The parser's message quotes the wrong word first and then all that would be right.
             let mut quoted = first_line.split('`').skip(1).step_by(2);
             if first_line.contains("unknown")
                 && let Some(wrong) = quoted.next()
@@ -71,6 +72,7 @@ impl Config {
         check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
         check("bus.setup_clocks", self.bus.setup_clocks, 0, MOST_CLOCKS);
         check("bus.burst_octets", self.bus.burst_octets, 0, MOST_BUFFER_OCTETS.into());
+        // A slot that holds no beat would never be granted to anybody.
         let slot = if self.bus.arbiter == ArbiterKind::Tdma {
             self.bus.setup_clocks.saturating_add(self.bus.clocks_per_beat)
         } else {
@@ -100,6 +102,7 @@ fn span(text: &str, key: &str) -> Option<Range<usize>> {
     let mut table = document.get_ref();
     let mut found = None;
     for part in key.split('.') {
+        // `weights[1]` and `weights' length` both point to the list as a whole.
         let part = part.split(['[', '\'']).next()?;
         let (_, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
         found = Some(value.span());

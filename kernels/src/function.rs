@@ -81,7 +81,7 @@ functions! {
     /// Unit normal of the nearest triangle.
     Normal "normal" Core Always;
     /// Unit vector in a direction.
-    Unit "unit" Both Always;
+    Unit "unit" Core Always;
     /// Square root.
     Sqrt "sqrt" Both Always;
     /// Whitted's local term.

@@ -11,7 +11,7 @@ use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::{Layout, Structure};
 
 use crate::build::{Crop, SceneFeatures};
-use crate::constants::Constants;
+use crate::constants::{Constants, SIDE_MARGIN};
 use crate::skip::Skip;
 
 /// Octets of the buffer's tables of materials and lights (report 6.2); what does not fit stays in global memory.
@@ -87,14 +87,17 @@ fn is_local(image: &MemoryImage, kind: MemoryKind) -> bool {
 }
 
 fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<(&'static str, i64)> {
-    let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps } =
-        Constants::new(image);
-    let mut constants = vec![
+    let constants = Constants::new(image);
+    let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps, .. } = constants;
+    let mut entries = vec![
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
         ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
         ("EDGE_SHIFT", edge_shift.into()),
         ("T_SHIFT", t_shift.into()),
+        ("SIDE_SHIFT", constants.side_shift.into()),
+        ("SIDE_FRACTION", constants.side_fraction.into()),
+        ("SIDE_MARGIN", SIDE_MARGIN.into()),
         ("OFFSET", offset.into()),
         ("LITERAL_OFFSET", literal_offset.into()),
         ("NEVER", never.into()),
@@ -126,8 +129,8 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("INTERPOLATES", features.agreement.is_some().into()),
         ("AGREEMENT", features.agreement.unwrap_or(0).into()),
     ];
-    constants.extend(Skip::ALL.iter().map(|&skip| (skip.constant(), features.skips.has(skip).into())));
-    constants
+    entries.extend(Skip::ALL.iter().map(|&skip| (skip.constant(), features.skips.has(skip).into())));
+    entries
 }
 
 /// What a walk with boxes needs in any buffer.
@@ -229,7 +232,7 @@ fn camera(text: &mut String, camera: &RawCamera) {
         ),
         RawCamera::Perspective { eye, extra, base, column, row } => writeln!(
             text,
-            "CAMERA_BASE: .wide {}\nCAMERA_COLUMN: .wide {}\nCAMERA_ROW: .wide {}\nCAMERA_EYE: .word {}\n.equ CAMERA_EXTRA, {extra}",
+            "CAMERA_BASE: .wide {}\nCAMERA_COLUMN: .wide {}\nCAMERA_ROW: .wide {}\nCAMERA_EYE: .word {}\nCAMERA_WAY: .space 24\n.equ CAMERA_EXTRA, {extra}",
             wides(base),
             wides(column),
             wides(row),

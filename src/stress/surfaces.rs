@@ -5,13 +5,14 @@ use std::sync::LazyLock;
 
 use fixed::types::I2F30;
 use isa::number::ray::Ray;
-use isa::number::{Nearest32, Vector};
+use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use kernels::KernelSet;
+use kernels::twin::exact_triangle::exact_triangle;
 use kernels::twin::lanes::Lanes;
 use kernels::twin::ray;
 use kernels::twin::refract::{Refraction, refracts};
 use kernels::twin::stage::Material;
-use kernels::twin::surface::Surface;
+use kernels::twin::surface::{Surface, normal, sides};
 use kernels::twin::unit::unit;
 
 use super::mesh::{Mesh, sphere};
@@ -35,7 +36,15 @@ fn rounded(direction: [f64; 3]) -> Vector {
     direction.map(|x| Component::from_num(x).to_bits())
 }
 
-/// Rays that start on a convex body: those that leave it hit nothing, those that enter it hit it once more.
+/// All pairs of a quantization and an overflow mode.
+static MODES: LazyLock<Vec<Modes>> = LazyLock::new(|| {
+    let pairs =
+        Quantization::ALL.iter().flat_map(|&quantization| Overflow::ALL.iter().map(move |&o| (quantization, o)));
+    pairs.map(|(quantization, overflow)| Modes { quantization, overflow, ..Modes::default() }).collect()
+});
+
+/// Rays that start on a convex body, in each mode of rounding and overflow: those that leave it hit nothing, those that enter it hit it once
+/// more.
 pub fn self_intersection(seed: u64, trials: Range<u64>) -> Tally {
     tally(trials, |trial| {
         let twin = &BALL.twin;
@@ -45,18 +54,22 @@ pub fn self_intersection(seed: u64, trials: Range<u64>) -> Tally {
         let away = rounded(back.map(|x| -x));
         let origin = std::array::from_fn(|k| inner[k] + (back[k] * f64::from(1 << 30)) as i32);
         let first = Ray { origin, direction: away };
-        let Some((t, index)) = BALL.nearest(&first)? else { return Ok(0.0) };
-        let surface = twin.surface(&ray::Ray::new(&Nearest32, origin, away), t, index);
+        let Some((_, index)) = BALL.nearest(&first)? else { return Ok(0.0) };
+        let modes = MODES[(trial / SPAWNS) as usize % MODES.len()];
+        let (came, corners) = (ray::Ray::new(&modes, origin, away), BALL.corners(index));
+        let t = exact_triangle(&modes, &twin.constants, &came, corners);
+        let (facing, _) = normal(&modes, twin.constants.formats.direction, away, corners);
+        let (point, behind) = sides(&modes, &twin.constants, &came, t, facing, corners);
         let direction = rounded(Random::new(seed ^ 1, trial).direction());
         if direction == [0; 3] || on_side(index, &first, direction) == 0 {
             return Ok(0.0);
         }
         let is_leaving = on_side(index, &first, direction) > 0;
-        let start = if is_leaving { surface.point } else { surface.behind };
+        let start = if is_leaving { point } else { behind };
         let hits = BALL.crossings(&Ray { origin: start, direction }).len();
         match hits == usize::from(!is_leaving) {
             true => Ok(0.0),
-            false => Err(format!("from {start:?} along {direction:?}: {hits} hits, triangle {index}")),
+            false => Err(format!("from {start:?} along {direction:?}: {hits} hits, triangle {index}, {modes:?}")),
         }
     })
 }

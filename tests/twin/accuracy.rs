@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use kernels::KernelSet;
-use kernels::constants::Constants;
+use kernels::constants::{Constants, side_fraction};
 use kernels::twin::descend::own_packet;
 use kernels::twin::first_packet::first_packet;
 use kernels::twin::ray::{Ray, Search};
@@ -43,6 +43,8 @@ pub fn full(word: u32) -> Constants {
         formats,
         edge_shift: 2 * (word - 1) + direction + 3 - 2 * word,
         t_shift: 3 * (word - 1) + 3 - 2 * word,
+        side_shift: 4,
+        side_fraction: side_fraction(word),
         offset: 3,
         literal_offset: 3,
         never: largest - 1,
@@ -54,7 +56,7 @@ pub fn full(word: u32) -> Constants {
 /// Constants of a scene with coordinates of 16 bits in a word of 32, and directions of 29 fraction bits: determinants are exact.
 fn narrow() -> Constants {
     let formats = Formats { direction: 29, t: 0, ..full(32).formats };
-    Constants { formats, edge_shift: 0, t_shift: 0, ..full(32) }
+    Constants { formats, edge_shift: 0, t_shift: 0, side_shift: 0, ..full(32) }
 }
 
 pub type Exact = [i128; 3];

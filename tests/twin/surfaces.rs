@@ -33,7 +33,7 @@ fn surfaces() {
         agree(&subject, &experiment, hit(modes.word, constants.never), |case| {
             let ray = ray(&modes, case, 9);
             let (facing, cosine) = normal(&modes, constants.formats.direction, ray.direction, &vertices(case));
-            let (point, behind) = sides(&modes, &constants, &ray, case[15], facing);
+            let (point, behind) = sides(&modes, &constants, &ray, case[15], facing, &vertices(case));
             words(&[point, behind, facing, ray.direction], &[cosine])
         });
     }

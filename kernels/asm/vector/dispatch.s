@@ -72,11 +72,12 @@ dispatch_drained:
     ret   link_node
 .endfunc
 
-; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, v6, w0 to w3.
+; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, v6, w0 to w3 and that of sqrt.
 .func camera
     wextend w2, column, 0
     wextend w3, row, 0
 .if PERSPECTIVE
+    ; The way to the pixel, in the direction format with CAMERA_EXTRA more bits, and rounded to the format.
     .rept 3, k
     lwide w0, CAMERA_COLUMN + 8 * k(s0)
     wmulw w0, w0, w2
@@ -85,12 +86,19 @@ dispatch_drained:
     lwide w0, CAMERA_ROW + 8 * k(s0)
     wmulw w0, w0, w3
     wsub  w1, w1, w0
+    swide w1, CAMERA_WAY + 8 * k(s0)
     wround s12, w1, CAMERA_EXTRA
     vput  v6, s12, k
     .endr
-    vnorm v6, s12, v6
-    call  link_step, unit
-    vmov  direction, v6
+    ; By its length. Only the length is that of the rounded way, so that the direction itself is rounded once, by the quotient.
+    wdot  w0, v6, v6
+    call  link_leaf, sqrt
+    wextend w0, s12, CAMERA_EXTRA
+    .rept 3, k
+    lwide w1, CAMERA_WAY + 8 * k(s0)
+    wdiv  s12, w1, w0, dir
+    vput  direction, s12, k
+    .endr
     lv    origin, CAMERA_EYE(s0)
 .else
     lwide w0, CAMERA_PITCH(s0)

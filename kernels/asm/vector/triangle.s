@@ -45,10 +45,12 @@ u_\@:
 v_\@:
     wsub  w4, w4, w5                        ; (1 - u - v) det
 .if EDGE_SHIFT > 0
-    ; The difference of three rounded numbers is off by less than 1.5: from -2 to 1 the edge's own determinant decides.
-    movi  s12, 2
+    ; Each of the three numbers is rounded, in whatever mode, by less than 1, so their difference is off by less than 3: from -4 to 3 the
+    ; edge's own determinant decides. -5 + 4 is negative, -4 + 4 to 3 + 4 are 0 behind 3 bits, 4 + 4 is not.
+    movi  s12, 4
     wextend w5, s12, 0
     wadd  w4, w4, w5
+    movi  s12, 3
   .if \sign > 0
     bwltz w4, triangle_missed
     wsrl  w4, w4, s12

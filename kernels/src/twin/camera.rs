@@ -2,20 +2,15 @@
 
 use std::array::from_fn;
 
-use isa::number::Vector;
 use scenes::camera::RawCamera;
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, WideVector};
 use super::ray::Ray;
+use super::unit::sqrt;
 
-/// The ray of a pixel, row 0 on top. `unit` makes a unit vector of one that is scaled into [2^(word-3), 2^(word-2)].
-pub fn camera(
-    arithmetic: &impl Lanes,
-    unit: impl Fn(Vector) -> Vector,
-    camera: &RawCamera,
-    column: u32,
-    row: u32,
-) -> Ray {
+/// The ray of a pixel, row 0 on top. In perspective each component is the quotient of the way to the pixel, in twice the word, and its
+/// length, in a word.
+pub fn camera(arithmetic: &impl Lanes, direction_bits: u32, camera: &RawCamera, column: u32, row: u32) -> Ray {
     let [column, row] = [column, row].map(|number| arithmetic.widen((number as i32).into(), 0));
     let step = |step: i64, number: i64| i128::from(arithmetic.widen(i128::from(step) * i128::from(number), 0));
     let right = |from: i64, by: i64| arithmetic.widen(i128::from(from) + step(by, column), 0);
@@ -27,8 +22,12 @@ pub fn camera(
             Ray::new(arithmetic, [x, y, z], direction)
         }
         RawCamera::Perspective { eye, extra, base, column, row } => {
-            let towards = from_fn(|k| arithmetic.narrow64(down(right(base[k], column[k]), row[k]), extra));
-            let direction = unit(arithmetic.normalized(towards.map(i64::from)));
+            let way: WideVector = from_fn(|k| down(right(base[k], column[k]), row[k]));
+            let rounded = way.map(|component| arithmetic.narrow64(component, extra));
+            let length = sqrt(arithmetic, arithmetic.wide_dot(rounded, rounded));
+            let length = arithmetic.widen(i128::from(length) << extra, 0);
+            let direction =
+                way.map(|component| arithmetic.quotient(i128::from(component) << direction_bits, length.into()));
             Ray::new(arithmetic, eye, direction)
         }
     }

@@ -31,7 +31,7 @@ use scenes::image::MemoryImage;
 
 use crate::build::{Crop, SceneFeatures};
 use crate::constants::Constants;
-use crate::set::{Decisions, Formulas, KernelSet};
+use crate::set::{Decisions, KernelSet};
 use ray::{Packet, Ray, Stuck};
 use ray_tree::Branch;
 use stage::Stage;
@@ -148,12 +148,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The ray of a pixel, row 0 on top.
     pub fn camera_ray(&self, column: u32, row: u32) -> Ray {
-        let (arithmetic, bits) = (&self.arithmetic, self.constants.formats.direction);
-        let unit = |vector| match self.profile.formulas() {
-            Formulas::Printed => report::unit(arithmetic, bits, vector),
-            Formulas::Vector => unit::unit(arithmetic, bits, vector),
-        };
-        camera::camera(arithmetic, unit, &self.camera, column, row)
+        camera::camera(&self.arithmetic, self.constants.formats.direction, &self.camera, column, row)
     }
 
     /// The first packet of a camera ray; `None` when it misses the scene's box.

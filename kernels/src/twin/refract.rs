@@ -37,16 +37,18 @@ pub fn refracts(
     if material.transmission == 0 {
         return Refraction::Opaque;
     }
-    let (bits, one) = (formats.direction, 1 << formats.direction);
+    let (bits, one) = (formats.direction, 1i32 << formats.direction);
     let weight = arithmetic.times(weight, material.transmission, formats.weight);
     let eta = if inside { material.index } else { material.inverse_index };
     let sine_squared = arithmetic.minus(one, arithmetic.times(surface.cosine, surface.cosine, bits));
     let once = arithmetic.times(sine_squared, eta, bits);
-    let twice = arithmetic.times(once, eta, (2 * formats.index).saturating_sub(bits));
-    match arithmetic.minus(one, twice) {
-        k if k < 0 => Refraction::Total(weight),
-        k => Refraction::Through { weight, k, eta },
+    // A square of 64 does not fit the direction format, so whether it exceeds 1 is asked before it is rounded to it.
+    let square = i64::from(once) * i64::from(eta);
+    let shift = (2 * formats.index).saturating_sub(bits);
+    if square > i64::from(one) << shift {
+        return Refraction::Total(weight);
     }
+    Refraction::Through { weight, k: arithmetic.minus(one, arithmetic.narrow64(square, shift)), eta }
 }
 
 /// The direction of the refracted ray, eta (D + c N) - sqrt(k) N: no part of it is longer than 1.

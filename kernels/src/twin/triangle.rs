@@ -36,10 +36,11 @@ pub fn triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, verti
     }
     let third = || arithmetic.wide_cross(arithmetic.difference(edge2, start), arithmetic.difference(edge1, start));
     let w = arithmetic.wide_difference(arithmetic.wide_difference(determinant, u), v);
-    // The difference of three rounded numbers is off by less than 1.5: from -2 to 1 the edge's own determinant decides.
-    let w = match arithmetic.widen(i128::from(w) + 2, 0) {
+    // Each of the three numbers is rounded by less than 1, so their difference is off by less than 3: from -4 to 3 the edge's own determinant
+    // decides.
+    let w = match arithmetic.widen(i128::from(w) + 4, 0) {
         _ if edge_shift == 0 => w,
-        0..=3 => arithmetic.wide_mixed(third(), ray.direction, edge_shift),
+        0..=7 => arithmetic.wide_mixed(third(), ray.direction, edge_shift),
         moved => moved,
     };
     if !is_inside(w, is_positive, third) {

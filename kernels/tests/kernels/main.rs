@@ -1,3 +1,4 @@
-//! The kernels as they count: the rows of the annexes.
+//! The kernels as they count and as they round: the rows of the annexes, and pictures in each mode of rounding and overflow.
 
 mod annex;
+mod modes;

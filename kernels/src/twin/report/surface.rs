@@ -26,7 +26,7 @@ pub fn normal(arithmetic: &impl Lanes, fraction: u32, vertices: &[Vector; 3]) ->
     unit(arithmetic, fraction, scaled(cross(arithmetic, edges[0], edges[1], arithmetic.word() - 1)))
 }
 
-/// The normal on the side of the ray, -normal . direction, and the points on both sides of the surface at distance `t`.
+/// The normal on the side of the ray, -normal . direction, and the points on both sides of the surface at distance `t`, moved by a constant.
 pub fn sides(
     arithmetic: &impl Lanes,
     constants: &Constants,
@@ -39,9 +39,13 @@ pub fn sides(
         true => (normal.map(|lane| arithmetic.negative(lane)), cosine),
         false => (normal, arithmetic.negative(cosine)),
     };
-    let constants = Constants { offset: constants.literal_offset, ..*constants };
-    let (point, behind) = surface::sides(arithmetic, &constants, ray, t, facing);
-    (facing, cosine, point, behind)
+    let point = surface::point(arithmetic, constants, ray, t);
+    let axis = surface::major_axis(facing);
+    let offset = if facing[axis] < 0 { -constants.literal_offset } else { constants.literal_offset };
+    let (mut before, mut behind) = (point, point);
+    before[axis] = arithmetic.plus(point[axis], offset);
+    behind[axis] = arithmetic.minus(point[axis], offset);
+    (facing, cosine, before, behind)
 }
 
 /// The direction of the reflected ray, V = 2 (I . N) N - I, as D - (-2 c) N.

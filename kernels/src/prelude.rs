@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use isa::Isa;
 use messages::{Report, Source};
+use scenes::cadrage::Formats;
 use scenes::camera::RawCamera;
 use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::{Layout, Structure};
@@ -22,6 +23,9 @@ const REFERENCES_AT_ONCE: u32 = 128;
 
 /// Triangles of a ray that its core remembers, a power of two.
 const TESTED_PLACES: u32 = 16;
+
+/// Fraction bits that a format of the assembler has at most; it has none below 0.
+const MOST_FRACTION_BITS: i32 = 63;
 
 /// Trap number of a ray that visits more packets than there are.
 const TRAP_STUCK: u32 = 1;
@@ -49,7 +53,7 @@ pub enum Walk {
 /// The prelude of a core's program, or of the main processor's.
 pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Walk, is_main: bool) -> String {
     let mut text = String::from("; Written by the loader for one scene and one machine.\n");
-    for (name, bits) in image.formats.entries() {
+    for (name, bits) in written_formats(&image.formats).entries() {
         let _ = writeln!(text, ".format {name}, {bits}");
     }
     let _ = writeln!(text, ".format index, {}", image.formats.index);
@@ -79,6 +83,16 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
     }
     text.push_str(".text\n");
     text
+}
+
+/// The formats as the assembler can write them: kernels use those of positions and distances only as a difference, so where the scene is very
+/// large or small (a position of 2^300 has -270 fraction bits) both are moved into the assembler's range.
+fn written_formats(formats: &Formats) -> Formats {
+    let finer = formats.t - formats.position;
+    let least = (-finer).max(0);
+    let most = MOST_FRACTION_BITS.min(MOST_FRACTION_BITS - finer);
+    let position = formats.position.clamp(least, most.max(least));
+    Formats { position, t: position + finer, ..*formats }
 }
 
 /// Whether the materials, and the lights, lie in the buffer from the start.

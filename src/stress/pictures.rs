@@ -21,8 +21,9 @@ use crate::job::{Detail, Job};
 /// Scenes that figures are quoted for.
 pub const MEASURED: u64 = 5;
 
-/// Powers of two by which scenes are scaled, both ways.
-const SCALES: i32 = 10;
+/// Powers of two by which scenes are scaled.
+const SCALES: [i32; 21] =
+    [-300, -299, -150, -64, -35, -34, -33, -10, -3, -2, -1, 1, 2, 3, 10, 29, 30, 31, 64, 150, 300];
 
 /// A measured scene, coarse.
 fn coarse(number: u64, size: (u32, u32)) -> Scene {
@@ -62,11 +63,11 @@ fn moved(scene: &Scene, change: impl Fn([f64; 3]) -> [f64; 3]) -> Scene {
     scene
 }
 
-/// A scene 2^-10 to 2^10 times as large: the same picture, bit for bit.
+/// A scene 2^-300 to 2^300 times as large: the same picture, bit for bit.
 pub fn scales(_: u64, trials: Range<u64>) -> Tally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (12, 9));
-        let exponent = (trial / MEASURED) as i32 % (2 * SCALES + 1) - SCALES;
+        let exponent = SCALES[(trial / MEASURED) as usize % SCALES.len()];
         let factor = f64::from(exponent).exp2();
         compare(&scene, &moved(&scene, |point| point.map(|x| x * factor)))
             .map_err(|text| format!("2^{exponent}: {text}"))

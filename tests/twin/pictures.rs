@@ -225,6 +225,29 @@ fn parts_of_pictures() {
     }
 }
 
+/// Scenes of any size that doubles hold are drawn by the machine bit for bit as those of size 1.
+#[test]
+fn pictures_of_any_size() {
+    for generator in &generate::SCENES[..5] {
+        for set in KernelSet::ALL {
+            let drawn = |exponent: i32| {
+                let mut scene = small(generator.name);
+                let larger = |point: [f64; 3]| point.map(|x| x * f64::from(exponent).exp2());
+                scene.vertices.iter_mut().for_each(|vertex| *vertex = larger(*vertex));
+                scene.lights.iter_mut().for_each(|light| light.position = larger(light.position));
+                let options = image::MemoryOptions { layout: set.layout(), ..image::MemoryOptions::default() };
+                let view = View { shift: [0.137, 0.071], ..View::new(SIZE) };
+                let subject = Subject::new(scene, view, PLAIN.modes, options).expect("any size fits the grid");
+                subject.with(*set).drawn(ALL).expect("no ray is stuck")
+            };
+            let plain = drawn(0);
+            for exponent in [-300, 300] {
+                assert!(drawn(exponent) == plain, "{} times 2^{exponent} by {set}", generator.name);
+            }
+        }
+    }
+}
+
 /// A packet of more triangles than a word of 8 bits counts, in modes that make much of it.
 #[test]
 fn pictures_of_long_packets_in_short_words() {

@@ -48,6 +48,12 @@ pub trait RunObserver: Observer {
 
     /// Control goes from one slot to another; what ended before was told.
     fn go(&mut self, pc: u32, next: u32, motion: Motion);
+
+    /// So many operations were executed: instead of [`RunObserver::walked`] and [`RunObserver::pass`], for engines that add them up themselves.
+    fn add(&mut self, counts: &Counts);
+
+    /// So many of the operations that were told of last were not executed.
+    fn take_back(&mut self, counts: &Counts);
 }
 
 /// Nobody.
@@ -82,6 +88,10 @@ impl RunObserver for Unobserved {
     }
 
     fn go(&mut self, _: u32, _: u32, _: Motion) {}
+
+    fn add(&mut self, _: &Counts) {}
+
+    fn take_back(&mut self, _: &Counts) {}
 }
 
 /// Cost of one function or region.

@@ -223,6 +223,15 @@ impl RunObserver for Profiler {
     }
 
     #[inline]
+    fn add(&mut self, counts: &Counts) {
+        self.total += *counts;
+    }
+
+    fn take_back(&mut self, counts: &Counts) {
+        self.total = self.total - *counts;
+    }
+
+    #[inline]
     fn go(&mut self, pc: u32, next: u32, motion: Motion) {
         match motion {
             Motion::Call => self.call(pc.wrapping_add(1), next),

@@ -1,13 +1,14 @@
 //! Programs by themselves, on every engine: registers, the local buffer, times, and any words at all.
 
 use emu::code::Code;
-use emu::engine::{HostSimd, Wish};
+use emu::engine::{EngineKind, HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
 use emu::tally::Losses;
 use emu::trap::Fault;
+use isa::number::{Overflow, Quantization};
 use isa::{Class, InstructionDef, Isa, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -17,8 +18,18 @@ use super::builder::{Builder, program};
 fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCoreRun {
     let isa = Isa::base();
     let one_core = OneCore { registers, step_limit: 500, has_profile: true, ..OneCore::new(config, &isa, program) };
-    let run = |wish| one_core::run_with(&one_core, Memory::new((0..=255).collect()), wish).expect("the setup is right");
+    let long = OneCore { registers: one_core.registers.clone(), step_limit: 1 << 20, ..one_core };
+    let memory = || Memory::new((0..=255).collect());
+    let run = |wish| one_core::run_with(&one_core, memory(), wish).expect("the setup is right");
     let checked = run(Wish::CHECKED);
+    // Native code leaves what is close to the step limit to the interpreter.
+    if checked.trap.as_ref().is_none_or(|trap| trap.kind != Fault::StepLimit(500)) {
+        let native = one_core::run_with(&long, memory(), Wish::native()).expect("the setup is right");
+        let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
+        assert_eq!((parts(&native), &native.memory), (parts(&checked), &checked.memory), "native");
+        assert_eq!(native.profile, checked.profile, "native");
+        assert_eq!(native.engine.kind, EngineKind::Native, "{:?}", native.engine.refusal);
+    }
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
         let fast = run(Wish::fast(features));
         let parts =
@@ -237,5 +248,20 @@ proptest! {
             prop_assert_eq!(&run.memory, &other.memory);
             prop_assert_eq!(&run.tally, &other.tally);
         }
+    }
+
+    #[test]
+    fn engines_agree_in_all_modes(
+        words in words(), registers in registers(), word in 8u32..=32,
+        quantization in prop::sample::select(Quantization::ALL), overflow in prop::sample::select(Overflow::ALL),
+        saturated in 0u32..4, trap_division_by_zero: bool,
+    ) {
+        let program = Program { words, region_of: vec![], ..Program::default() };
+        let mut config = Config::default();
+        config.arithmetic.word = word;
+        config.arithmetic.quantization = quantization;
+        config.arithmetic.overflow = overflow.with_saturated(saturated);
+        config.arithmetic.trap_division_by_zero = trap_division_by_zero;
+        run_with(&config, &program, registers);
     }
 }

@@ -1,6 +1,6 @@
 //! Costs that functions and regions are said to have.
 
-use emu::engine::Wish;
+use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
@@ -14,9 +14,11 @@ use super::builder::program;
 pub fn run(program: &Program) -> (Profile, Counts) {
     let (isa, config) = (Isa::base(), Config::default());
     let one_core = OneCore { step_limit: 10_000_000, has_profile: true, ..OneCore::new(&config, &isa, program) };
-    let run = one_core::run(&one_core, Memory::default()).expect("the setup is right");
-    let checked = one_core::run_with(&one_core, Memory::default(), Wish::CHECKED).expect("the setup is right");
-    assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));
+    let [run, native, checked] = [Wish::fast(HostSimd::best()), Wish::native(), Wish::CHECKED]
+        .map(|wish| one_core::run_with(&one_core, Memory::default(), wish).expect("the setup is right"));
+    for run in [&run, &native] {
+        assert_eq!((&run.profile, &run.tally, &run.state), (&checked.profile, &checked.tally, &checked.state));
+    }
     assert_eq!(run.trap, None);
     let code = emu::code::Code::new(program, &isa, config.timing());
     let counts = run.tally.counts(&code);

@@ -4,6 +4,7 @@
 use isa::Op;
 
 use super::Recipe;
+use super::classes::Classes;
 use crate::engine::cost::Cost;
 use crate::engine::plan::{Plan, Step};
 
@@ -34,7 +35,7 @@ pub(super) fn asks(plan: &Plan, step: &Step) -> bool {
 
 impl Blocks {
     /// Looks at a plan.
-    pub fn new(plan: &Plan, recipe: &Recipe) -> Blocks {
+    pub fn new(plan: &Plan, recipe: &Recipe, classes: Option<&Classes>) -> Blocks {
         let (steps, end) = (plan.steps(), plan.end());
         let mut blocks = Blocks {
             is_join: vec![false; end as usize + 1],
@@ -67,6 +68,10 @@ impl Blocks {
                 }
                 _ => {}
             }
+        }
+        // Who measures functions is told of borders at the ends of blocks.
+        for place in (1..end).filter(|&place| classes.is_some_and(|classes| classes.is_border(place - 1, place))) {
+            blocks.is_join[place as usize] = true;
         }
         blocks.watch(plan);
         for place in (0..end).rev() {

@@ -13,7 +13,7 @@ use crate::engine::HostSimd;
 use crate::engine::fast::operands::put;
 use crate::engine::plan::Step;
 use crate::semantics::{
-    BusRoom, IntegerRoom, Port, RayRoom, ScalarRoom, VectorRoom, Watch, Watching, WideRoom, split_operands,
+    BusRoom, IntegerRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom, Watch, Watching, WideRoom, split_operands,
 };
 
 /// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].
@@ -21,6 +21,9 @@ pub(super) type Helper = unsafe extern "C" fn(*mut Context, *mut Registers, *con
 
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
 pub(super) type Units = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
+
+/// Tells who measures functions that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
+pub(super) type Went = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
 
 /// Result of a row of values that has divided by zero where that traps. It has written nothing then.
 pub(super) const STOPPED: u64 = u64::MAX;
@@ -185,6 +188,20 @@ pub(super) unsafe extern "C" fn add_units(context: *mut Context, step: *const St
     // SAFETY: the context is that of a run.
     let host = unsafe { Host::of(context) };
     host.add_units(context, step.exit as usize + ended as u32 as usize, (ended >> 32) as u32);
+    0
+}
+
+/// See [`Went`].
+///
+/// # Safety
+/// The context is that of a run.
+pub(super) unsafe extern "C" fn went(context: *mut Context, ways: u64, motion: u64) -> u64 {
+    // SAFETY: as the function asks for.
+    let context = unsafe { &mut *context };
+    // SAFETY: the context is that of a run.
+    let host = unsafe { Host::of(context) };
+    let motion = [Motion::Jump, Motion::Call, Motion::Return][motion as usize % 3];
+    host.went(context, ways as u32, (ways >> 32) as u32, motion);
     0
 }
 

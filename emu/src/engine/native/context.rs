@@ -4,6 +4,7 @@
 use std::mem::offset_of;
 
 use super::Read;
+use super::classes::Lanes;
 
 /// Reads that are noted before the link is told of them.
 pub(super) const NOTED: usize = 512;
@@ -41,6 +42,8 @@ pub(super) struct Context {
     pub arithmetic: *const (),
     /// The rest of the machine: see [`super::run::Host`].
     pub host: *mut (),
+    /// Operations by class since they were last emptied, where functions are measured.
+    pub classes: Lanes,
     /// Reads of global memory that the link was not told of.
     pub reads: [Read; NOTED],
 }
@@ -65,6 +68,7 @@ offsets! {
     NOTED_AT noted
     NOTED_END noted_end
     BEFORE before
+    CLASSES classes
     READS reads
 }
 

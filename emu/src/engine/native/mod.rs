@@ -5,6 +5,7 @@
 
 mod blocks;
 mod calls;
+mod classes;
 mod context;
 mod count;
 mod executable;
@@ -27,6 +28,7 @@ use crate::code::tally::Tally;
 use crate::profile::RunObserver;
 use crate::semantics::{Computes, Watch};
 use blocks::Blocks;
+use classes::Classes;
 use context::{Context, Layout};
 use count::Counters;
 use executable::Executable;
@@ -46,6 +48,8 @@ struct Recipe {
     held: Option<u64>,
     /// Time at which the machine answers.
     answers: Answers,
+    /// Whether functions and regions are measured.
+    has_profile: bool,
 }
 
 impl Recipe {
@@ -58,6 +62,7 @@ impl Recipe {
             buffer_octets: demand.buffer_octets,
             held: demand.follows_cores.then(held),
             answers: demand.answers,
+            has_profile: demand.has_profile,
         }
     }
 
@@ -114,6 +119,10 @@ struct Compiled {
     sites: Vec<u32>,
     /// The place of each of them.
     site_places: Vec<u32>,
+    /// By place: the end of its block.
+    ends: Vec<u32>,
+    /// Costs by class, where functions are measured.
+    classes: Option<Classes>,
     /// Things that the code points to.
     _steps: Box<[Step]>,
     _extras: Box<[u64]>,
@@ -147,9 +156,6 @@ impl<'a> Engine<'a> for Native<'a> {
         if demand.computes.counts_losses {
             return Err("native code counts no losses");
         }
-        if demand.has_profile {
-            return Err("native code measures no functions");
-        }
         host()?;
         let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
         let plan = plan.regardless_of_cores();
@@ -167,10 +173,10 @@ impl<'a> Engine<'a> for Native<'a> {
         arithmetic: &T,
         link: &mut L,
         taint: &mut Taint,
-        _: &mut O,
+        observer: &mut O,
     ) -> Stopped {
         let mut link: &mut dyn TimedLink = link;
-        self.run_code(core, state, arithmetic, &mut link, taint)
+        self.run_code(core, state, arithmetic, &mut link, taint, observer)
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {
@@ -217,9 +223,18 @@ impl Compiled {
             }
         }
         let layout = Layout::new(plan.exits(), steps.len(), site_places.len()).ok_or("the program is too large")?;
-        let blocks = Blocks::new(plan, recipe);
-        let source =
-            lower::Source { plan, steps: &steps, extras: &extras, recipe, layout, blocks: &blocks, sites: &sites };
+        let classes = recipe.has_profile.then(|| Classes::new(plan));
+        let blocks = Blocks::new(plan, recipe, classes.as_ref());
+        let source = lower::Source {
+            plan,
+            steps: &steps,
+            extras: &extras,
+            recipe,
+            layout,
+            blocks: &blocks,
+            sites: &sites,
+            classes: classes.as_ref(),
+        };
         let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
         let compiled = context.compile(&*isa, &mut ControlPlane::default());
         let compiled = compiled.map_err(|_| "the program cannot be compiled")?;
@@ -233,6 +248,8 @@ impl Compiled {
             function,
             layout,
             is_join: blocks.is_join,
+            ends: blocks.end,
+            classes,
             sites,
             site_places,
             _steps: steps,

@@ -1,5 +1,8 @@
 //! Runs generated code, and what it needs of the machine meanwhile.
 
+use isa::Counts;
+
+use super::classes::{Lanes, counts};
 use super::context::{Context, Layout, NOTED};
 use super::count::Counters;
 use super::{NO_SITE, Native, Read, Status, Stopped, TimedLink};
@@ -11,10 +14,37 @@ use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
 use crate::extension::Units;
-use crate::semantics::{Numbers, Watch};
+use crate::profile::RunObserver;
+use crate::semantics::{Motion, Numbers, Watch};
 
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
 const AHEAD: u64 = 4 * Cost::WHOLE as u64;
+
+/// Who measures functions, whatever the type.
+pub(super) trait Watcher {
+    /// So many operations were executed.
+    fn add(&mut self, counts: &Counts);
+
+    /// So many operations that were told of were not executed.
+    fn take_back(&mut self, counts: &Counts);
+
+    /// Control goes from one slot to another one; what was executed before was told.
+    fn go(&mut self, from: u32, to: u32, motion: Motion);
+}
+
+impl<O: RunObserver> Watcher for O {
+    fn add(&mut self, counts: &Counts) {
+        RunObserver::add(self, counts);
+    }
+
+    fn take_back(&mut self, counts: &Counts) {
+        RunObserver::take_back(self, counts);
+    }
+
+    fn go(&mut self, from: u32, to: u32, motion: Motion) {
+        RunObserver::go(self, from, to, motion);
+    }
+}
 
 /// Cost of a run before its sums were emptied.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +71,8 @@ pub(super) struct Host<'a> {
     layout: Layout,
     reads_inline: bool,
     fault: Option<Fault>,
+    /// Who measures functions, where somebody does.
+    watcher: Option<&'a mut dyn Watcher>,
     /// The link has no room for what it was told of.
     is_full: bool,
 }
@@ -116,14 +148,31 @@ impl<'a> Host<'a> {
         }
     }
 
+    /// Hands what was added up by class to who measures functions.
+    fn add_classes(&mut self, context: &mut Context) {
+        if let Some(watcher) = &mut self.watcher {
+            watcher.add(&counts(&std::mem::take(&mut context.classes)));
+        }
+    }
+
+    /// Control goes from one slot to another one.
+    pub fn went(&mut self, context: &mut Context, from: u32, to: u32, motion: Motion) {
+        self.add_classes(context);
+        if let Some(watcher) = &mut self.watcher {
+            watcher.go(from, to, motion);
+        }
+    }
+
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
         if let Some(count) = self.counted_units.get_mut(exit) {
             *count += u64::from(units);
         }
-        if let Some(pass) = self.plan.pass(exit)
-            && self.plan.code.costs()[pass].has_busy_units
-        {
+        let Some(pass) = self.plan.pass(exit) else { return };
+        if let Some(watcher) = &mut self.watcher {
+            watcher.add(&self.plan.code.pass_cost(pass).1.times(units.into()));
+        }
+        if self.plan.code.costs()[pass].has_busy_units {
             let (clocks, elementary) = self.plan.code.unit_cost(pass, units);
             self.totals.elementary += elementary;
             self.add_clocks(context, clocks.0);
@@ -174,6 +223,7 @@ impl Native<'_> {
         arithmetic: &T,
         link: &mut dyn TimedLink,
         taint: &mut Taint,
+        watcher: &mut dyn Watcher,
     ) -> Stopped {
         let Native { plan, shared, patience, counters } = self;
         let plan = &*plan;
@@ -201,12 +251,13 @@ impl Native<'_> {
             layout: code.layout,
             reads_inline: !shared.recipe.is_stepped(),
             fault: None,
+            watcher: code.classes.is_some().then_some(watcher),
             is_full: false,
         };
         {
             // SAFETY: the frame has a context at its beginning, and nobody else looks at it.
             let context = unsafe { &mut *context };
-            context.sums = 0;
+            (context.sums, context.classes) = (0, Lanes::default());
             (context.core, context.cores) = (core.core as i32, core.cores as i32);
             context.tainted = taint.tainted;
             (context.depends_on_cores, context.depends_on_core) = (0, 0);
@@ -231,6 +282,7 @@ impl Native<'_> {
             // SAFETY: as above, and the code has returned.
             let context = unsafe { &mut *context };
             host.empty(context);
+            host.add_classes(context);
             let found = context.place;
             place = found;
             let is_near_limit = is_near_limit(core, host.totals.steps + host.totals.inner_steps);
@@ -249,6 +301,10 @@ impl Native<'_> {
                 _ => {}
             }
             counters.cut[place as usize] += 1;
+            if let (Some(classes), Some(watcher)) = (&code.classes, &mut host.watcher) {
+                // The rest of the block was added and is not executed.
+                watcher.take_back(&classes.span(place, code.ends[place as usize]));
+            }
             break match status {
                 Status::Wait => Stopped::Wait,
                 Status::Fault => Stopped::Fault(host.fault.take().expect("what went wrong is known")),

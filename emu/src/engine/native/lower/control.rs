@@ -8,6 +8,7 @@ use cranelift_frontend::Switch;
 use super::{ControlRoom, Form, Lower, S, W, aligned};
 use crate::engine::native::Status;
 use crate::engine::native::context::{CORE, CORES};
+use crate::semantics::Motion;
 
 /// Places that a return compares one after the other with where it leads; more are found by a search.
 const COMPARED: usize = 4;
@@ -22,7 +23,7 @@ impl Lower<'_, '_> {
         self.go(place, target);
         self.b.switch_to_block(fall);
         let first = self.source.steps[place as usize].exit as usize;
-        self.add_to_sums(self.source.extras[first]);
+        self.add_extra(first);
         self.lead_on()
     }
 
@@ -139,7 +140,8 @@ impl ControlRoom for Lower<'_, '_> {
         let link = self.link();
         self.set_s(S(step.fields.d), link);
         self.take_exit(step.exit as usize);
-        self.go(self.place, step.target);
+        self.tell_motion_to(step.target, Motion::Call);
+        self.go_silently(self.place, step.target);
         Form::Left
     }
 
@@ -148,6 +150,7 @@ impl ControlRoom for Lower<'_, '_> {
         self.unless_in_words(word);
         let link = self.link();
         self.set_s(S(self.source.steps[self.place as usize].fields.d), link);
+        self.tell_motion(word, Motion::Call);
         self.go_to_word(word);
         Form::Left
     }
@@ -177,11 +180,13 @@ impl ControlRoom for Lower<'_, '_> {
         for (_, place, way) in ways {
             self.b.switch_to_block(way);
             self.begin(place);
+            self.tell_motion_to(place, Motion::Return);
             let block = self.entries[place as usize].expect("what stands behind a call is a join");
             self.watch(place, block);
         }
         self.b.switch_to_block(other);
         self.unless_in_words(word);
+        self.tell_motion(word, Motion::Return);
         self.go_to_word(word);
         Form::Left
     }

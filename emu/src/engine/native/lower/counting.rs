@@ -28,7 +28,13 @@ impl Lower<'_, '_> {
         if step.exits > 1 {
             self.take_exit(exit);
         }
+        self.add_extra(exit);
+    }
+
+    /// Adds what an exit takes beside its block.
+    pub fn add_extra(&mut self, exit: usize) {
         self.add_to_sums(self.source.extras[exit]);
+        self.pass_classes(exit);
     }
 
     /// A run is begun at a place to which no exit leads whose target is known.
@@ -57,6 +63,7 @@ impl Lower<'_, '_> {
     /// Adds what the block takes from a place on.
     pub fn spend(&mut self, place: u32) {
         self.add_to_sums(self.span(place));
+        self.spend_classes(place);
     }
 
     /// Cost of the block from the current place on, added already.
@@ -86,6 +93,12 @@ impl Lower<'_, '_> {
 
     /// On to a place at which a block begins.
     pub fn go(&mut self, from: u32, to: u32) {
+        self.tell_border(from, to);
+        self.go_silently(from, to);
+    }
+
+    /// The same where nobody has to be told, or has been.
+    pub fn go_silently(&mut self, from: u32, to: u32) {
         match self.entries[to as usize] {
             Some(block) if to <= from || self.source.blocks.is_watched[to as usize] => self.watch(to, block),
             Some(block) => {
@@ -158,6 +171,7 @@ impl Lower<'_, '_> {
         let count = self.b.ins().load(I64, aligned(), at, first);
         let count = self.b.ins().iadd_imm_s(count, 1);
         self.b.ins().store(aligned(), count, at, first);
+        self.pass_classes_dynamic(step.exit as usize, step.exits.into(), exit);
         if step.is_uneven {
             let extras = self.source.extras[step.exit as usize..].as_ptr();
             let extras = self.c64(extras as i64);

@@ -9,6 +9,7 @@ mod counting;
 mod forms;
 mod integer;
 mod local;
+mod profile;
 mod ray;
 mod scalar;
 mod vector;
@@ -23,6 +24,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch, Variab
 use isa::{Kind, Op};
 
 use super::blocks::Blocks;
+use super::classes::Classes;
 use super::context::{Layout, SUMS};
 use super::{Recipe, Status};
 use crate::code::registers::Registers;
@@ -69,6 +71,8 @@ pub(super) struct Source<'a> {
     pub blocks: &'a Blocks,
     /// Numbers of the reads, by place.
     pub sites: &'a [u32],
+    /// Costs by class, where functions are measured; their tables live as long as the code.
+    pub classes: Option<&'a Classes>,
 }
 
 /// A function on its way.

@@ -176,7 +176,7 @@ engines! {
 
 impl Default for EngineKind {
     fn default() -> EngineKind {
-        EngineKind::Fast
+        EngineKind::ALL[0]
     }
 }
 

@@ -18,6 +18,7 @@ use std::sync::{Arc, OnceLock};
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::settings::{self, Configurable, Flags};
 
+use super::fast::Fast;
 use super::host::HostSimd;
 use super::plan::{Plan, Step};
 use super::state::{CoreId, State};
@@ -129,24 +130,31 @@ struct Compiled {
     _executable: Executable,
 }
 
-/// The code of a program, shared by the cores that run it. It is generated when the interpreter has taken about as long as that takes.
+/// The code of a program, shared by the cores that run it. It is generated when other engines have taken about as long as that takes.
 #[derive(Debug)]
 struct Shared {
     recipe: Recipe,
     compiled: OnceLock<Result<Compiled, Refusal>>,
-    /// Steps that the interpreter has executed of the program.
-    interpreted: AtomicU64,
+    /// Steps that other engines have executed of the program.
+    executed: AtomicU64,
 }
 
-/// Steps of the interpreter, for each slot of a program, that take about as long as compiling it.
+/// Steps of the interpreter, for each slot of a program, that take about as long as compiling it; the fast engine takes [`QUICKER`] times as
+/// many.
 const PATIENCE: u64 = 1000;
+const QUICKER: u64 = 3;
+
+/// Steps before that at which it does not matter any more: the fast engine stops in front of a run that would go beyond its limit.
+const LAST: u64 = 1 << 14;
 
 /// The native engine of one program, with what a core has counted.
 #[derive(Clone, Debug)]
 pub struct Native<'a> {
     plan: Plan<'a>,
     shared: Arc<Shared>,
-    /// Steps of the interpreter after which the program is compiled.
+    /// Executes the program until it is compiled, where it suits.
+    first: Option<Box<Fast<'a>>>,
+    /// Steps after which the program is compiled.
     patience: u64,
     counters: Option<Counters>,
 }
@@ -160,10 +168,15 @@ impl<'a> Engine<'a> for Native<'a> {
         let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
         let plan = plan.regardless_of_cores();
         let recipe = Recipe::new(demand, &plan);
-        let new = || Shared { recipe: recipe.clone(), compiled: OnceLock::new(), interpreted: AtomicU64::new(0) };
+        let new = || Shared { recipe: recipe.clone(), compiled: OnceLock::new(), executed: AtomicU64::new(0) };
         let shared = demand.code.share(|shared: &Shared| shared.recipe == recipe, new);
-        let patience = if demand.wish.is_eager { 0 } else { PATIENCE * plan.slots().len() as u64 };
-        Ok(Native { plan, shared, patience, counters: None })
+        let first = if demand.wish.is_eager { None } else { Fast::new(demand).ok().map(Box::new) };
+        let patience = match &first {
+            _ if demand.wish.is_eager => 0,
+            None => PATIENCE * plan.slots().len() as u64,
+            Some(_) => QUICKER * PATIENCE * plan.slots().len() as u64,
+        };
+        Ok(Native { plan, shared, first, patience, counters: None })
     }
 
     fn run<T: Watch, L: TimedLink, O: RunObserver>(
@@ -175,31 +188,55 @@ impl<'a> Engine<'a> for Native<'a> {
         taint: &mut Taint,
         observer: &mut O,
     ) -> Stopped {
+        let rest = self.shared.rest(self.patience);
+        if rest != 0
+            && let Some(first) = &mut self.first
+        {
+            // Up to the time at which compiling is worth it, from then on by what is compiled.
+            let before = state.steps + state.inner_steps;
+            let limited = CoreId { step_limit: core.step_limit.min(before.saturating_add(rest)), ..core };
+            let stopped = first.run(limited, state, arithmetic, link, taint, observer);
+            self.shared.executed.fetch_add(state.steps + state.inner_steps - before, Ordering::Relaxed);
+            if stopped != Stopped::Bailout || self.shared.rest(self.patience) > LAST {
+                return stopped;
+            }
+        }
         let mut link: &mut dyn TimedLink = link;
         self.run_code(core, state, arithmetic, &mut link, taint, observer)
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {
         let is_refused = matches!(self.shared.compiled.get(), Some(Err(_)));
-        match self.patience.saturating_sub(self.shared.interpreted.load(Ordering::Relaxed)) {
+        match self.shared.rest(self.patience) {
             _ if is_refused || run::is_near_limit(core, state.steps + state.inner_steps) => u64::MAX,
             rest => rest.max(1),
         }
     }
 
     fn interpreted(&mut self, steps: u64) {
-        self.shared.interpreted.fetch_add(steps, Ordering::Relaxed);
+        self.shared.executed.fetch_add(steps, Ordering::Relaxed);
     }
 
     fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+        if let Some(first) = &mut self.first {
+            first.fold(tally, add_octets);
+        }
         self.fold_counters(tally, add_octets);
     }
 }
 
 impl Shared {
+    /// Steps that other engines are to execute before the program is compiled.
+    fn rest(&self, patience: u64) -> u64 {
+        match self.compiled.get() {
+            None => patience.saturating_sub(self.executed.load(Ordering::Relaxed)),
+            Some(_) => 0,
+        }
+    }
+
     /// The code, where there is some, or it is time to generate it.
     fn code(&self, plan: &Plan, patience: u64) -> Option<&Compiled> {
-        if self.compiled.get().is_none() && self.interpreted.load(Ordering::Relaxed) < patience {
+        if self.rest(patience) > LAST {
             return None;
         }
         self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe)).as_ref().ok()

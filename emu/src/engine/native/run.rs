@@ -225,7 +225,7 @@ impl Native<'_> {
         taint: &mut Taint,
         watcher: &mut dyn Watcher,
     ) -> Stopped {
-        let Native { plan, shared, patience, counters } = self;
+        let Native { plan, shared, patience, counters, .. } = self;
         let plan = &*plan;
         let Some(code) = shared.code(plan, *patience) else { return Stopped::Bailout };
         let is_inside = (state.pc as usize) < plan.slots().len();

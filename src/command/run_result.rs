@@ -32,7 +32,7 @@ pub struct RunResult {
     pub program: String,
     /// Name of the machine.
     pub machine: String,
-    /// Engine that executed it: fast, or checked where fast does not suit or was not to be used.
+    /// Engine that executed it: native, fast or checked, of which a former one may not suit or not be wanted.
     pub engine: &'static str,
     /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
     pub engine_because: Option<&'static str>,

@@ -111,7 +111,7 @@ pub struct Render {
     pub method: &'static str,
     /// Reason for which the frame was not replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
-    /// Engine that executed the cores' program: fast or checked. Nothing else depends on it.
+    /// Engine that executed the cores' program: native, fast or checked. Nothing else depends on it.
     pub engine: &'static str,
     /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
     pub engine_because: Option<&'static str>,

@@ -22,7 +22,8 @@ pub struct Engine {
 /// All engines; the first one is the specification.
 pub const ENGINES: &[Engine] = &[
     Engine { name: "checked", run: |one_core, memory| one_core::run_with(one_core, memory, Wish::CHECKED) },
-    Engine { name: "fast", run: one_core::run },
+    Engine { name: "native", run: |one_core, memory| one_core::run_with(one_core, memory, Wish::native()) },
+    Engine { name: "fast", run: |one_core, memory| one_core::run_with(one_core, memory, Wish::fast(HostSimd::best())) },
     Engine {
         name: "fast, baseline",
         run: |one_core, memory| one_core::run_with(one_core, memory, Wish::fast(HostSimd::Baseline)),

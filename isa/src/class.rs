@@ -118,11 +118,13 @@ impl Counts {
     }
 
     /// Each class `times` times.
+    #[inline]
     pub fn times(self, times: u64) -> Counts {
         Counts(self.0.map(|count| count * times))
     }
 
     /// Sum of add, sub, mul, div and cmp: what Annex II calls the operations of a function.
+    #[inline]
     pub fn elementary(&self) -> u64 {
         self.iter().filter(|(class, _)| class.is_elementary()).map(|(_, count)| count).sum()
     }
@@ -152,6 +154,7 @@ impl IndexMut<Class> for Counts {
 }
 
 impl AddAssign for Counts {
+    #[inline]
     fn add_assign(&mut self, other: Counts) {
         for (count, more) in self.0.iter_mut().zip(other.0) {
             *count += more;
@@ -161,6 +164,7 @@ impl AddAssign for Counts {
 
 impl Add for Counts {
     type Output = Counts;
+    #[inline]
     fn add(mut self, other: Counts) -> Counts {
         self += other;
         self
@@ -169,6 +173,7 @@ impl Add for Counts {
 
 impl Sub for Counts {
     type Output = Counts;
+    #[inline]
     fn sub(self, other: Counts) -> Counts {
         Counts(std::array::from_fn(|at| self.0[at] - other.0[at]))
     }

@@ -82,14 +82,14 @@ fn all_ways_to_run_an_example_agree() {
         }
         let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{}: {failure:?}", folder.display()));
         let run = |engine, steps: bool| -> RunOutcome {
-            let options = Options { engine, has_profile: true, has_items: true, ..Options::default() };
+            let options = Options { engine, is_eager: true, has_profile: true, has_items: true, ..Options::default() };
             let setup = load.setup(&job.machine, options);
             let run = if steps { emu::step } else { emu::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
         assert_eq!(
             load.setup(&job.machine, Options::default()).engine().kind,
-            EngineKind::Fast,
+            EngineKind::default(),
             "{}",
             folder.display()
         );

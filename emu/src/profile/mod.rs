@@ -1,11 +1,13 @@
 //! Profiles of functions and regions: observers that are told of each instruction, and the totals that come of it.
 
+mod calls;
 mod profiler;
 
 use std::ops::Range;
 
 use isa::Counts;
 
+pub use calls::Near;
 pub use profiler::Profiler;
 
 use crate::code::Code;
@@ -52,6 +54,9 @@ pub trait RunObserver: Observer {
     /// So many operations were executed: instead of [`RunObserver::walked`] and [`RunObserver::pass`], for engines that add them up themselves.
     fn add(&mut self, counts: &Counts);
 
+    /// The same of few, each class below 2^31.
+    fn add_near(&mut self, counts: &Near);
+
     /// So many of the operations that were told of last were not executed.
     fn take_back(&mut self, counts: &Counts);
 }
@@ -90,6 +95,8 @@ impl RunObserver for Unobserved {
     fn go(&mut self, _: u32, _: u32, _: Motion) {}
 
     fn add(&mut self, _: &Counts) {}
+
+    fn add_near(&mut self, _: &Near) {}
 
     fn take_back(&mut self, _: &Counts) {}
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use isa::Counts;
 
+use super::calls::{Calls, Entered, Near, Running};
 use super::{Observer, Profile, RegionProfile, RunObserver};
 use crate::code::Code;
 use crate::code::layout::{Order, Stage};
@@ -14,21 +15,25 @@ use crate::semantics::Motion;
 /// Most regions and calls that are open at once; what deeper calls cost counts for what is open already.
 const DEEPEST: usize = 1 << 16;
 
-/// Something open.
+/// Something open, with the totals when it was entered.
 #[derive(Clone, Copy, Debug)]
-enum Open {
+struct Open {
+    what: What,
+    entered: Entered,
+}
+
+/// A call or a region.
+#[derive(Clone, Copy, Debug)]
+enum What {
     /// A call: the regions above it belong to the callee.
     Call {
         /// Word to which the callee returns.
         back: u32,
+        /// Number of the first thing open in the caller.
+        base: u32,
     },
-    /// A region or function.
-    Region {
-        /// Which.
-        region: u16,
-        /// Totals when it was entered.
-        before: Counts,
-    },
+    /// A region or function, by its number.
+    Region(u16),
 }
 
 /// An observer that measures calls.
@@ -52,7 +57,11 @@ pub struct Profiler {
     returns_to: Vec<u32>,
     /// Calls deeper than [`DEEPEST`].
     deeper: u64,
-    total: Counts,
+    /// Number of the first thing open in the current call.
+    base: usize,
+    total: Running,
+    /// What calls of each region have taken, those left out that took more than 32 bits hold.
+    calls: Vec<Calls>,
 }
 
 impl Profiler {
@@ -61,14 +70,24 @@ impl Profiler {
     }
 
     fn close_top(&mut self) {
-        match self.open.pop() {
-            Some(Open::Region { region, before }) => {
+        let Some(Open { what, entered }) = self.open.pop() else { return };
+        match what {
+            What::Region(region) => {
                 let at = usize::from(region);
                 self.depth[at] -= 1;
-                self.regions[at].note_call(self.total - before, self.depth[at] == 0);
+                let is_outermost = self.depth[at] == 0;
+                match self.total.since(&entered) {
+                    Some(cost) => self.calls[at].note(&cost, is_outermost),
+                    None => {
+                        let cost = self.total.long_since(&entered, self.open.len());
+                        self.regions[at].note_call(cost, is_outermost);
+                    }
+                }
             }
-            Some(Open::Call { back }) => self.returns_to[back as usize] -= 1,
-            None => {}
+            What::Call { back, base } => {
+                self.returns_to[back as usize] -= 1;
+                self.base = base as usize;
+            }
         }
     }
 
@@ -80,24 +99,43 @@ impl Profiler {
 
     /// Leaves and enters regions of the current call so that those around a word are open.
     fn move_to(&mut self, pc: u32) {
-        let base = self.open.iter().rposition(|open| matches!(open, Open::Call { .. })).map_or(0, |call| call + 1);
-        let chain = self.chain(pc).map_or(&[][..], |region| &self.chains[usize::from(region)]);
-        let is_open =
-            |(open, region): &(&Open, &u16)| matches!(open, Open::Region { region: other, .. } if other == *region);
-        let kept = self.open[base..].iter().zip(chain).take_while(is_open).count();
-        let entered = chain[kept..].to_vec();
+        let base = self.base;
+        let Some(chain) = self.chain(pc) else { return self.close_to(base) };
+        let chain = usize::from(chain);
+        let is_open = |(open, region): &(&Open, &u16)| matches!(open.what, What::Region(other) if other == **region);
+        let kept = self.open[base..].iter().zip(&self.chains[chain]).take_while(is_open).count();
         self.close_to(base + kept);
-        for region in entered {
+        for at in kept..self.chains[chain].len() {
             if self.open.len() < DEEPEST {
+                let region = self.chains[chain][at];
                 self.depth[usize::from(region)] += 1;
-                self.open.push(Open::Region { region, before: self.total });
+                self.open.push(Open { what: What::Region(region), entered: self.total.enter() });
             }
+        }
+    }
+
+    /// Adds operations of any number.
+    #[inline]
+    fn add_counts(&mut self, counts: &Counts) {
+        let is_small = counts.0.iter().fold(0, |all, count| all | count) < 1 << 31;
+        match is_small {
+            true => self.add_near(&counts.0.map(|count| count as u32)),
+            false => self.total.carry_over(self.open.iter_mut().map(|open| &mut open.entered), counts),
+        }
+    }
+
+    #[inline]
+    fn add_near(&mut self, counts: &Near) {
+        if self.total.add(counts) {
+            self.total.carry_over(self.open.iter_mut().map(|open| &mut open.entered), &Counts::ZERO);
         }
     }
 
     fn call(&mut self, back: u32, target: u32) {
         if self.open.len() < DEEPEST {
-            self.open.push(Open::Call { back });
+            let (what, entered) = (What::Call { back, base: self.base as u32 }, Entered::default());
+            self.open.push(Open { what, entered });
+            self.base = self.open.len();
             self.returns_to[back as usize] += 1;
             self.move_to(target);
         } else {
@@ -113,7 +151,7 @@ impl Profiler {
         }
         let is_known = self.returns_to.get(target as usize).is_some_and(|&count| count != 0);
         if is_known {
-            while !matches!(self.open.last(), Some(Open::Call { back }) if *back == target) {
+            while !matches!(self.open.last(), Some(Open { what: What::Call { back, .. }, .. }) if *back == target) {
                 self.close_top();
             }
             self.close_top();
@@ -162,7 +200,9 @@ impl Observer for Profiler {
             open: Vec::new(),
             returns_to: vec![0; code.slots().len() + 1],
             deeper: 0,
-            total: Counts::ZERO,
+            base: 0,
+            total: Running::default(),
+            calls: vec![Calls::default(); regions.len()],
         }
     }
 
@@ -173,10 +213,10 @@ impl Observer for Profiler {
 
     #[inline]
     fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
-        let (cost, each) = &self.costs[exit];
-        self.total += *cost;
+        let (cost, each) = self.costs[exit];
+        self.add_counts(&cost);
         if units != 0 {
-            self.total += each.times(units.into());
+            self.add_counts(&each.times(units.into()));
         }
         self.go(pc, next, motion);
     }
@@ -189,6 +229,9 @@ impl Observer for Profiler {
     fn into_profile(mut self, code: &Code, tally: &Tally) -> Option<Profile> {
         self.end();
         let mut profile = Profile::exclusive(code, tally);
+        for (calls, found) in self.calls.iter().zip(&mut self.regions) {
+            calls.add_to(found);
+        }
         for (region, found) in profile.regions.iter_mut().zip(self.regions) {
             region.calls = found.calls;
             region.inclusive = found.inclusive;
@@ -203,18 +246,17 @@ impl RunObserver for Profiler {
     fn walked(&mut self, places: Range<u32>) {
         let at = |place: u32| self.before[place as usize];
         let (from, to) = (at(places.start), at(places.end));
-        for (total, (to, from)) in self.total.0.iter_mut().zip(to.0.iter().zip(from.0)) {
-            *total += to - from;
-        }
+        let walked = Counts(std::array::from_fn(|at| to.0[at] - from.0[at]));
+        self.add_counts(&walked);
     }
 
     fn pass(&mut self, exit: usize, is_only: bool, units: u32) {
-        let (cost, each) = &self.costs[exit];
+        let (cost, each) = self.costs[exit];
         if !is_only {
-            self.total += *cost;
+            self.add_counts(&cost);
         }
         if units != 0 {
-            self.total += each.times(units.into());
+            self.add_counts(&each.times(units.into()));
         }
     }
 
@@ -222,13 +264,17 @@ impl RunObserver for Profiler {
         self.chain(self.order.slot(place)) != self.chain(self.order.slot(place + 1))
     }
 
-    #[inline]
     fn add(&mut self, counts: &Counts) {
-        self.total += *counts;
+        self.add_counts(counts);
+    }
+
+    #[inline]
+    fn add_near(&mut self, counts: &Near) {
+        self.add_near(counts);
     }
 
     fn take_back(&mut self, counts: &Counts) {
-        self.total = self.total - *counts;
+        self.total.take_back(counts);
     }
 
     #[inline]

@@ -4,12 +4,16 @@ use isa::{Class, Counts};
 
 use crate::code::Code;
 use crate::engine::plan::{Plan, Step};
+use crate::profile::Near;
 
-/// Classes, filled up to whole vectors of four.
-pub(super) const LANES: usize = Class::ALL.len().next_multiple_of(4);
+/// Number of classes.
+pub(super) const LANES: usize = {
+    assert!(Class::ALL.len().is_multiple_of(4), "vectors of four hold all of them");
+    Class::ALL.len()
+};
 
-/// Operations by class modulo 2^32.
-pub(super) type Lanes = [u32; LANES];
+/// Operations by class.
+pub(super) type Lanes = Near;
 
 /// What the places of a program cost by class, and where its functions and regions have their borders.
 #[derive(Clone, Debug)]
@@ -25,11 +29,6 @@ pub(super) struct Classes {
 /// The numbers as lanes.
 pub(super) fn lanes(counts: &Counts) -> Lanes {
     std::array::from_fn(|at| counts.0.get(at).map_or(0, |&count| count as u32))
-}
-
-/// Lanes as numbers.
-pub(super) fn counts(lanes: &Lanes) -> Counts {
-    Counts(std::array::from_fn(|at| lanes[at].into()))
 }
 
 /// The innermost region of a slot.

@@ -2,7 +2,7 @@
 
 use isa::Counts;
 
-use super::classes::{Lanes, counts};
+use super::classes::Lanes;
 use super::context::{Context, Layout, NOTED};
 use super::count::Counters;
 use super::{NO_SITE, Native, Read, Status, Stopped, TimedLink};
@@ -25,6 +25,9 @@ pub(super) trait Watcher {
     /// So many operations were executed.
     fn add(&mut self, counts: &Counts);
 
+    /// The same of few.
+    fn add_near(&mut self, counts: &Lanes);
+
     /// So many operations that were told of were not executed.
     fn take_back(&mut self, counts: &Counts);
 
@@ -35,6 +38,10 @@ pub(super) trait Watcher {
 impl<O: RunObserver> Watcher for O {
     fn add(&mut self, counts: &Counts) {
         RunObserver::add(self, counts);
+    }
+
+    fn add_near(&mut self, counts: &Lanes) {
+        RunObserver::add_near(self, counts);
     }
 
     fn take_back(&mut self, counts: &Counts) {
@@ -151,7 +158,7 @@ impl<'a> Host<'a> {
     /// Hands what was added up by class to who measures functions.
     fn add_classes(&mut self, context: &mut Context) {
         if let Some(watcher) = &mut self.watcher {
-            watcher.add(&counts(&std::mem::take(&mut context.classes)));
+            watcher.add_near(&std::mem::take(&mut context.classes));
         }
     }
 

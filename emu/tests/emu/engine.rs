@@ -25,7 +25,8 @@ fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCore
     // Native code leaves what is close to the step limit to the interpreter.
     if checked.trap.as_ref().is_none_or(|trap| trap.kind != Fault::StepLimit(500)) {
         let native = one_core::run_with(&long, memory(), Wish::native()).expect("the setup is right");
-        let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
+        let parts =
+            |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
         assert_eq!((parts(&native), &native.memory), (parts(&checked), &checked.memory), "native");
         assert_eq!(native.profile, checked.profile, "native");
         assert_eq!(native.engine.kind, EngineKind::Native, "{:?}", native.engine.refusal);

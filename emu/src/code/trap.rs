@@ -123,9 +123,9 @@ pub struct Trap {
     pub pc: u32,
     /// Name of the function around it.
     pub function: Option<String>,
-    /// `file:line` of the instruction.
+    /// `file:line` of the instruction; none outside of the program.
     pub place: Option<String>,
-    /// Source line of the instruction.
+    /// Source line of the instruction, or of the program's last word where the program is left behind it.
     pub line: Option<Place>,
     /// The line of the body of the extension instruction that went wrong there, if it is one.
     pub body: Option<Place>,
@@ -139,6 +139,9 @@ impl Trap {
         // What lies outside of the program belongs to no word of it, even where bodies are kept.
         let is_outside = matches!(kind, Fault::OutsideProgram { .. });
         let (program, pc) = (code.program, if is_outside { slot } else { code.word(slot) });
+        // A program without an end is left behind its last word, which is shown then.
+        let is_behind = is_outside && slot as usize == program.words.len();
+        let shown = if is_behind { pc.saturating_sub(1) } else { pc };
         let function = program.function(pc).map(str::to_owned);
         Trap {
             kind,
@@ -146,7 +149,7 @@ impl Trap {
             pc,
             function,
             place: program.place(pc),
-            line: line_place(program, pc),
+            line: line_place(program, shown),
             body: if is_outside { None } else { code.body_place(slot) },
             detail: String::new(),
         }
@@ -163,6 +166,13 @@ impl Trap {
         let mut message = Diagnostic::error(self.to_string());
         if matches!(self.kind, Fault::NoMeaning(_)) {
             message = message.hint("a program in Rust attaches one and runs it: docs/extensions.md");
+        }
+        if matches!(self.kind, Fault::OutsideProgram { .. }) {
+            message = message.hint("a program ends with `halt`");
+            return match &self.line {
+                Some(line) => message.at(line.clone(), "the last word"),
+                None => message,
+            };
         }
         match (&self.line, &self.body) {
             (Some(line), None) => message.at(line.clone(), "stopped here"),

@@ -19,6 +19,9 @@ pub const MOST_CORES: u32 = 256;
 /// Most octets of a local buffer.
 pub const MOST_BUFFER_OCTETS: u32 = 1 << 24;
 
+/// Octets of the buffers, or of the caches, of all cores together: a host keeps them twice.
+pub const MOST_OCTETS: u64 = 1 << 27;
+
 /// Most clocks of an operation, a beat or a set-up, and most units of a class.
 pub const MOST_CLOCKS: u64 = 1_000_000;
 

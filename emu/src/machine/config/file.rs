@@ -7,7 +7,7 @@ use isa::Class;
 use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 use toml::de::{DeTable, DeValue};
 
-use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES};
+use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_OCTETS};
 use crate::machine::arbiter::ArbiterKind;
 
 impl Config {
@@ -87,6 +87,16 @@ impl Config {
         check("cache.line_octets", self.cache.line_octets.into(), 1, MOST_BUFFER_OCTETS.into());
         check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("main.step_limit", self.main.step_limit, 1, 1 << 62);
+        for (key, octets) in [("buffer_octets", self.buffer_octets), ("cache.octets", self.cache.octets)] {
+            let all = u64::from(self.cores) * u64::from(octets);
+            // Each core's own key is fine; what is too much is a host's memory for all of them.
+            if all > MOST_OCTETS && octets <= MOST_BUFFER_OCTETS && (1..=MOST_CORES).contains(&self.cores) {
+                let message = format!("`{key}` is {octets} for each of {} cores, which is {all} octets", self.cores);
+                let most = MOST_OCTETS / u64::from(self.cores);
+                let hint = format!("all cores together may have {MOST_OCTETS}: here {most} each, or fewer `cores`");
+                messages.push((key.to_owned(), Diagnostic::error(message).hint(hint)));
+            }
+        }
         messages
     }
 

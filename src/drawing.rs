@@ -8,12 +8,12 @@ use emu::engine::Choice;
 use emu::machine::{self, RunOutcome};
 use emu::profile::Profile;
 use kernels::build::{Build, Crop};
-use messages::Report;
+use messages::{Diagnostic, Report};
 use rayon::prelude::*;
 use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::PIXEL;
 use scenes::metrics::{self, PictureError};
-use scenes::model::Picture;
+use scenes::model::{Camera, Picture};
 use scenes::reference::{Reference, SearchMethod};
 
 use crate::failure::Failure;
@@ -70,6 +70,42 @@ pub struct Drawing {
     pub times: Times,
 }
 
+/// A warning where no camera ray meets a triangle, with the reason where it is known.
+///
+/// # Errors
+/// See [`Reference::new`].
+fn unseen(job: &Job, crop: &Crop, words: &[[i32; 3]]) -> Result<Option<Diagnostic>, Report> {
+    let (scene, view) = (&job.scene, &job.view);
+    // A picture of several colours shows something, and a part of one may well show nothing.
+    let is_whole = (crop.width, crop.height) == view.size;
+    // A scene without triangles has been told where it was read.
+    if scene.triangles.is_empty() || !is_whole || words.iter().any(|colour| colour != &words[0]) {
+        return Ok(None);
+    }
+    let reference = Reference::new(scene, view, SearchMethod::Hierarchy)?;
+    let is_met = |row: u32| (0..crop.width).any(|column| reference.is_met(column, row));
+    if (0..crop.height).into_par_iter().any(is_met) {
+        return Ok(None);
+    }
+    let warning = Diagnostic::warning("no camera ray meets anything: the picture shows the background alone");
+    let (low, high) = scene.bounds().unwrap_or_default();
+    let hint = match &view.camera {
+        Camera::Orthographic if low[0] == high[0] || low[1] == high[1] => {
+            let side = if low[0] == high[0] { "width" } else { "height" };
+            let size = [0, 1, 2].map(|k| high[k] - low[k]).into_iter().fold(0.0, f64::max);
+            let [x, y, z] = high.map(|x| x + if size > 0.0 { size } else { 1.0 });
+            format!(
+                "the scene is seen edge-on: it has no {side}; another view is --camera perspective --eye {x},{y},{z}"
+            )
+        }
+        _ => format!(
+            "the scene lies between ({}, {}, {}) and ({}, {}, {})",
+            low[0], low[1], low[2], high[0], high[1], high[2]
+        ),
+    };
+    Ok(Some(warning.hint(hint)))
+}
+
 /// Draws a picture and measures it against double precision.
 ///
 /// # Errors
@@ -121,7 +157,8 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
         result::losses(&code, &frame.tally)
     });
     let build = load.build;
-    let warnings = build.warnings.clone();
+    let mut warnings = build.warnings.clone();
+    warnings.0.extend(unseen(job, &crop, &words)?);
     let times = Times { build: built - start, run, reference: reference_time };
     Ok(Drawing { image, build, frame, crop, words, picture, reference, engine, error, flags, warnings, times })
 }

@@ -8,6 +8,8 @@ use scenes::read::{self, Loaded};
 
 use messages::Report;
 
+use crate::files;
+
 /// Reads or generates a scene. `name` is a file (a `.dsc` with its mesh beside it or named by `mesh`, or a mesh alone);
 /// where there is no such file, it may be the name of a generated scene, which then has `size` pixels.
 ///
@@ -15,7 +17,7 @@ use messages::Report;
 /// What is wrong in the files, or a name that is neither a file nor a generated scene.
 pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Result<Loaded, Report> {
     let path = Path::new(name);
-    if path.exists() || mesh.is_some() || !is_plain(name) {
+    if path.exists() || mesh.is_some() || name == files::STANDARD || !is_plain(name) {
         return read::load(path, mesh);
     }
     if SCENES.iter().any(|generator| generator.name == name) {

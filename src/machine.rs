@@ -11,6 +11,9 @@ use crate::files;
 /// Name of the machine that runs when the user names none.
 pub const DEFAULT: &str = "report";
 
+/// Octets of the largest machine file: a reader of TOML takes many times as much memory, and all keys are 10 KiB.
+const LARGEST: u64 = 256 << 10;
+
 /// A machine by the name of a preset, or from a TOML file, with the name that results show.
 ///
 /// # Errors
@@ -28,7 +31,8 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
         });
         return Err(Diagnostic::error(format!("there is no machine `{name}`")).hint(hint).into());
     }
-    let config = Config::parse(&files::source(path)?)?;
+    let octets = files::read_up_to(LARGEST, path)?;
+    let config = Config::parse(&files::source_of(path, octets)?)?;
     let stem = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
     Ok((stem, config))
 }

@@ -6,6 +6,7 @@ use std::fmt::Write;
 use isa::definition::Room;
 use isa::table::ROOMS;
 use isa::{Class, InstructionDef, Isa, Kind};
+use pulldown_cmark::{Event, Tag};
 
 /// Meaning of the letters and kinds of operands; the kinds' own rows are generated.
 const OPERANDS: &str = "\
@@ -118,13 +119,38 @@ pub fn html(isa: &Isa) -> String {
     let markdown = markdown(isa);
     let options = pulldown_cmark::Options::ENABLE_TABLES;
     let mut body = String::new();
-    pulldown_cmark::html::push_html(&mut body, pulldown_cmark::Parser::new_ext(&markdown, options));
+    let events = pulldown_cmark::Parser::new_ext(&markdown, options).map(|event| match event {
+        // Notes of an extension are a stranger's: their HTML is text, and their links lead to pages alone.
+        Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
+        Event::Start(Tag::Link { link_type, dest_url, title, id }) if !is_page(&dest_url) => {
+            Event::Start(Tag::Link { link_type, dest_url: format!("#{dest_url}").into(), title, id })
+        }
+        Event::Start(Tag::Image { link_type, title, id, .. }) => {
+            Event::Start(Tag::Image { link_type, dest_url: "".into(), title, id })
+        }
+        event => event,
+    });
+    pulldown_cmark::html::push_html(&mut body, events);
     PAGE.trim_end().replacen(BODY, &body, 1)
+}
+
+/// True of a link that a browser follows to a page, or within this one.
+fn is_page(address: &str) -> bool {
+    let scheme = address.split(['/', '?', '#']).next().unwrap_or_default();
+    !scheme.contains(':') || address.starts_with("https:") || address.starts_with("http:")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_stranger_puts_no_script_into_the_page() {
+        assert!(is_page("https://example.org") && is_page("#vadd") && is_page("docs/a.md#x:y"));
+        for address in ["javascript:alert(1)", "data:text/html,x", "JavaScript:x", "vbscript:x", " javascript:x"] {
+            assert!(!is_page(address), "{address}");
+        }
+    }
 
     #[test]
     fn every_row_and_class_is_in_the_manual() {

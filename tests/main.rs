@@ -8,6 +8,7 @@ mod cases;
 mod cli;
 mod contract;
 mod extension;
+mod faults;
 mod laws;
 mod profiles;
 mod readme;

@@ -18,5 +18,5 @@ pub use kernel::{KernelArguments, plain};
 pub use machine::{MachineArguments, engine, layout};
 pub use numbers::NumberArguments;
 pub use tree::TreeArguments;
-pub use value::{Rectangle, Size, numbered, point, rectangle, setting, size, whole};
+pub use value::{Rectangle, Size, numbered, point, positive, rectangle, setting, size, ungrouped, whole};
 pub use view::{CameraKind, ViewArguments};

@@ -89,12 +89,40 @@ pub fn setting<T: FromStr<Err: std::fmt::Display>>(text: &str) -> Result<(String
     Ok((name.to_owned(), value.parse().map_err(|error| format!("`{value}`: {error}"))?))
 }
 
-/// A whole number, decimal or with `0x`, `0o`, `0b`, with a sign, `_` between digits.
+/// Digits without what groups them: `_` between digits, and commas as results print them, such as `100,000,000`.
+pub fn ungrouped(text: &str) -> String {
+    let plain = text.trim().replace('_', "");
+    let mut groups = plain.split(',');
+    let is_digits = |group: &str| group.bytes().all(|digit| digit.is_ascii_digit());
+    let first = groups.next().unwrap_or_default().trim_start_matches(['-', '+']);
+    let is_grouped = (1..=3).contains(&first.len()) && is_digits(first);
+    match is_grouped && groups.all(|group| group.len() == 3 && is_digits(group)) {
+        true => plain.replace(',', ""),
+        false => plain,
+    }
+}
+
+/// A whole number of at least 1, as [`numbered`] reads it.
+///
+/// # Errors
+/// Anything else.
+pub fn positive(text: &str) -> Result<u64, String> {
+    match ungrouped(text).parse::<u64>() {
+        Ok(number) if number > 0 => Ok(number),
+        Ok(_) => Err("0 is not in 1..".to_owned()),
+        Err(_) => match numbered(text)? {
+            number if number > 0 => Ok(number as u64),
+            number => Err(format!("{number} is not in 1..")),
+        },
+    }
+}
+
+/// A whole number, decimal or with `0x`, `0o`, `0b`, with a sign, `_` between digits or commas between thousands.
 ///
 /// # Errors
 /// Anything else, and numbers beyond 64 bits.
 pub fn numbered(text: &str) -> Result<i64, String> {
-    let plain = text.trim().replace('_', "");
+    let plain = ungrouped(text);
     let (sign, digits) = match plain.strip_prefix('-') {
         Some(digits) => ("-", digits),
         None => ("", plain.strip_prefix('+').unwrap_or(&plain)),
@@ -145,6 +173,11 @@ mod tests {
         for (text, value) in [("12", 12), ("-0x10", -16), ("0b101", 5), ("0o17", 15), ("1_000", 1000), ("+3", 3)] {
             assert_eq!(numbered(text), Ok(value), "{text}");
         }
+        assert_eq!((numbered("100,000,000"), numbered("-1,000"), numbered("7")), (Ok(100_000_000), Ok(-1000), Ok(7)));
+        assert_eq!((positive("1,000"), positive("1_000"), positive("0x10")), (Ok(1000), Ok(1000), Ok(16)));
+        assert!(
+            ["0", "-1", "1,00", "1000,000", ",100", "1,,000", "1.5", ""].iter().all(|text| positive(text).is_err())
+        );
         assert_eq!((numbered("-9223372036854775808"), numbered("9223372036854775807")), (Ok(i64::MIN), Ok(i64::MAX)));
         for text in ["", "-", "0x", "0x-1", "1.5", "9223372036854775808", "abc", "--1"] {
             assert!(numbered(text).is_err(), "{text}");

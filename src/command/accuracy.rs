@@ -178,12 +178,10 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
         bar.finish_and_clear();
     }
     accuracy::rank(&mut measured);
-    if let Some(path) = &arguments.csv {
-        files::write(path, csv(&measured).as_bytes())?;
-    }
-    if let Some(path) = &arguments.svg {
-        files::write(path, accuracy::svg(&measured).as_bytes())?;
-    }
+    let mut files = Vec::new();
+    files.extend(arguments.csv.as_ref().map(|path| (path, csv(&measured))));
+    files.extend(arguments.svg.as_ref().map(|path| (path, accuracy::svg(&measured))));
+    files::write_all(&files)?;
     let (width, height) = arguments.size;
     let results = Results { schema: SCHEMA, width, height, shift: SHIFT, variants: measured, refused };
     terminal.print(&if arguments.json { result::json(&results) } else { text(&results) })?;

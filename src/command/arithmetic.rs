@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use conformance::{Outcome, Vector};
+use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -114,6 +115,10 @@ pub(super) fn execute(arguments: &ArithmeticArguments, terminal: &mut Terminal) 
 fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let source = files::source(&arguments.file)?;
     let (vectors, report) = conformance::parse(&source);
+    if vectors.is_empty() && !report.has_errors() {
+        let message = Diagnostic::error(format!("{} has no vectors", source.name));
+        return Err(message.hint("`lancer arithmetic check --help` shows their form").into());
+    }
     let outcomes = vectors.iter().map(|vector| (vector, vector.outcome()));
     let wrong: Vec<_> = outcomes.filter(|(vector, outcome)| !vector.expects(outcome)).collect();
     let checked = Checked {
@@ -123,6 +128,10 @@ fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Resul
         mismatches: wrong.len(),
         listed: wrong.iter().take(arguments.most).map(|(vector, outcome)| mismatch(vector, outcome)).collect(),
     };
+    // A file of mistakes is not one on which all agree; what differs is shown beside them.
+    if report.has_errors() && checked.mismatches == 0 {
+        return Err(report.into());
+    }
     terminal.print(&if arguments.json { result::json(&checked) } else { text(&checked) })?;
     match (report.has_errors(), checked.mismatches) {
         (true, _) => Err(report.into()),

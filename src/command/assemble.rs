@@ -23,7 +23,7 @@ Examples:
   lancer assemble triangle.s -D WIDTH=320 --format dir=30 -I kernels";
 
 /// In the place of a file's name, standard output.
-const PRINTED: &str = "-";
+const PRINTED: &str = files::STANDARD;
 
 /// Assembles a program and shows all errors of it in one run.
 #[derive(Args, Clone, Debug)]
@@ -77,24 +77,23 @@ impl SourceArguments {
     }
 }
 
-/// Assembles a file and shows its warnings.
+/// Assembles a source and shows its warnings.
 pub(super) fn assembled(
-    file: &Path,
+    source: &Arc<Source>,
     arguments: &SourceArguments,
     isa: &Isa,
     terminal: &Terminal,
 ) -> Result<Program, Failure> {
-    let assembled = attempted(file, arguments, isa)?.finish()?;
+    let assembled = attempted(source, arguments, isa).finish()?;
     terminal.show(&assembled.warnings);
     Ok(assembled.program)
 }
 
-/// Assembles a file as far as that is possible.
-fn attempted(file: &Path, arguments: &SourceArguments, isa: &Isa) -> Result<Attempt, Report> {
-    let source = files::source(file)?;
+/// Assembles a source as far as that is possible.
+fn attempted(source: &Arc<Source>, arguments: &SourceArguments, isa: &Isa) -> Attempt {
     let include = |wanted: &str, from: &str| included(wanted, from, &arguments.folders);
     let (defines, formats) = (arguments.defines.clone(), arguments.formats.clone());
-    Ok(asm::attempt(&source, isa, &asm::Options { include: &include, defines, formats }))
+    asm::attempt(source, isa, &asm::Options { include: &include, defines, formats })
 }
 
 /// The file that `.include` means: beside the including one, else in the folders in their order.
@@ -121,44 +120,57 @@ pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) ->
         files::check_target(output)?;
     }
     let isa = arguments.extensions.isa()?;
-    let attempt = attempted(&arguments.file, &arguments.source, &isa)?;
+    let attempt = attempted(&files::source(&arguments.file)?, &arguments.source, &isa);
     // Included files are known only now.
     files::check_spared(all, attempt.program.sources.iter().map(|source| &source.name)).map_err(Failure::usage)?;
     // The listing shows errors in their places, so it is written whatever they are.
+    let mut results = ResultFiles::default();
     if let Some(path) = &arguments.list {
-        write_or_print(path, &asm::listing(&attempt), terminal)?;
+        results.add(path, asm::listing(&attempt));
     }
-    let assembled = attempt.finish()?;
+    let assembled = match attempt.finish() {
+        Ok(assembled) => assembled,
+        // Errors are wanted in the listing most of all.
+        Err(report) => {
+            results.write(terminal)?;
+            return Err(report.into());
+        }
+    };
     terminal.show(&assembled.warnings);
     if let Some(path) = &arguments.map {
         let gap = if arguments.list.as_deref() == Some(Path::new(PRINTED)) { "\n" } else { "" };
         let text = asm::symbol_map(&assembled);
-        write_or_print(path, &if path == Path::new(PRINTED) { gap.to_owned() + &text } else { text }, terminal)?;
+        results.add(path, if path == Path::new(PRINTED) { gap.to_owned() + &text } else { text });
     }
     let program = &assembled.program;
-    write_program(arguments, program, terminal)?;
+    add_program(arguments, program, &mut results, terminal)?;
+    results.write(terminal)?;
     // Who asked for no file is told that there are no errors.
     if outputs.iter().all(|output| output.is_none()) {
         let words = count(program.words.len() as u64, "word", "words");
         let data = count(program.buffer.len() as u64, "octet", "octets");
-        terminal.print(&format!("{}: {words}, {data} of data\n", arguments.file.display()))?;
+        terminal.print(&format!("{}: {words}, {data} of data\n", files::shown(&arguments.file)))?;
     }
     Ok(Exit::Done)
 }
 
-/// Writes the program and its data where they are asked for.
-fn write_program(arguments: &AssembleArguments, program: &Program, terminal: &Terminal) -> Result<(), Failure> {
-    let mut results = Vec::new();
+/// Adds the program and its data where they are asked for.
+fn add_program(
+    arguments: &AssembleArguments,
+    program: &Program,
+    results: &mut ResultFiles,
+    terminal: &Terminal,
+) -> Result<(), Failure> {
     if let Some(path) = &arguments.data {
         let is_text = ProgramFile::of(path) == Ok(ProgramFile::Hexadecimal);
-        results.push((
-            path,
+        results.files.push((
+            path.clone(),
             if is_text { asm::hex::octets(&program.buffer).into_bytes() } else { program.buffer.clone() },
         ));
     }
     if let Some(path) = &arguments.output {
         let format = ProgramFile::of(path).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
-        results.push((path, format.encode(program)));
+        results.files.push((path.clone(), format.encode(program)));
         if format != ProgramFile::Object && arguments.data.is_none() && !program.buffer.is_empty() {
             let data = count(program.buffer.len() as u64, "octet", "octets");
             let message = format!("{} holds the words alone; the program has {data} of data", path.display());
@@ -166,12 +178,26 @@ fn write_program(arguments: &AssembleArguments, program: &Program, terminal: &Te
             terminal.show(&Report::from(Diagnostic::warning(message).hint(hint)));
         }
     }
-    Ok(files::write_all(&results)?)
+    Ok(())
 }
 
-fn write_or_print(path: &Path, text: &str, terminal: &mut Terminal) -> Result<(), Failure> {
-    match path == Path::new(PRINTED) {
-        true => terminal.print(text),
-        false => Ok(files::write(path, text.as_bytes())?),
+/// ResultFiles on their way to files, which appear together, and to standard output.
+#[derive(Default)]
+struct ResultFiles {
+    files: Vec<(PathBuf, Vec<u8>)>,
+    printed: String,
+}
+
+impl ResultFiles {
+    fn add(&mut self, path: &Path, text: String) {
+        match path == Path::new(PRINTED) {
+            true => self.printed += &text,
+            false => self.files.push((path.to_owned(), text.into_bytes())),
+        }
+    }
+
+    fn write(self, terminal: &mut Terminal) -> Result<(), Failure> {
+        files::write_all(&self.files)?;
+        terminal.print(&self.printed)
     }
 }

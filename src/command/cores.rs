@@ -122,12 +122,12 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         true => annex(arguments, terminal)?,
         false => picture(arguments, terminal)?,
     };
-    if let Some(path) = &arguments.csv {
-        files::write(path, cores::csv(&scaling).as_bytes())?;
-    }
+    let mut files = Vec::new();
+    files.extend(arguments.csv.as_ref().map(|path| (path, cores::csv(&scaling))));
     if let Some(path) = &arguments.svg {
-        files::write(path, cores::svg(&scaling)?.as_bytes())?;
+        files.push((path, cores::svg(&scaling)?));
     }
+    files::write_all(&files)?;
     terminal.print(&if arguments.json { result::json(&scaling) } else { cores::text(&scaling) })?;
     Ok(Exit::Done)
 }

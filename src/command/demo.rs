@@ -6,7 +6,7 @@ use std::path::Path;
 use messages::Diagnostic;
 use scenes::generate;
 
-use super::render::{draw, write_maps};
+use super::render::{draw, maps};
 use crate::arguments::Size;
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
@@ -51,8 +51,9 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     let result = Render::new(&job, &drawing);
     // Write the picture and its maps.
     let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));
-    files::write(&paths[0], &Format::Png.encode(&drawing.picture))?;
-    write_maps(&drawing, Some(&paths[1]), Some(&paths[2]))?;
+    let mut files = maps(&drawing, Some(&paths[1]), Some(&paths[2]));
+    files.push((&paths[0], Format::Png.encode(&drawing.picture)));
+    files::write_all(&files)?;
     let [picture, heat, error] = paths.map(|path| path.display().to_string());
     let pictures = format!(
         "{picture:<22}  the picture\n\

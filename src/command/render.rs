@@ -87,10 +87,9 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let mut result = Render::new(&job, &drawing);
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
     let [output, heat, error] = targets;
-    write_maps(&drawing, heat, error)?;
-    if let Some(output) = output {
-        files::write(output, &format(output).encode(&drawing.picture))?;
-    }
+    let mut files = maps(&drawing, heat, error);
+    files.extend(output.map(|output| (output, format(output).encode(&drawing.picture))));
+    files::write_all(&files)?;
     match arguments.json {
         true => terminal.print(&result.json())?,
         false => terminal.print(&text(&result, &drawing))?,
@@ -110,16 +109,13 @@ pub(super) fn draw(job: &Job, comparison: Comparison, terminal: &Terminal) -> Re
     drawing
 }
 
-/// Writes the maps that are asked for.
-pub(super) fn write_maps(drawing: &Drawing, heat: Option<&Path>, error: Option<&Path>) -> Result<(), Failure> {
+/// The maps that are asked for, as the octets of their files.
+pub(super) fn maps<'p>(drawing: &Drawing, heat: Option<&'p Path>, error: Option<&'p Path>) -> Vec<(&'p Path, Vec<u8>)> {
     let size = drawing.picture.size;
-    if let Some(path) = heat {
-        files::write(path, &format(path).encode_pixels(&map::heat(size, &drawing.operations())))?;
-    }
-    if let Some((path, differences)) = error.zip(drawing.differences()) {
-        files::write(path, &format(path).encode_pixels(&map::error(size, &differences)))?;
-    }
-    Ok(())
+    let heat = heat.map(|path| (path, format(path).encode_pixels(&map::heat(size, &drawing.operations()))));
+    let error = error.zip(drawing.differences());
+    let error = error.map(|(path, differences)| (path, format(path).encode_pixels(&map::error(size, &differences))));
+    heat.into_iter().chain(error).collect()
 }
 
 fn format(path: &Path) -> Format {

@@ -11,10 +11,11 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
 
 use super::assemble::{self, SourceArguments};
-use super::run_arguments::{Dump, RegisterValue, memory_file};
+use super::run_arguments::{Dump, RegisterValue, memory_file, memory_size};
 use super::run_result::RunResult;
 use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
+use crate::files::program::Loaded;
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -51,7 +52,7 @@ pub struct RunArguments {
     #[arg(long = "mem", value_name = "ADDRESS=FILE", value_parser = memory_file)]
     files: Vec<(u32, PathBuf)>,
     /// Octets of global memory; files that reach beyond make it longer.
-    #[arg(long, value_name = "OCTETS", value_parser = clap::value_parser!(u32).range(0..=1 << 30), default_value = "65536")]
+    #[arg(long, value_name = "OCTETS", value_parser = memory_size, default_value = "65536")]
     memory_size: u32,
     /// Shows all registers (regs), octets of global memory (ADDRESS:OCTETS) or of the local buffer
     /// (buffer:ADDRESS:OCTETS) at the end; may be repeated.
@@ -61,7 +62,7 @@ pub struct RunArguments {
     #[arg(long)]
     flags: bool,
     /// Instructions that the program may take [default: the machine's, 100,000,000].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = arguments::positive)]
     max_steps: Option<u64>,
     /// Machine: a preset's name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
@@ -118,8 +119,11 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
 /// The program: assembled now, or some time before.
 fn program(arguments: &RunArguments, isa: &Isa, terminal: &Terminal) -> Result<Program, Failure> {
     let RunArguments { file, source, .. } = arguments;
-    let Some(program) = files::program::load_any(file)? else {
-        return assemble::assembled(file, source, isa, terminal);
+    let program = match files::program::load_any(file)? {
+        Loaded::Program(program) => program,
+        Loaded::Other(octets) => {
+            return assemble::assembled(&files::source_of(file, octets)?, source, isa, terminal);
+        }
     };
     if source.has_options() {
         let message = format!("{} is assembled already: -D, --format and -I come too late", file.display());

@@ -45,10 +45,20 @@ impl FromStr for RegisterValue {
                 };
                 Ok(RegisterValue::Vector(number, [word(x)?, word(y)?, word(z)?]))
             }
-            Some((_, number)) => Ok(RegisterValue::Wide(number, numbered(value)?)),
+            Some((_, number)) => Ok(RegisterValue::Wide(number, wide(value)?)),
             None => Err(format!("`{name}` is no register: there are s1 to s31, v0 to v31 and w0 to w7")),
         }
     }
+}
+
+/// A number of 64 bits; in hexadecimal and the other bases without a sign it may use all of them, as `run` prints it.
+fn wide(text: &str) -> Result<i64, String> {
+    let plain = text.trim().replace('_', "").to_ascii_lowercase();
+    let bits = [("0x", 16), ("0o", 8), ("0b", 2)].into_iter().find_map(|(prefix, radix)| {
+        let digits = plain.strip_prefix(prefix).filter(|digits| !digits.starts_with('+'))?;
+        u64::from_str_radix(digits, radix).ok()
+    });
+    bits.map_or_else(|| numbered(text), |bits| Ok(bits as i64))
 }
 
 /// A word of 32 bits, signed or not.
@@ -64,6 +74,16 @@ fn word(text: &str) -> Result<i32, String> {
 fn address(text: &str) -> Result<u32, String> {
     let value = numbered(text)?;
     u32::try_from(value).map_err(|_| format!("{value} is no address: 0 to 2^32 - 1"))
+}
+
+/// Octets of global memory.
+///
+/// # Errors
+/// Anything but a whole number of 0 to 2^30.
+pub fn memory_size(text: &str) -> Result<u32, String> {
+    let value = numbered(text)?;
+    let size = u32::try_from(value).ok().filter(|&size| size <= 1 << 30);
+    size.ok_or_else(|| format!("{value} is not in 0..={}", 1 << 30))
 }
 
 /// `ADDRESS=FILE`.
@@ -120,6 +140,9 @@ mod tests {
             ("s31=0xffffffff", RegisterValue::Scalar(31, -1)),
             ("v0=-1:0x10:3", RegisterValue::Vector(0, [-1, 16, 3])),
             ("w7=-9223372036854775808", RegisterValue::Wide(7, i64::MIN)),
+            ("w0=0xffff_ffff_ffff_fff9", RegisterValue::Wide(0, -7)),
+            ("w1=0x8000000000000000", RegisterValue::Wide(1, i64::MIN)),
+            ("w2=-0x10", RegisterValue::Wide(2, -16)),
         ] {
             assert_eq!(text.parse(), Ok(value));
         }

@@ -199,7 +199,7 @@ fn try_case(
         bar.set_position(to);
         if let Some(path) = file {
             state.cases.insert(case.name.to_owned(), done.clone());
-            files::write(path, result::json(state).as_bytes())?;
+            files::write_through(path, result::json(state).as_bytes())?;
         }
     }
     bar.finish_and_clear();

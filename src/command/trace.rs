@@ -9,7 +9,7 @@ use emu::machine::{Config, Options, RunOutcome};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 
-use crate::arguments::JobArguments;
+use crate::arguments::{JobArguments, ungrouped};
 use crate::failure::{Exit, Failure};
 use crate::job::result_name;
 use crate::load::{ANNEX, Load};
@@ -58,7 +58,7 @@ pub struct TraceArguments {
 
 fn clocks(text: &str) -> Result<Range<u64>, String> {
     let clock = |text: &str| {
-        let plain = text.trim().replace('_', "");
+        let plain = ungrouped(text);
         plain.parse::<u64>().map_err(|_| format!("`{}` is no clock", text.trim()))
     };
     let (start, end) = text.split_once("..").ok_or("two clocks are expected, such as 1000..2000")?;
@@ -100,12 +100,12 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     let scene = Scene::new(&name, &load, config.clock_hz, &frame);
     let scene = scene.ok_or_else(|| Diagnostic::error("the machine has watched nothing"))?;
     let [fst, perfetto_target] = &targets;
+    let mut files = Vec::new();
     if let Some(path) = fst {
-        files::write(path, &wave(&scene)?)?;
+        files.push((path, wave(&scene)?));
     }
-    if let Some(path) = perfetto_target {
-        files::write(path, perfetto(&scene).as_bytes())?;
-    }
+    files.extend(perfetto_target.as_ref().map(|path| (path, perfetto(&scene).into_bytes())));
+    files::write_all(&files)?;
     terminal.print(&text(&scene, &frame, paths()))?;
     Ok(Exit::Done)
 }

@@ -1,27 +1,44 @@
-//! Files that commands read and write. A result is written beside its place and then renamed, so that no file is ever
-//! half-written.
+//! Files that commands read and write: what is refused before anything is read or written. Writing itself is in `set`.
 
 pub mod map;
 pub mod picture;
 pub mod program;
+mod set;
 
-use std::fs::{self, Permissions};
-use std::io::{self, ErrorKind, Read, Write};
+use std::fs;
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use messages::{Diagnostic, Report, Source};
-use tempfile::{Builder, NamedTempFile};
+use messages::{Diagnostic, Report, Source, refuse_packed, refuse_utf16};
+
+pub use self::set::{write, write_all, write_through};
 
 /// Octets of the largest file that is read: sources, programs, machines, memory.
 const LARGEST: u64 = 64 << 20;
 
-/// All octets of a file.
+/// In the place of a file's name, standard input where it is read and standard output where it is written.
+pub const STANDARD: &str = "-";
+
+/// Name of a file in messages.
+pub fn shown(path: &Path) -> String {
+    if path == Path::new(STANDARD) { "<standard input>".to_owned() } else { path.display().to_string() }
+}
+
+/// All octets of a file, or of standard input where the name is [`STANDARD`].
 ///
 /// # Errors
-/// A file that is missing, too large or cannot be read.
+/// A file that is missing, too large, compressed, or cannot be read.
 pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
-    let shown = path.display();
+    read_up_to(LARGEST, path)
+}
+
+/// All octets of a file that may have no more than `largest`.
+///
+/// # Errors
+/// See [`read`].
+pub fn read_up_to(largest: u64, path: &Path) -> Result<Vec<u8>, Report> {
+    let shown = shown(path);
     let refuse = |error: io::Error| match error.kind() {
         ErrorKind::NotFound => Diagnostic::error(format!("there is no file {shown}")),
         ErrorKind::PermissionDenied => Diagnostic::error(format!("{shown} must not be read by this user")),
@@ -30,16 +47,22 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
     if path.is_dir() {
         return Err(Diagnostic::error(format!("{shown} is a folder, not a file")).into());
     }
-    let too_large = || Diagnostic::error(format!("{shown} is larger than {} MiB", LARGEST >> 20));
-    let file = fs::File::open(path).map_err(refuse)?;
-    let length = file.metadata().map_or(0, |metadata| metadata.len());
-    if length > LARGEST {
+    let size = if largest < 1 << 20 { format!("{} KiB", largest >> 10) } else { format!("{} MiB", largest >> 20) };
+    let too_large = || Diagnostic::error(format!("{shown} is larger than {size}"));
+    let (input, length): (Box<dyn Read>, u64) = if path == Path::new(STANDARD) {
+        (Box::new(io::stdin().lock()), 0)
+    } else {
+        let file = fs::File::open(path).map_err(refuse)?;
+        let length = file.metadata().map_or(0, |metadata| metadata.len());
+        (Box::new(file), length)
+    };
+    if length > largest {
         return Err(too_large().into());
     }
     let mut octets = Vec::with_capacity(length as usize);
     // Files that have no length, such as pipes, and those that grow.
-    file.take(LARGEST + 1).read_to_end(&mut octets).map_err(refuse)?;
-    if octets.len() as u64 > LARGEST { Err(too_large().into()) } else { Ok(octets) }
+    input.take(largest + 1).read_to_end(&mut octets).map_err(refuse)?;
+    if octets.len() as u64 > largest { Err(too_large().into()) } else { Ok(octets) }
 }
 
 /// The text of a file; octets that are not UTF-8 are replaced.
@@ -47,7 +70,27 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
 /// # Errors
 /// See [`read`].
 pub fn source(path: &Path) -> Result<Arc<Source>, Report> {
-    Ok(Source::new(path.display().to_string(), text(read(path)?)))
+    source_of(path, read(path)?)
+}
+
+/// The text of a file that has been read; a Ctrl-Z at its end is dropped, and what is not UTF-8 replaced.
+///
+/// # Errors
+/// Compressed files and UTF-16, which are no text here.
+pub fn source_of(path: &Path, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
+    let name = shown(path);
+    refuse_packed(&octets, &name)?;
+    refuse_utf16(&octets, &name)?;
+    let mut text = text(octets);
+    // Lines of old systems end in a carriage return alone; places stay where they are.
+    if text.contains('\r') && !text.contains('\n') {
+        text = text.replace('\r', "\n");
+    }
+    let end = text.trim_end_matches(['\u{1a}', '\0']).len();
+    if text[end..].contains('\u{1a}') {
+        text.truncate(end);
+    }
+    Ok(Source::new(name, text))
 }
 
 /// Octets as text; those that are not UTF-8 are replaced.
@@ -71,73 +114,6 @@ pub fn check_target(path: &Path) -> Result<(), Report> {
         return Err(message.hint(format!("make it first: mkdir -p {}", folder.display())).into());
     }
     Ok(())
-}
-
-/// Writes a file as a whole: beside its place first, then renamed. What is no regular file, such as a pipe, is written
-/// in place.
-///
-/// # Errors
-/// What [`check_target`] refuses, and a disk or folder that cannot be written.
-pub fn write(path: &Path, octets: &[u8]) -> Result<(), Report> {
-    write_all(&[(path, octets)])
-}
-
-/// Writes files that belong together: the first one takes its place when the last one has been written as a whole.
-///
-/// # Errors
-/// See [`write()`].
-pub fn write_all(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)]) -> Result<(), Report> {
-    let mut ready = Vec::new();
-    for (path, octets) in files {
-        let path = path.as_ref();
-        check_target(path)?;
-        // A link keeps leading to the file.
-        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let octets = octets.as_ref();
-        let written = match fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file()) {
-            true => fs::write(&path, octets).map(|()| None),
-            false => written_beside(&path, octets).map(Some),
-        };
-        ready.push((written.map_err(|error| refusal(&path, &error))?, path));
-    }
-    for (file, path) in ready {
-        if let Some(file) = file {
-            file.persist(&path).map_err(|error| refusal(&path, &error.error))?;
-        }
-    }
-    Ok(())
-}
-
-fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
-    let reason = match error.kind() {
-        ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
-        _ => error.to_string(),
-    };
-    Diagnostic::error(format!("{} cannot be written: {reason}", path.display()))
-}
-
-fn written_beside(path: &Path, octets: &[u8]) -> io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(".lancer-");
-    let permissions = fresh_permissions();
-    if let Some(permissions) = &permissions {
-        builder.permissions(permissions.clone());
-    }
-    let mut file = builder.tempfile_in(folder_of(path))?;
-    file.write_all(octets)?;
-    Ok(file)
-}
-
-/// Permissions of a new file before the user's mask; temporary files are private otherwise.
-#[cfg(unix)]
-fn fresh_permissions() -> Option<Permissions> {
-    use std::os::unix::fs::PermissionsExt;
-    Some(Permissions::from_mode(0o666))
-}
-
-#[cfg(not(unix))]
-fn fresh_permissions() -> Option<Permissions> {
-    None
 }
 
 fn folder_of(path: &Path) -> PathBuf {
@@ -191,47 +167,6 @@ pub fn check_spared<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_file_is_replaced_as_a_whole_and_nothing_stays_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.txt");
-        write(&path, b"first").unwrap();
-        write(&path, b"second").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"second");
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn files_that_belong_together_come_together() {
-        let folder = tempfile::tempdir().unwrap();
-        let (good, bad) = (folder.path().join("a.mtl"), folder.path().join("no/such/a.obj"));
-        assert!(write_all(&[(&good, b"1"), (&bad, b"2")]).is_err());
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-        write_all(&[(&good, b"1"), (&folder.path().join("a.obj"), b"2")]).unwrap();
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
-    }
-
-    #[test]
-    fn a_missing_folder_is_named_with_what_to_do() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("no/such/a.txt");
-        let message = write(&path, b"").unwrap_err().render(false);
-        assert!(message.contains("there is no folder") && message.contains("mkdir -p"), "{message}");
-        assert!(write(folder.path(), b"").unwrap_err().render(false).contains("is a folder"));
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_link_keeps_leading_to_its_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
-        fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink(&file, &link).unwrap();
-        write(&link, b"new").unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read(&file).unwrap(), b"new");
-    }
 
     #[test]
     fn two_results_do_not_share_a_file() {

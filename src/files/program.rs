@@ -7,9 +7,9 @@ use std::sync::Arc;
 use asm::limits::WORDS;
 use asm::object;
 use isa::Program;
-use messages::{Diagnostic, Place, Report, Source};
+use messages::{Diagnostic, Place, Report, Source, refuse_packed};
 
-use super::{read, text};
+use super::read;
 use crate::numeral::grouped;
 
 /// A file format for programs.
@@ -64,8 +64,13 @@ impl ProgramFile {
         self.decode(path, read(path)?)
     }
 
-    fn decode(self, path: &Path, octets: Vec<u8>) -> Result<Program, Report> {
-        let shown = path.display();
+    /// The program of octets that a file holds.
+    ///
+    /// # Errors
+    /// Octets that are something else.
+    pub fn decode(self, path: &Path, octets: Vec<u8>) -> Result<Program, Report> {
+        let shown = super::shown(path);
+        refuse_packed(&octets, &shown)?;
         let words = match self {
             ProgramFile::Object => {
                 return object::read(&octets).map_err(|error| Diagnostic::error(format!("{shown}: {error}")).into());
@@ -74,7 +79,7 @@ impl ProgramFile {
                 let message = format!("{shown} has {} octets, which are no whole words", octets.len());
                 Diagnostic::error(message).hint("a word has 4 octets")
             })?,
-            ProgramFile::Hexadecimal => hexadecimal(&Source::new(shown.to_string(), text(octets)))?,
+            ProgramFile::Hexadecimal => hexadecimal(&super::source_of(path, octets)?)?,
         };
         if words.len() > WORDS {
             let message = format!("{shown} has {} words", grouped(words.len() as u64));
@@ -85,17 +90,27 @@ impl ProgramFile {
     }
 }
 
-/// The program of a file that is named or begins like one; `None` for any other, such as a source.
+/// A file that may be a program or something else.
+pub enum Loaded {
+    /// The program of a file that is named or begins like one.
+    Program(Program),
+    /// The octets of any other, such as a source.
+    Other(Vec<u8>),
+}
+
+/// Reads a file once, as what it is named, or as what it begins like.
 ///
 /// # Errors
 /// See [`ProgramFile::load`].
-pub fn load_any(path: &Path) -> Result<Option<Program>, Report> {
+pub fn load_any(path: &Path) -> Result<Loaded, Report> {
     if let Ok(format) = ProgramFile::of(path) {
-        return format.load(path).map(Some);
+        return format.load(path).map(Loaded::Program);
     }
     let octets = read(path)?;
-    let is_object = octets.starts_with(object::MAGIC);
-    is_object.then(|| ProgramFile::Object.decode(path, octets)).transpose()
+    match octets.starts_with(object::MAGIC) {
+        true => ProgramFile::Object.decode(path, octets).map(Loaded::Program),
+        false => Ok(Loaded::Other(octets)),
+    }
 }
 
 fn binary(octets: &[u8]) -> Option<Vec<u32>> {
@@ -107,6 +122,7 @@ fn binary(octets: &[u8]) -> Option<Vec<u32>> {
 fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
     let text = &source.text;
     let mut words: Vec<u32> = Vec::new();
+    let mut place = 0;
     let mut messages = Report::default();
     let mut refuse = |span: std::ops::Range<usize>, message: String, label: &str| {
         messages.0.push(Diagnostic::error(message).at(Place::new(source, span), label));
@@ -140,16 +156,20 @@ fn hexadecimal(source: &Arc<Source>) -> Result<Vec<u32>, Report> {
         let is_plain = digits.chars().all(|digit| digit.is_ascii_hexdigit());
         let goes_on = match is_plain.then(|| u32::from_str_radix(&digits, 16).ok()).flatten() {
             Some(address) if token.starts_with('@') => {
-                // Addresses only go forward, so that no word is written twice.
-                let is_possible = (words.len()..=WORDS).contains(&(address as usize));
+                // Addresses come in any order (IEEE 1364); a word that is written twice has its last value.
+                let is_possible = address as usize <= WORDS;
                 if is_possible {
-                    words.resize(address as usize, 0);
+                    place = address as usize;
                 }
                 let message = || format!("the address {address:#x} is not possible here");
-                is_possible || refuse(first..end, message(), "goes back or too far")
+                is_possible || refuse(first..end, message(), "beyond the largest program")
             }
             Some(word) => {
-                words.push(word);
+                if place >= words.len() {
+                    words.resize(place + 1, 0);
+                }
+                words[place] = word;
+                place += 1;
                 true
             }
             None => {
@@ -197,6 +217,7 @@ mod tests {
     fn text_has_comments_addresses_and_underscores() {
         assert_eq!(parsed("// a\n@2 dead_beef/* b\n*/1 2// c"), Ok(vec![0, 0, 0xdead_beef, 1, 2]));
         assert_eq!((parsed(""), parsed(" \n")), (Ok(vec![]), Ok(vec![])));
+        assert_eq!(parsed("@3 4 @0 1 2\n3 @1 5"), Ok(vec![1, 5, 3, 4]), "any order, the last value counts");
     }
 
     #[test]
@@ -204,7 +225,6 @@ mod tests {
         for (text, message) in [
             ("1\n  xyz\n", "a.hex:2:3"),
             ("123456789", "`123456789` is no word"),
-            ("1 2 @1", "not possible here"),
             ("@ffffffff", "not possible here"),
             ("/* 1", "not closed"),
             ("1 /2", "`/` is no word"),

@@ -13,6 +13,6 @@ mod programs;
 mod render;
 mod scene;
 mod schema;
-mod session;
+pub mod session;
 mod streams;
 mod trace;

@@ -8,13 +8,26 @@ use messages::{Diagnostic, Report, nearest, question, refuse_packed};
 
 use super::format::scene_extensions;
 
+/// In the place of a file's name, standard input.
+pub(super) const STANDARD: &str = "-";
+
 /// Octets of the largest file that is read.
 const LARGEST: u64 = 256 << 20;
 
-/// All octets of a file.
+/// All octets of a file, or of standard input where the path is [`STANDARD`].
 ///
 /// Errors: it is missing (with a name nearby that may be meant), a folder, too large, compressed, or cannot be read.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
+    if path == Path::new(STANDARD) {
+        let mut bytes = Vec::new();
+        let read = std::io::stdin().lock().take(LARGEST + 1).read_to_end(&mut bytes);
+        read.map_err(|error| Diagnostic::error(format!("standard input cannot be read: {error}")))?;
+        if bytes.len() as u64 > LARGEST {
+            return Err(Diagnostic::error(format!("standard input is larger than {} MiB", LARGEST >> 20)).into());
+        }
+        refuse_packed(&bytes, "standard input")?;
+        return Ok(bytes);
+    }
     let shown = path.display();
     let metadata = fs::metadata(path).map_err(|error| refusal(path, &error))?;
     if metadata.is_dir() {

@@ -57,7 +57,8 @@ pub fn load(path: &Path, mesh: Option<&Path>) -> Result<Loaded, Report> {
 /// Reads a scene as [`load`] does, and puts all files but the first on a list.
 fn load_listing(path: &Path, mesh: Option<&Path>, files: &mut Vec<PathBuf>) -> Result<Loaded, Report> {
     let bytes = file::read(path)?;
-    let name = path.file_stem().map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
+    let stem = path.file_stem().filter(|stem| *stem != file::STANDARD);
+    let name = stem.map_or_else(|| "scene".to_string(), |stem| stem.to_string_lossy().into_owned());
     if let SceneFormat::Mesh(format) = SceneFormat::of(path, &bytes)? {
         return match mesh {
             Some(mesh) => {

@@ -6,6 +6,9 @@ use crate::frame::Origin;
 use crate::limits::{SOURCES, TEXT_OCTETS};
 use crate::message::{At, Parsed, Problem};
 
+/// Times that a file may be read within itself.
+const GUARDED: usize = 1;
+
 impl Assembler<'_> {
     /// Reads another file here.
     pub(crate) fn include_file(&mut self, name: &str, at: At) -> Parsed<()> {
@@ -41,8 +44,9 @@ impl Assembler<'_> {
                 index as u16
             }
         };
-        // A file that is still being read would come again without end.
-        if self.frames.iter().any(|frame| frame.origin == Origin::File(index)) {
+        // A guard lets a file that is still being read come again once, with nothing in it; without one it comes without end.
+        let reading = self.frames.iter().filter(|frame| frame.origin == Origin::File(index)).count();
+        if reading > GUARDED {
             let message = format!("`{name}` includes itself");
             return refuse(self, explain::DEPTH, message, "it is being read already".into());
         }

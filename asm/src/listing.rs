@@ -24,6 +24,9 @@ pub(crate) struct Record {
     pub text: Option<Arc<str>>,
 }
 
+/// Words alike behind a first one that make a gap.
+const WORDS_A_GAP: usize = 8;
+
 /// Octets of data on one row.
 const OCTETS_A_ROW: usize = 8;
 
@@ -69,6 +72,13 @@ fn made(attempt: &Attempt, record: &Record) -> Vec<String> {
     match record.section {
         Section::Code => {
             let words = attempt.program.words.get(range.clone()).unwrap_or_default();
+            // A gap is one row, however long it is.
+            if let [word, rest @ ..] = words
+                && rest.len() >= WORDS_A_GAP
+                && rest.iter().all(|other| other == word)
+            {
+                return vec![format!("  {:06x}  {word:08x} x {}", range.start, words.len())];
+            }
             (range.start..).zip(words).map(|(address, word)| format!("  {address:06x}  {word:08x}")).collect()
         }
         Section::Buffer => {

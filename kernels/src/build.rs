@@ -34,6 +34,7 @@ pub struct SceneFeatures {
 impl SceneFeatures {
     /// The features of a scene.
     pub fn new(scene: &Scene, view: &View, formats: &Formats, options: &KernelOptions) -> SceneFeatures {
+        // Rounded down: a whole number exceeds a limit just when it exceeds the limit rounded down.
         let raw = |value: f64, bits: u32| (value * f64::from(bits).exp2()).floor() as i32;
         let any =
             |test: &dyn Fn(usize) -> bool| scene.triangles.iter().any(|triangle| test(triangle.material as usize));
@@ -132,6 +133,7 @@ pub fn build(
     options: &KernelOptions,
 ) -> Result<Build, Report> {
     let features = SceneFeatures::new(scene, view, &image.formats, options);
+    // The crop goes into the programs alone; the memory image is the same for all crops.
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
     let mut warnings = Report::default();
     let mut program = |is_main: bool| -> Result<Program, Report> {
@@ -139,6 +141,7 @@ pub fn build(
         warnings.0.extend(assembled.warnings.0);
         Ok(assembled.program)
     };
+    // Each is assembled by itself, so functions that both contain have addresses of their own in each.
     let (cores, main) = (program(false)?, program(true)?);
     Ok(Build { cores, main, crop, warnings })
 }
@@ -156,13 +159,17 @@ fn assemble(
     options: &KernelOptions,
     is_main: bool,
 ) -> Result<asm::Assembled, Report> {
+    // Files that keep to a team replace its members without breaking it up.
     let strangers = options.replaced.iter().filter(|(_, source)| !keeps_to_team(source, options.profile));
     let replaced: Vec<Function> = strangers.map(|&(function, _)| function).collect();
     let walk = options.profile.walk(&replaced);
+    // The prelude comes first, because files test its names in `.if`.
     let mut files: Vec<Arc<Source>> = vec![Source::new("<scene>", prelude::text(image, features, crop, walk, is_main))];
     files.extend(prelude::included(image.layout));
     for function in Function::of_program(is_main, features) {
+        // The last file for a function counts, as the last of options that contradict each other does.
         let own = options.replaced.iter().rev().find(|(other, _)| *other == function).map(|(_, source)| source.clone());
+        // No file means that the file of another function does this one's work.
         let ours = || {
             let (path, text) = options.profile.file(function, &replaced)?;
             Some(Source::new(format!("kernels/asm/{path}"), text))

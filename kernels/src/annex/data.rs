@@ -115,6 +115,7 @@ pub(super) struct Data {
 impl Data {
     /// The file as it is part of the program.
     pub fn read() -> Data {
+        // Part of the program's text, so a mistake in it is one of ours and not of a user.
         let file: AnnexFile = toml::from_str(include_str!("../../annex.toml")).expect("a test reads the file");
         Data {
             rows: file.row.into_iter().map(row).collect(),
@@ -134,6 +135,7 @@ fn row(mut raw: RawRow) -> Row {
     for (name, count) in &raw.printed {
         printed[class(name)] = *count;
     }
+    // A term is looked up by the row's name in messages, so the terms are taken out before the row is.
     let terms = std::mem::take(&mut raw.term).into_iter().map(|term| self::term(&raw.id, term)).collect();
     let RawRow { id, label, source, driver, region, search, .. } = raw;
     Row { id, label, source, printed, driver, region, search, terms }
@@ -142,6 +144,7 @@ fn row(mut raw: RawRow) -> Row {
 fn term(row: &str, raw: RawTerm) -> Term {
     let RawTerm { at, text, n, reason } = raw;
     let (_, source) = world::file(&at).unwrap_or_else(|| panic!("annex.toml, {row}: there is no file `{at}`"));
+    // One line exactly: a piece that stands in two could silently name the wrong one after a change.
     let mut lines = (1..).zip(source.lines()).filter(|(_, line)| line.contains(&text)).map(|(number, _)| number);
     let number: u32 = lines.next().unwrap_or_else(|| panic!("annex.toml, {row}: no line of {at} has `{text}`"));
     assert!(lines.next().is_none(), "annex.toml, {row}: several lines of {at} have `{text}`");

@@ -21,6 +21,7 @@ macro_rules! file {
 /// What the assembler finds; our own programs have no errors.
 pub fn programs(pixels: u32, isa: &Isa) -> Result<(Program, Program), Report> {
     let constant = Source::new("<pixels>", format!(".equ PIXELS, {pixels}\n"));
+    // The core's program does not know how many pixels there are: it serves one and starts again.
     let core = prelude::assemble("<core>", &[file!("annex/load.s")], isa)?;
     let main = prelude::assemble("<main>", &[constant, file!("annex/feed.s")], isa)?;
     Ok((core.program, main.program))

@@ -49,6 +49,7 @@ pub struct Term {
 impl Row {
     /// The classes that the row's annex prints: Annex II leaves accesses to memory out.
     pub fn classes(&self) -> impl Iterator<Item = Class> {
+        // A row that prints no access to memory belongs to the annex that counts none.
         let has_memory = self.printed[Class::Mem] != 0;
         Class::ALL.iter().copied().filter(move |class| class.is_elementary() || has_memory && *class == Class::Mem)
     }

@@ -39,6 +39,7 @@ const EVERYTHING: SceneFeatures =
 
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {
+    // A driver takes the place of `pixel`, and calls the first packet from a core, which only the main processor does else.
     let core = Function::of_program(false, &EVERYTHING).filter(|&function| function != Function::Pixel);
     core.chain([Function::FirstPacket]).filter_map(|function| KernelSet::Report.file(function, &[]))
 }
@@ -82,6 +83,7 @@ impl Row {
         let options = KernelOptions { profile: KernelSet::Report, ..KernelOptions::default() };
         let features = SceneFeatures::new(&scene, &view, &image.formats, &options);
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
+        // The prelude of a core with the whole scene, then the number that is tried: a driver knows it as a constant.
         let mut text = prelude::text(&image, &features, &crop, KernelSet::Report.walk(&[]), false);
         if let Some(search) = &self.search {
             text += &format!(".equ {}, {number}\n", search.constant);
@@ -93,6 +95,7 @@ impl Row {
             files.push(Source::new(format!("kernels/asm/{path}"), text));
         }
         let program = prelude::assemble("<annex>", &files, isa)?.program;
+        // Drivers build trees and packets of their own behind the scene.
         image.bytes.resize(MEMORY, 0);
         Ok((program, image.bytes))
     }

@@ -132,6 +132,8 @@ impl KernelSet {
     /// Way in which the set's walk through the tree remembers far sides, when the user has replaced some functions.
     pub fn walk(self, replaced: &[Function]) -> Walk {
         let Answers { walk, walk_alone, .. } = *self.answers();
+        // Without replacements the set has what it was made for. With some, its own walk stays only if the whole team does:
+        // half of a team would leave notes on the way down that the other half does not read.
         if replaced.is_empty() || self.team(Function::Descend, replaced).is_some() { walk } else { walk_alone }
     }
 
@@ -142,6 +144,7 @@ impl KernelSet {
 
     /// The team that serves a function, when it is complete.
     fn team(self, function: Function, replaced: &[Function]) -> Option<&'static Team> {
+        // A replaced member breaks up the team, since a user's file knows nothing of the registers that the team shares.
         let is_complete = |team: &Team| !replaced.iter().any(|&other| team.has(other));
         self.answers().teams.iter().find(|team| team.has(function) && is_complete(team))
     }
@@ -160,11 +163,13 @@ impl KernelSet {
         loop {
             let mut at = 0;
             while at < set.files.len() {
+                // Constant functions can neither iterate nor compare with `==`: a loop by hand, and the numbers of the variants.
                 if set.files[at].0 as usize == function as usize {
                     return Some(set.files[at].1);
                 }
                 at += 1;
             }
+            // What a set does not have, its base has: `ray` takes `shade` from `vector`. A base has a base in turn.
             set = match set.base {
                 Some(base) => base.answers(),
                 None => return None,

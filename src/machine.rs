@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use emu::machine::Config;
+use emu::machine::arbiter::ArbiterKind;
 use emu::machine::preset::PRESETS;
 use messages::{Diagnostic, Report, did_you_mean};
 
@@ -37,7 +38,8 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     Ok((stem, config))
 }
 
-/// Comments on the keys: meaning, unit, range and source of the default; `[section]` describes what follows.
+/// Comments on the keys: meaning, unit, range and source of the default; `[section]` describes what follows, `{arbiters}` stands for all names
+/// of arbiters.
 const COMMENTS: &[(&str, &str)] = &[
     ("cores", "cores, 1 to 256, the main processor not counted (report 6.1: 4)"),
     ("clock_hz", "clock rate in hertz; it turns clocks into seconds and changes nothing else (report 6.1: 100 MHz)"),
@@ -71,10 +73,7 @@ const COMMENTS: &[(&str, &str)] = &[
         "bus.overlap",
         "whether a core goes on during its block load, up to its next transfer, message or end (report 6.1: it adds both up)",
     ),
-    (
-        "bus.arbiter",
-        "who gets the bus next: fixed-priority, round-robin, weighted, oldest-first or tdma (ours; the report has none)",
-    ),
+    ("bus.arbiter", "who gets the bus next: {arbiters} (ours; the report has none)"),
     (
         "bus.weights",
         "weighted: bursts a turn of each master, the main processor after the last core (ours: 1 where the list ends)",
@@ -96,9 +95,15 @@ pub fn named() -> String {
     format!("Preset ({}) or TOML file", names.join(", "))
 }
 
+/// Text of a comment.
+fn filled(comment: &str) -> String {
+    let [first @ .., last] = ArbiterKind::ALL.map(ArbiterKind::name);
+    comment.replace("{arbiters}", &format!("{} or {last}", first.join(", ")))
+}
+
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
 pub fn commented(name: &str, config: &Config) -> String {
-    let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| *text);
+    let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| filled(text));
     let mut text = format!("# Machine `{name}`. Keys that a file leaves out have the values of `{DEFAULT}`.\n\n");
     let mut section = String::new();
     for line in config.text().lines() {
@@ -148,7 +153,15 @@ mod tests {
         for (key, comment) in COMMENTS {
             let has_source = key.starts_with('[') || comment.contains("(ours") || comment.contains("(report");
             assert!(has_source, "{key} does not say where its default comes from");
-            assert!(text.contains(&format!("# {comment}\n")), "{key} is no key");
+            assert!(text.contains(&format!("# {}\n", filled(comment))), "{key} is no key");
+        }
+    }
+
+    #[test]
+    fn every_arbiter_is_explained() {
+        let page = include_str!("../docs/machine.md");
+        for kind in ArbiterKind::ALL {
+            assert!(page.contains(&format!("| `{}` |", kind.name())), "docs/machine.md has no row for {}", kind.name());
         }
     }
 

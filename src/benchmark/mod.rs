@@ -30,6 +30,12 @@ use crate::result::Formats;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Runner {
+    /// Code generated for the host, counted.
+    Native,
+    /// The same with the clocks of the machine.
+    NativeClocks,
+    /// The same with the totals of functions as well: all that `render` asks for.
+    NativeAll,
     /// Work items one after the other, counted by runs.
     Fast,
     /// Counted, with the clocks of the machine.
@@ -44,11 +50,23 @@ pub enum Runner {
 
 impl Runner {
     /// All, in the order of results.
-    pub const ALL: [Runner; 5] = [Runner::Fast, Runner::FastClocks, Runner::Checked, Runner::Twin, Runner::Reference];
+    pub const ALL: [Runner; 8] = [
+        Runner::Native,
+        Runner::NativeClocks,
+        Runner::NativeAll,
+        Runner::Fast,
+        Runner::FastClocks,
+        Runner::Checked,
+        Runner::Twin,
+        Runner::Reference,
+    ];
 
     /// Name in tables.
     pub const fn name(self) -> &'static str {
         match self {
+            Runner::Native => "native",
+            Runner::NativeClocks => "native, clocks",
+            Runner::NativeAll => "native, all",
             Runner::Fast => "fast",
             Runner::FastClocks => "fast, clocks",
             Runner::Checked => "checked",
@@ -65,7 +83,7 @@ pub struct BenchResult {
     pub scene: String,
     /// The kernel set.
     pub profile: &'static str,
-    /// Runner that computed it: `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
+    /// Runner that computed it: `native`, `native-clocks`, `native-all`, `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Bits of a word and fraction bits of each quantity.
@@ -110,13 +128,20 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let mut times: [Vec<f64>; Runner::ALL.len()] = Default::default();
     for _ in 0..runs {
         for (runner, times) in Runner::ALL.into_iter().zip(&mut times) {
+            let clocked = |setup: &Setup| {
+                let run = || emu::run(setup, load.memory.clone(), &mut |_| {});
+                timed(|| run().map(drop).map_err(Failure::from))
+            };
             let time = match runner {
+                Runner::Native => timed(|| count(&setup(EngineKind::Native)).map(drop))?,
+                Runner::NativeClocks => clocked(&setup(EngineKind::Native))?,
+                Runner::NativeAll => {
+                    let options = Options { engine: EngineKind::Native, has_profile: true, ..Options::default() };
+                    clocked(&load.setup(&job.machine, options))?
+                }
                 Runner::Fast => timed(|| count(&setup(EngineKind::Fast)).map(drop))?,
                 Runner::Checked => timed(|| count(&setup(EngineKind::Checked)).map(drop))?,
-                Runner::FastClocks => {
-                    let run = || emu::run(&setup(EngineKind::Fast), load.memory.clone(), &mut |_| {});
-                    timed(|| run().map(drop).map_err(Failure::from))?
-                }
+                Runner::FastClocks => clocked(&setup(EngineKind::Fast))?,
                 Runner::Twin => timed(|| twin(&image, &features, &crop, job, modes))?,
                 Runner::Reference => timed(|| {
                     (0..crop.height).into_par_iter().for_each(|row| {

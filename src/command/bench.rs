@@ -29,8 +29,8 @@ Examples:
 
 /// Measures how fast the engines compute pictures, beside native code.
 ///
-/// All take turns, and ratios are those of medians. `fast` and `checked` compute and count the cores' work,
-/// `fast, clocks` puts it on the machine's clocks as well. The native twin is the profile's functions in Rust on the same tree and the same
+/// All take turns, and ratios are those of medians. `native`, `fast` and `checked` compute and count the cores' work,
+/// `native, clocks` and `fast, clocks` put it on the machine's clocks as well, `native, all` measures functions too, as `render` does. The native twin is the profile's functions in Rust on the same tree and the same
 /// rays, native f64 the reference picture in double precision.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]

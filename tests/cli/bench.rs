@@ -7,7 +7,7 @@ fn every_runner_is_measured_on_every_scene_and_profile() {
     let session = Session::new();
     let result = session.json("bench cornell slabs --size 8x6 --profiles ray,vector --runs 1");
     let measured = result["measured"].as_array().expect("a list");
-    assert_eq!(measured.len(), 2 * 2 * 5);
+    assert_eq!(measured.len(), 2 * 2 * 8);
     for one in measured {
         let is_native = ["twin", "reference"].contains(&one["runner"].as_str().expect("a name"));
         assert!(one["nanoseconds"].as_f64().expect("a number") > 0.0 && one["rays"].as_f64().expect("a number") > 0.0);
@@ -31,8 +31,9 @@ fn the_table_and_the_chart_name_all_runners() {
     let session = Session::new();
     let text = session.succeed("bench triangle --size 4x3 --runs 1 --svg bench.svg");
     let chart = String::from_utf8(session.read("bench.svg")).expect("text");
-    for name in ["fast", "fast, clocks", "checked", "native twin", "native f64"] {
-        assert!(text.contains(&format!("| {name:>12} |")) && chart.contains(name), "{name} in\n{text}");
+    let native = ["native", "native, clocks", "native, all", "native twin", "native f64"];
+    for name in native.into_iter().chain(["fast", "fast, clocks", "checked"]) {
+        assert!(text.contains(&format!("| {name:>14} |")) && chart.contains(name), "{name} in\n{text}");
     }
     session.fail("bench nothing.dsc", 1, "nothing.dsc");
 }

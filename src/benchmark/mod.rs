@@ -32,9 +32,9 @@ use crate::result::Formats;
 pub enum Runner {
     /// Code generated for the host, counted.
     Native,
-    /// The same with the clocks of the machine.
+    /// Native code with the clocks of the machine.
     NativeClocks,
-    /// The same with the totals of functions as well: all that `render` asks for.
+    /// Native code with clocks and the totals of functions: all that `render` asks for.
     NativeAll,
     /// Work items one after the other, counted by runs.
     Fast,

@@ -5,15 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{files, members};
 
 /// Names that still stand for two types of a crate: crate and name. The list may only become shorter.
-const TWICE: [(&str, &str); 7] = [
-    ("emu", "After"),
-    ("emu", "Meeting"),
-    ("emu", "Native"),
-    ("emu", "Place"),
-    ("emu", "Read"),
-    ("emu", "Shared"),
-    ("emu", "Units"),
-];
+const TWICE: [(&str, &str); 0] = [];
 
 /// The name that a line of a source defines as a type, if it does.
 ///

@@ -91,12 +91,12 @@ pub struct Code<'a> {
     inner: Vec<Inner>,
     /// The words that bodies stand for, in their order.
     extended: Vec<(u32, Op)>,
-    shared: Shared,
+    shared: Attachments,
 }
 
 /// Data that those who execute a program share.
 #[derive(Clone, Debug, Default)]
-struct Shared(Arc<Mutex<Vec<Arc<dyn Any + Send + Sync>>>>);
+struct Attachments(Arc<Mutex<Vec<Arc<dyn Any + Send + Sync>>>>);
 
 /// The program's bodies have more slots than [`MOST_BODY_SLOTS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,7 +142,7 @@ impl<'a> Code<'a> {
             starts: Vec::with_capacity(words + 1),
             inner: Vec::new(),
             extended: Vec::new(),
-            shared: Shared::default(),
+            shared: Attachments::default(),
         };
         // The slots of bodies come behind all words, whose number is known.
         let mut behind: Vec<Slot> = Vec::new();
@@ -251,7 +251,7 @@ impl<'a> Code<'a> {
     }
 
     /// Something that all who execute the program share: one of its type that is wanted, or a new one.
-    #[cfg(feature = "native")]
+    #[cfg_attr(not(feature = "native"), expect(dead_code, reason = "native code alone is shared"))]
     pub(crate) fn share<T: Any + Send + Sync>(
         &self,
         is_wanted: impl Fn(&T) -> bool,

@@ -21,7 +21,7 @@ pub use choose::{Answers, Choice, Demand, EngineKind, Runner, Wish, choose};
 pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;
-pub use quick::{Quick, Read};
+pub use quick::{NotedRead, Quick};
 pub use state::{CoreId, Pause, State};
 pub(crate) use taint::{Taint, TaintObserver};
 

@@ -5,7 +5,7 @@ use std::mem::offset_of;
 /// A read of global memory that was done.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Read {
+pub struct NotedRead {
     /// Clocks since the transfer before it.
     pub clocks: u32,
     /// Slot of the instruction.
@@ -16,13 +16,13 @@ pub struct Read {
     pub octets: u32,
 }
 
-impl Read {
+impl NotedRead {
     /// Places of the fields, in octets, in their order.
     pub const OFFSETS: [i32; 4] = [
-        offset_of!(Read, clocks) as i32,
-        offset_of!(Read, slot) as i32,
-        offset_of!(Read, address) as i32,
-        offset_of!(Read, octets) as i32,
+        offset_of!(NotedRead, clocks) as i32,
+        offset_of!(NotedRead, slot) as i32,
+        offset_of!(NotedRead, address) as i32,
+        offset_of!(NotedRead, octets) as i32,
     ];
 }
 
@@ -40,7 +40,7 @@ pub trait Quick {
     fn add(&mut self, kind: u32, octets: u64);
 
     /// Keeps reads, of which the last one was at a clock; false where there is no room, so that the item is in vain.
-    fn keep(&mut self, reads: &[Read], before: u64) -> bool;
+    fn keep(&mut self, reads: &[NotedRead], before: u64) -> bool;
 
     /// Clock of the last transfer.
     fn before(&self) -> u64;

@@ -1,5 +1,10 @@
 //! A build without native code.
 
+pub use NoNative as Native;
+
+use std::convert::Infallible;
+use std::marker::PhantomData;
+
 use super::{AddOctets, CoreId, Demand, Engine, Refusal, State, Stopped, Taint, TimedLink};
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
@@ -7,10 +12,10 @@ use crate::semantics::Watch;
 
 /// Nothing: there is no such engine in this build.
 #[derive(Clone, Debug)]
-pub enum Native {}
+pub struct NoNative<'a>(Infallible, PhantomData<&'a ()>);
 
-impl<'a> Engine<'a> for Native {
-    fn new(_: &Demand<'a>) -> Result<Native, Refusal> {
+impl<'a> Engine<'a> for NoNative<'a> {
+    fn new(_: &Demand<'a>) -> Result<NoNative<'a>, Refusal> {
         Err("this build of lancer generates no native code")
     }
 
@@ -23,10 +28,10 @@ impl<'a> Engine<'a> for Native {
         _: &mut Taint,
         _: &mut O,
     ) -> Stopped {
-        match *self {}
+        match self.0 {}
     }
 
     fn fold(&mut self, _: &mut Tally, _: AddOctets) {
-        match *self {}
+        match self.0 {}
     }
 }

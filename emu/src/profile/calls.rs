@@ -55,13 +55,13 @@ impl Running {
         }
     }
 
-    /// What was added since something open was entered, where 32 bits a class hold it.
+    /// Operations since something open was entered, if 32 bits a class hold them.
     #[inline]
     pub fn since(&self, entered: &Entered) -> Option<Near> {
         (!entered.is_carried).then(|| std::array::from_fn(|at| self.near[at].wrapping_sub(entered.near[at])))
     }
 
-    /// The same of something with a number, where 32 bits may not hold it.
+    /// Operations since something open, of that number, was entered.
     pub fn long_since(&self, entered: &Entered, number: usize) -> Counts {
         let carried = if entered.is_carried { self.carried[number] } else { Counts::ZERO };
         Counts(std::array::from_fn(|at| {
@@ -88,7 +88,7 @@ impl Running {
     }
 }
 
-/// What calls of one function or region have added up to.
+/// Totals of the calls of one function or region.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Calls {
     calls: u64,
@@ -99,7 +99,7 @@ pub(super) struct Calls {
     most_elementary: u64,
 }
 
-/// Whether each class is elementary.
+/// Elementary classes.
 const IS_ELEMENTARY: [bool; CLASSES] = {
     let mut is_elementary = [false; CLASSES];
     let mut at = 0;

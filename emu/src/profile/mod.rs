@@ -54,7 +54,7 @@ pub trait RunObserver: Observer {
     /// So many operations were executed: instead of [`RunObserver::walked`] and [`RunObserver::pass`], for engines that add them up themselves.
     fn add(&mut self, counts: &Counts);
 
-    /// The same of few, each class below 2^31.
+    /// Adds operations of which there are few: each class below 2^31.
     fn add_near(&mut self, counts: &Near);
 
     /// So many of the operations that were told of last were not executed.

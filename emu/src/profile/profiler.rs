@@ -60,7 +60,7 @@ pub struct Profiler {
     /// Number of the first thing open in the current call.
     base: usize,
     total: Running,
-    /// What calls of each region have taken, those left out that took more than 32 bits hold.
+    /// Totals of the calls of each region, without those that took more than 32 bits hold.
     calls: Vec<Calls>,
 }
 

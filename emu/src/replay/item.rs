@@ -5,7 +5,7 @@ use super::recording::Segment;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
-use crate::engine::{Quick, Read, RequestTime, TimedLink};
+use crate::engine::{NotedRead, Quick, RequestTime, TimedLink};
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
 use crate::semantics::{Link, Message};
@@ -72,7 +72,7 @@ impl Quick for ItemRecorder<'_> {
         self.kinds.add_octets(kind as usize, Octets(octets));
     }
 
-    fn keep(&mut self, reads: &[Read], before: u64) -> bool {
+    fn keep(&mut self, reads: &[NotedRead], before: u64) -> bool {
         let record = &mut *self.record;
         // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
         let portions = record.segments.len() / Budget::PORTION;

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use crate::code::quantity::Octets;
-use crate::engine::{Pause, Read};
+use crate::engine::{NotedRead, Pause};
 use crate::machine::request::{Access, Request};
 use crate::semantics::Message;
 
@@ -46,7 +46,7 @@ impl Segment {
 
     /// The segment that ends with a read that an engine has done by itself.
     #[inline]
-    pub fn of_read(read: &Read) -> Segment {
+    pub fn of_read(read: &NotedRead) -> Segment {
         Segment { clocks: read.clocks, pc: read.slot, address: read.address, what: read.octets << 2 | READ }
     }
 

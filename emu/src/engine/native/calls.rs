@@ -20,7 +20,7 @@ use crate::semantics::{
 pub(super) type Helper = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
 
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
-pub(super) type Units = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
+pub(super) type UnitsHelper = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
 
 /// Tells who measures functions that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
 pub(super) type Went = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;

@@ -15,7 +15,7 @@ pub(super) const LANES: usize = {
 /// Operations by class.
 pub(super) type Lanes = Near;
 
-/// What the places of a program cost by class, and where its functions and regions have their borders.
+/// Costs of the places of a program by class, and the borders of its functions and regions.
 #[derive(Clone, Debug)]
 pub(super) struct Classes {
     /// Cost of the places up to each, and up to the end, without what depends on exits.
@@ -69,7 +69,7 @@ impl Classes {
         Counts(std::array::from_fn(|at| to.0[at] - from.0[at]))
     }
 
-    /// Whether two places belong to different regions.
+    /// Two places belong to different regions.
     pub fn is_border(&self, from: u32, to: u32) -> bool {
         self.regions[from as usize] != self.regions[to as usize]
     }

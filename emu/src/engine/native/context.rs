@@ -3,7 +3,7 @@
 
 use std::mem::offset_of;
 
-use super::Read;
+use super::NotedRead;
 use super::classes::Lanes;
 
 /// Reads that are noted before the link is told of them.
@@ -45,7 +45,7 @@ pub(super) struct Context {
     /// Operations by class since they were last emptied, where functions are measured.
     pub classes: Lanes,
     /// Reads of global memory that the link was not told of.
-    pub reads: [Read; NOTED],
+    pub reads: [NotedRead; NOTED],
 }
 
 macro_rules! offsets {

@@ -23,7 +23,7 @@ use super::host::HostSimd;
 use super::plan::{Plan, Step};
 use super::state::{CoreId, State};
 use super::taint::Taint;
-use super::{AddOctets, Answers, Demand, Engine, Read, Refusal, Stopped, TimedLink};
+use super::{AddOctets, Answers, Demand, Engine, NotedRead, Refusal, Stopped, TimedLink};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
@@ -49,7 +49,7 @@ struct Recipe {
     held: Option<u64>,
     /// Time at which the machine answers.
     answers: Answers,
-    /// Whether functions and regions are measured.
+    /// Functions and regions are measured.
     has_profile: bool,
 }
 
@@ -132,7 +132,7 @@ struct Compiled {
 
 /// The code of a program, shared by the cores that run it. It is generated when other engines have taken about as long as that takes.
 #[derive(Debug)]
-struct Shared {
+struct SharedCode {
     recipe: Recipe,
     compiled: OnceLock<Result<Compiled, Refusal>>,
     /// Steps that other engines have executed of the program.
@@ -151,7 +151,7 @@ const LAST: u64 = 1 << 14;
 #[derive(Clone, Debug)]
 pub struct Native<'a> {
     plan: Plan<'a>,
-    shared: Arc<Shared>,
+    shared: Arc<SharedCode>,
     /// Executes the program until it is compiled, where it suits.
     first: Option<Box<Fast<'a>>>,
     /// Steps after which the program is compiled.
@@ -168,8 +168,8 @@ impl<'a> Engine<'a> for Native<'a> {
         let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
         let plan = plan.regardless_of_cores();
         let recipe = Recipe::new(demand, &plan);
-        let new = || Shared { recipe: recipe.clone(), compiled: OnceLock::new(), executed: AtomicU64::new(0) };
-        let shared = demand.code.share(|shared: &Shared| shared.recipe == recipe, new);
+        let new = || SharedCode { recipe: recipe.clone(), compiled: OnceLock::new(), executed: AtomicU64::new(0) };
+        let shared = demand.code.share(|shared: &SharedCode| shared.recipe == recipe, new);
         let first = if demand.wish.is_eager { None } else { Fast::new(demand).ok().map(Box::new) };
         let patience = match &first {
             _ if demand.wish.is_eager => 0,
@@ -225,7 +225,7 @@ impl<'a> Engine<'a> for Native<'a> {
     }
 }
 
-impl Shared {
+impl SharedCode {
     /// Steps that other engines are to execute before the program is compiled.
     fn rest(&self, patience: u64) -> u64 {
         match self.compiled.get() {

@@ -5,7 +5,7 @@ use isa::Counts;
 use super::classes::Lanes;
 use super::context::{Context, Layout, NOTED};
 use super::count::Counters;
-use super::{NO_SITE, Native, Read, Status, Stopped, TimedLink};
+use super::{NO_SITE, Native, NotedRead, Status, Stopped, TimedLink};
 use crate::code::octets::Buffer;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::RequestTime;
@@ -20,19 +20,19 @@ use crate::semantics::{Motion, Numbers, Watch};
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
 const AHEAD: u64 = 4 * Cost::WHOLE as u64;
 
-/// Who measures functions, whatever the type.
+/// A profiler, whatever its type.
 pub(super) trait Watcher {
-    /// So many operations were executed.
+    /// Adds executed operations.
     fn add(&mut self, counts: &Counts);
 
-    /// The same of few.
+    /// Adds executed operations, few of each class.
     fn add_near(&mut self, counts: &Lanes);
 
-    /// So many operations that were told of were not executed.
+    /// Takes back operations that were added and are not executed.
     fn take_back(&mut self, counts: &Counts);
 
-    /// Control goes from one slot to another one; what was executed before was told.
-    fn go(&mut self, from: u32, to: u32, motion: Motion);
+    /// Adds executed operations, then goes from one slot to another one.
+    fn go(&mut self, counts: &Lanes, from: u32, to: u32, motion: Motion);
 }
 
 impl<O: RunObserver> Watcher for O {
@@ -48,7 +48,8 @@ impl<O: RunObserver> Watcher for O {
         RunObserver::take_back(self, counts);
     }
 
-    fn go(&mut self, from: u32, to: u32, motion: Motion) {
+    fn go(&mut self, counts: &Lanes, from: u32, to: u32, motion: Motion) {
+        RunObserver::add_near(self, counts);
         RunObserver::go(self, from, to, motion);
     }
 }
@@ -78,7 +79,7 @@ pub(super) struct Host<'a> {
     layout: Layout,
     reads_inline: bool,
     fault: Option<Fault>,
-    /// Who measures functions, where somebody does.
+    /// The profiler, where functions are measured.
     watcher: Option<&'a mut dyn Watcher>,
     /// The link has no room for what it was told of.
     is_full: bool,
@@ -106,7 +107,7 @@ impl<'a> Host<'a> {
         if !self.reads_inline || context.noted == 0 {
             return;
         }
-        let reads = &context.reads[..context.noted as usize / size_of::<Read>()];
+        let reads = &context.reads[..context.noted as usize / size_of::<NotedRead>()];
         let before = self.totals.clocks.wrapping_add_signed(context.before);
         if let Some(quick) = self.link.quick() {
             self.is_full |= !quick.keep(reads, before);
@@ -164,9 +165,9 @@ impl<'a> Host<'a> {
 
     /// Control goes from one slot to another one.
     pub fn went(&mut self, context: &mut Context, from: u32, to: u32, motion: Motion) {
-        self.add_classes(context);
         if let Some(watcher) = &mut self.watcher {
-            watcher.go(from, to, motion);
+            watcher.go(&context.classes, from, to, motion);
+            context.classes = Lanes::default();
         }
     }
 
@@ -217,7 +218,7 @@ pub(super) fn octets(plan: &Plan, step: &Step) -> u64 {
 
 /// Place from which notes of reads have to be handed over, in octets: at once where so many clocks have gone by that they may not fit a note.
 fn end_of_notes(before: i64) -> u64 {
-    if before < -(1 << 31) { 0 } else { (NOTED * size_of::<Read>()) as u64 }
+    if before < -(1 << 31) { 0 } else { (NOTED * size_of::<NotedRead>()) as u64 }
 }
 
 impl Native<'_> {

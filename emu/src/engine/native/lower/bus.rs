@@ -5,10 +5,10 @@ use cranelift_codegen::ir::types::{I32, I32X4, I64, Type};
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value};
 use isa::{Kind, Op};
 
-use super::{After, BusRoom, Form, Lower, S, V, aligned, flags};
+use super::{BusRoom, Continuation, Form, Lower, S, V, aligned, flags};
 use crate::code::registers::Registers;
 use crate::engine::cost::CLOCKS;
-use crate::engine::native::Read;
+use crate::engine::native::NotedRead;
 use crate::engine::native::calls::{self, Helper, STOPPED};
 use crate::engine::native::context::{BEFORE, MEMORY, NOTED_AT, NOTED_END, READS};
 use crate::engine::plan::Step;
@@ -55,7 +55,7 @@ impl Lower<'_, '_> {
         let (some, on) = (self.cold_block(), self.b.create_block());
         self.b.ins().brif(units, some, &[], on, &[]);
         self.b.switch_to_block(some);
-        let function = self.c64(calls::add_units as calls::Units as usize as i64);
+        let function = self.c64(calls::add_units as calls::UnitsHelper as usize as i64);
         let step_at = self.c64(std::ptr::from_ref(step) as i64);
         self.b.ins().call_indirect(self.call, function, &[self.context, step_at, exit]);
         self.b.ins().jump(on, &[]);
@@ -83,7 +83,7 @@ impl Lower<'_, '_> {
     }
 
     /// An instruction with a meaning in Rust.
-    pub fn unit(&mut self, step: &Step) -> After {
+    pub fn unit(&mut self, step: &Step) -> Continuation {
         self.store_sums(self.rest());
         let ended = self.call_function(calls::unit, step);
         let stopped = self.b.ins().ushr_imm_s(ended, 32);
@@ -111,7 +111,7 @@ impl Lower<'_, '_> {
         if self.source.plan.is_run_end(self.place) {
             self.begin(self.place + 1);
         }
-        After::Goes
+        Continuation::Goes
     }
 
     /// The row's instruction.
@@ -199,10 +199,10 @@ impl Lower<'_, '_> {
         let (slot, octets) = (self.c32(step.slot as i32), self.c32(octets as i32));
         let at = self.b.ins().iadd(self.context, noted);
         let fields = [clocks, slot, address, octets];
-        for (offset, field) in Read::OFFSETS.into_iter().zip(fields) {
+        for (offset, field) in NotedRead::OFFSETS.into_iter().zip(fields) {
             self.b.ins().store(aligned(), field, at, READS + offset);
         }
-        let noted = self.b.ins().iadd_imm_s(noted, size_of::<Read>() as i64);
+        let noted = self.b.ins().iadd_imm_s(noted, size_of::<NotedRead>() as i64);
         self.b.ins().store(aligned(), noted, self.context, NOTED_AT);
     }
 }

@@ -97,7 +97,7 @@ impl Lower<'_, '_> {
         self.go_silently(from, to);
     }
 
-    /// The same where nobody has to be told, or has been.
+    /// On to a place where no profiler has to be told, or has been.
     pub fn go_silently(&mut self, from: u32, to: u32) {
         match self.entries[to as usize] {
             Some(block) if to <= from || self.source.blocks.is_watched[to as usize] => self.watch(to, block),

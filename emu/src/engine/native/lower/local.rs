@@ -10,7 +10,7 @@ use crate::engine::native::context::{BUFFER, WRITTEN};
 
 /// A place in the buffer.
 #[derive(Clone, Copy)]
-struct Place {
+struct BufferPlace {
     /// Address in the host's memory, without the offset.
     base: Value,
     offset: i32,
@@ -26,14 +26,14 @@ fn little() -> MemFlagsData {
 
 impl Lower<'_, '_> {
     /// The place of some octets at `base + offset`; beyond the buffer the interpreter takes over.
-    fn place(&mut self, base: S, offset: i32, octets: u32) -> Place {
+    fn place(&mut self, base: S, offset: i32, octets: u32) -> BufferPlace {
         let size = self.source.recipe.buffer_octets;
         let pointer_flags = aligned().with_readonly();
         let known = u64::from(offset as u32) + u64::from(octets) <= u64::from(size);
         if base.0 == 0 && known {
             let base = self.b.ins().load(I64, pointer_flags, self.context, BUFFER);
             let address = self.c64((offset as u32).into());
-            return Place { base, offset, address, known: Some(offset as u32) };
+            return BufferPlace { base, offset, address, known: Some(offset as u32) };
         }
         let address = self.s(base);
         let offset = self.c32(offset);
@@ -49,11 +49,11 @@ impl Lower<'_, '_> {
         let address = self.b.ins().uextend(I64, address);
         let buffer = self.b.ins().load(I64, pointer_flags, self.context, BUFFER);
         let base = self.b.ins().iadd(buffer, address);
-        Place { base, offset: 0, address, known: None }
+        BufferPlace { base, offset: 0, address, known: None }
     }
 
     /// Notes that octets at a place are written, so that a reset knows what to copy.
-    fn note_written(&mut self, place: Place, octets: u32) {
+    fn note_written(&mut self, place: BufferPlace, octets: u32) {
         let piece = Buffer::piece_bits(self.source.recipe.buffer_octets);
         let written = self.b.ins().load(I64, aligned(), self.context, WRITTEN);
         let more = match place.known {
@@ -76,7 +76,7 @@ impl Lower<'_, '_> {
     }
 
     /// Three words of 32 bits as a vector.
-    fn load_vector(&mut self, place: Place) -> Value {
+    fn load_vector(&mut self, place: BufferPlace) -> Value {
         let low = self.b.ins().load(I64, flags(), place.base, place.offset);
         let high = self.b.ins().load(I32, flags(), place.base, place.offset + 8);
         let vector = self.b.ins().scalar_to_vector(I64X2, low);

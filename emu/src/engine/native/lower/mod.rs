@@ -54,7 +54,7 @@ enum Form<R> {
 }
 
 /// The code behind a row is reached from it.
-enum After {
+enum Continuation {
     Goes,
     Left,
 }
@@ -173,7 +173,7 @@ impl Lower<'_, '_> {
         loop {
             self.place = place;
             self.b.set_srcloc(SourceLoc::new(place));
-            if let After::Left = self.step() {
+            if let Continuation::Left = self.step() {
                 return;
             }
             place += 1;
@@ -187,32 +187,32 @@ impl Lower<'_, '_> {
     }
 
     /// Step at the current place.
-    fn step(&mut self) -> After {
+    fn step(&mut self) -> Continuation {
         let place = self.place;
         let step = &self.source.steps[place as usize];
         match step.row {
             Step::HOP => {
                 self.take_exit(step.exit as usize);
                 self.go(place, step.target);
-                After::Left
+                Continuation::Left
             }
             Step::UNIT => self.unit(step),
             Step::BAILOUT => {
                 self.leave(Status::Bailout, place, self.rest());
-                After::Left
+                Continuation::Left
             }
             _ => match self.source.plan.slots()[step.slot as usize].op {
                 Some(op) => self.row(op, step),
                 None => {
                     self.leave(Status::Bailout, place, self.rest());
-                    After::Left
+                    Continuation::Left
                 }
             },
         }
     }
 
     /// A row of the table.
-    fn row(&mut self, op: Op, step: &Step) -> After {
+    fn row(&mut self, op: Op, step: &Step) -> Continuation {
         let fields = &step.fields;
         let plan = self.source.plan;
         let is_control = plan.code.slot_row(step.slot).is_some_and(|row| row.room == "control");
@@ -274,7 +274,7 @@ impl Lower<'_, '_> {
                         $(put!($written $made);)*
                     }
                     Form::Call => called!($style op, step),
-                    Form::Left => return After::Left,
+                    Form::Left => return Continuation::Left,
                 }
             };
         }
@@ -306,7 +306,7 @@ impl Lower<'_, '_> {
             true => {}
             false => self.follow(),
         }
-        After::Goes
+        Continuation::Goes
     }
 
     /// Nothing is known of registers any more.

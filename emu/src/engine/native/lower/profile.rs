@@ -1,5 +1,4 @@
-//! What generated code does for those who measure functions and regions: it adds up operations by class, and tells of calls, returns and
-//! borders.
+//! Profiling in generated code: it adds up operations by class, and tells of calls, returns and borders of regions.
 
 use cranelift_codegen::ir::types::{I32X4, I64};
 use cranelift_codegen::ir::{ConstantData, InstBuilder, Value};
@@ -44,7 +43,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The same for one of several exits that only the running program knows, by its number from `first` on.
+    /// Adds the cost of one of several exits that only the running program knows, by its number from `first` on.
     pub fn pass_classes_dynamic(&mut self, first: usize, exits: usize, number: Value) {
         let Some(classes) = self.source.classes else { return };
         let exits = &classes.exits[first..first + exits];
@@ -76,7 +75,7 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// The same, to a place.
+    /// Tells of a call or a return that leads to a place.
     pub fn tell_motion_to(&mut self, to: u32, motion: Motion) {
         if self.source.classes.is_some() {
             let slot = self.slot(to);

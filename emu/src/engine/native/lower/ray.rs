@@ -14,7 +14,7 @@ const TIME: i64 = 3;
 
 /// A plane as the ray meets it, at t = run / slope.
 #[derive(Clone, Copy)]
-struct Meeting {
+struct PlaneMeeting {
     /// The axis, as four times its number.
     axis: Value,
     run: Value,
@@ -23,7 +23,7 @@ struct Meeting {
 
 impl Lower<'_, '_> {
     /// Comparison of a ray with the plane in a pattern.
-    fn meet(&mut self, pattern: Value, ray: V) -> Meeting {
+    fn meet(&mut self, pattern: Value, ray: V) -> PlaneMeeting {
         let axis = self.b.ins().ushr_imm_s(pattern, 32);
         let axis = self.b.ins().band_imm_s(axis, 3);
         let offset = self.b.ins().ishl_imm_s(axis, 2);
@@ -36,12 +36,12 @@ impl Lower<'_, '_> {
         let slope = self.b.ins().bor(slope, is_time);
         let place = self.b.ins().ireduce(I32, pattern);
         let place = self.b.ins().sextend(I64, place);
-        Meeting { axis: offset, run: self.b.ins().isub(place, taint), slope }
+        PlaneMeeting { axis: offset, run: self.b.ins().isub(place, taint), slope }
     }
 
     /// Goes one way where a ray, its direction moved, meets the first plane before the other one, else the other way; see
     /// [`isa::number::ray`]. A run has 33 bits with its sign and is never the least of them, so a product fits.
-    fn before(&mut self, first: Meeting, second: Meeting, yes: Block, no: Block) {
+    fn before(&mut self, first: PlaneMeeting, second: PlaneMeeting, yes: Block, no: Block) {
         let (here, there) = (self.b.ins().imul(first.run, second.slope), self.b.ins().imul(second.run, first.slope));
         let (tie, clear) = (self.cold_block(), self.b.create_block());
         let is_tie = self.b.ins().icmp(IntCC::Equal, here, there);

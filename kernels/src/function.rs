@@ -6,7 +6,7 @@ use messages::{Diagnostic, did_you_mean};
 
 use crate::build::SceneFeatures;
 
-/// Who runs a function.
+/// Processors that run a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Place {
     Core,
@@ -14,7 +14,7 @@ enum Place {
     Both,
 }
 
-/// When a function is part of a program at all.
+/// Condition under which a function is part of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Need {
     Always,
@@ -39,7 +39,7 @@ macro_rules! functions {
             /// All functions, in the order in which programs contain them.
             pub const ALL: &[Function] = &[$(Function::$variant),*];
 
-            /// Its name, which is that of its `.func`.
+            /// Name of the function, which is that of its `.func`.
             pub const fn name(self) -> &'static str {
                 match self { $(Function::$variant => $name,)* }
             }
@@ -103,7 +103,7 @@ functions! {
 }
 
 impl Function {
-    /// Whether the function belongs to the search: it walks the tree, or it intersects.
+    /// True for a function of the search: one that walks the tree, or intersects.
     pub const fn is_search(self) -> bool {
         use Function::{Descend, ExitFace, FirstPacket, NextPacket, OwnPacket, Packet, Trace, Triangle};
         matches!(self, FirstPacket | OwnPacket | NextPacket | Descend | ExitFace | Trace | Packet | Triangle)

@@ -104,12 +104,14 @@ impl Formats {
                 Err(Report::from(refusal.hint(format!("1 has to fit beside the sign: 0 to {full} are possible"))))
             }
         };
+        // No distance within the scene is longer than the diagonal of its box with the margin on each side.
         let diagonal = [0, 1, 2]
             .map(|axis| f64::from(grid.span[axis]) + 2.0 * f64::from(margin))
             .iter()
             .map(|side| side * side)
             .sum::<f64>();
         let is_short = diagonal.sqrt() + 2.0 < (1u64 << (word - 1)) as f64;
+        // Half the resolution doubles the reach, and no diagonal comes to twice the largest word.
         let t = overrides.t.unwrap_or(grid.position - i32::from(!is_short));
         if t.abs_diff(grid.position) > 64 {
             return Err(Diagnostic::error(format!(
@@ -120,6 +122,7 @@ impl Formats {
             .into());
         }
         let brightest = brightest(scene, view);
+        // A thousandth is kept free for what rounding adds on the way.
         let integer_bits = (2..word).find(|&n| brightest < (1u64 << n) as f64 * 0.999);
         let Some(integer_bits) = integer_bits else {
             return Err(Diagnostic::error(format!("colours up to {brightest:.3e} do not fit a word of {word} bits"))
@@ -150,6 +153,7 @@ impl Formats {
 /// Bound on the colours of a picture: what a surface lit by all lights at once sends out, seen through as many mirrors or panes as a path
 /// can pass (each adding its own light, see [`View::bounces`]).
 pub fn brightest(scene: &Scene, view: &View) -> f64 {
+    // An upper bound: each level sees the brightest surface of the level below, wherever that stands.
     let background = view.background.into_iter().fold(0.0, f64::max);
     let lights = [0, 1, 2].map(|k| scene.lights.iter().map(|light| light.colour[k]).sum::<f64>());
     let own = |m: &Material| {

@@ -89,6 +89,7 @@ impl Structure {
                 at += width;
             }
         }
+        // Too few values leave zeros, for fields that a node does not use; too many are a mistake.
         debug_assert!(values.next().is_none(), "too many values for {}", self.name);
     }
 
@@ -99,6 +100,7 @@ impl Structure {
         for field in self.fields {
             for _ in 0..field.elements {
                 let (element, rest) = octets.split_at(field.width as usize);
+                // Extend the sign: the octets f8 ff of a signed field are -8, of an unsigned one 65,528.
                 let is_negative = field.is_signed && element.last().is_some_and(|&top| top >= 0x80);
                 let mut wide = [if is_negative { 0xff } else { 0 }; 8];
                 wide[..element.len()].copy_from_slice(element);

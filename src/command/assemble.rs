@@ -50,7 +50,7 @@ pub struct AssembleArguments {
     map: Option<PathBuf>,
 }
 
-/// What a source cannot say for itself.
+/// Options for what a source cannot say for itself.
 #[derive(Args, Clone, Debug)]
 pub(super) struct SourceArguments {
     /// Constant that is known before the first line; may be repeated.

@@ -23,7 +23,7 @@ pub struct Demand<'a> {
     pub computes: Computes,
     /// Octets of the local buffer.
     pub buffer_octets: u32,
-    /// Whether it is to be found out what depends on the number of cores.
+    /// Dependence on the number of cores is to be found out.
     pub follows_cores: bool,
     /// Functions and regions are measured.
     pub has_profile: bool,
@@ -88,7 +88,7 @@ impl Default for Wish {
 pub struct Choice {
     /// The engine.
     pub kind: EngineKind,
-    /// Why the one that was wanted does not run the program; `None` where it does.
+    /// Reason for which the one that was wanted does not run the program; `None` where it does.
     pub refusal: Option<Refusal>,
 }
 

@@ -8,17 +8,17 @@ use crate::code::tally::Tally;
 use crate::profile::{Observer, Profile};
 use crate::semantics::Motion;
 
-/// What an instruction does with scalar registers, a bit each.
+/// Effect of an instruction on the taint: its scalar registers, a bit each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TaintEffect {
     reads: u64,
     writes: u64,
     /// Written with the number of the main processor, which is the number of cores.
     counts: u64,
-    /// Where a message goes to.
+    /// Target of a message.
     target: u64,
     is_send: bool,
-    /// It tells which core this is.
+    /// The instruction tells which core this is, so that the item depends on that.
     tells_core: bool,
 }
 
@@ -49,7 +49,7 @@ impl TaintEffect {
         effect
     }
 
-    /// Whether the instruction matters even when no register holds the number of cores.
+    /// True for an instruction that matters even when no register holds the number of cores.
     pub fn asks(&self) -> bool {
         self.counts != 0 || self.is_send || self.tells_core
     }
@@ -79,20 +79,20 @@ impl TaintEffect {
         self.tells_core
     }
 
-    /// Whether it matters to the instruction which of these registers hold the number of cores.
+    /// True where it matters to the instruction which of these registers hold the number of cores.
     pub fn touches(&self, registers: u64) -> bool {
         (self.reads | self.writes | self.target) & registers != 0
     }
 }
 
-/// What a work item has learned of the cores on its way.
+/// Taint of a work item: what it has learned of the cores on its way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taint {
     /// Registers that hold the number of cores, as far as the item's path tells.
     pub tainted: u64,
-    /// Whether the item may depend on the number of cores.
+    /// Dependence of the item on the number of cores is possible.
     pub depends_on_cores: bool,
-    /// Whether the item has asked for its core's number.
+    /// The item has asked for its core's number.
     pub depends_on_core: bool,
 }
 
@@ -114,7 +114,7 @@ pub struct TaintObserver<O> {
     /// The other one.
     pub inner: O,
     effects: Vec<TaintEffect>,
-    /// What the item has learned.
+    /// Taint of the item.
     pub taint: Taint,
 }
 

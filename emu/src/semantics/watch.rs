@@ -10,10 +10,10 @@ use crate::code::tally::Losses;
 
 /// Arithmetic that an engine can run on: it says whether the last instruction is to trap for a division by zero.
 pub trait Watch: Arithmetic {
-    /// Whether the engine has to ask at all.
+    /// True where the engine has to ask after instructions at all.
     const IS_WATCHING: bool = false;
 
-    /// The same for meanings in Rust, which do not know its type.
+    /// Arithmetic for meanings in Rust, which do not know its type.
     fn numbers(&self) -> Numbers<'_>;
 
     /// Description of the arithmetic, for engines that are made for it beforehand.
@@ -21,12 +21,12 @@ pub trait Watch: Arithmetic {
         Computes::default()
     }
 
-    /// Whether something was divided by zero since the last call, where that is to trap.
+    /// Takes note of a division by zero since the last call, where that is to trap.
     fn take_division_by_zero(&self) -> bool {
         false
     }
 
-    /// What results have lost since the last call, where that is counted.
+    /// Losses of results since the last call, where those are counted.
     fn take_losses(&self) -> Losses {
         Losses::default()
     }
@@ -71,7 +71,7 @@ impl Watching {
         }
     }
 
-    /// The same, counting what results lose.
+    /// This arithmetic, counting what results lose.
     pub fn with_losses(self) -> Watching {
         Watching { counts_losses: true, ..self }
     }

@@ -42,7 +42,7 @@ pub struct Term {
     pub line: String,
     /// By how many operations of each class it exceeds what is printed.
     pub counts: Vec<(Class, i64)>,
-    /// Why.
+    /// Reason for the difference.
     pub reason: String,
 }
 

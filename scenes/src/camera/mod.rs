@@ -52,6 +52,7 @@ impl Rays {
         match view.camera {
             Camera::Orthographic => {
                 let side = sub(high, low);
+                // Square pixels: the side that is longer for the picture's shape fills it, the other has a margin.
                 let pitch = (side[0] / size[0]).max(side[1] / size[1]);
                 let pitch = if pitch > 0.0 { pitch } else { extent((low, high)) / size[0].max(size[1]) };
                 let first = [middle[0] + start[0] * pitch, middle[1] + start[1] * pitch];
@@ -72,9 +73,11 @@ impl Rays {
                     .hint("move one of them with --eye or --look")
                     .into());
                 };
+                // Looking straight up or down, y says nothing of what is up in the picture; -z does.
                 let up = if forward[0].hypot(forward[2]) < 1e-9 { [0.0, 0.0, -1.0] } else { [0.0, 1.0, 0.0] };
                 let right = unit(cross(forward, up)).expect("up was chosen away from the direction");
                 let up = cross(right, forward);
+                // The field is that from the upper edge to the lower one, at distance 1 from the eye.
                 let step = 2.0 * (field.to_radians() / 2.0).tan() / size[1];
                 let (column, row) = (scale(right, step), scale(up, step));
                 let base = add(forward, add(scale(column, start[0]), scale(row, start[1])));
@@ -175,6 +178,7 @@ impl RawCamera {
         let fixed = |x: f64, power: u32| nearest(shifted(x, power as i32)) as i64;
         match *rays {
             Rays::Orthographic { first, pitch, .. } => {
+                // As many extra bits as the largest number leaves room for in twice a word, but not more than a word.
                 let most = [first[0], first[1], width * pitch, height * pitch]
                     .into_iter()
                     .fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -197,6 +201,7 @@ impl RawCamera {
                 })
             }
             Rays::Perspective { eye, base, column, row } => {
+                // Directions are linear in column and row, so the longest component is found at a corner of the picture.
                 let corner = |c: f64, r: f64| largest(add(base, sub(scale(column, c), scale(row, r))));
                 let (right, bottom) = (width - 1.0, height - 1.0);
                 let most = corner(0.0, 0.0).max(corner(right, 0.0)).max(corner(0.0, bottom)).max(corner(right, bottom));

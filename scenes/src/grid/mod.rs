@@ -62,6 +62,7 @@ impl Grid {
                 .hint("--word takes 8 to 32")
                 .into());
         }
+        // Everything that is wrong with scene and view at once, before numbers are made of them.
         let mut report = scene.check();
         report.0.extend(view.check().0);
         if report.has_errors() {
@@ -96,6 +97,7 @@ impl Grid {
         let limit = (1i64 << (word - 2)) - 4;
         let middle = camera::centre(box_down);
         let far = points.iter().map(|p| largest(sub(p.at, middle))).fold(0.0, f64::max);
+        // Begin a step or two finer than the extent says, and go down: rounding decides which is the finest that fits.
         let mut power = exponent(limit as f64) - if far > 0.0 { exponent(far) } else { 1 } + 2;
         let finest = loop {
             match grid(power) {
@@ -103,6 +105,7 @@ impl Grid {
                 None => power -= 1,
             }
         };
+        // A format that the user sets may be coarser than the finest, and is refused if it does not fit.
         let chosen = match position {
             Some(position) => grid(position.clamp(-5000, 5000) + unit).ok_or_else(|| {
                 Diagnostic::error(format!("positions with {position} fraction bits do not fit a word of {word} bits"))
@@ -125,6 +128,7 @@ impl Grid {
         let middle = AXES.map(|k| rounded_middle(points[0].at[k], points[1].at[k], power));
         let raw = |point: &Point| AXES.map(|k| nearest(shifted(point.at[k] - middle[k], power)));
         let (lights, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.is_light());
+        // The reach is that of all but the lights, since rays start and end there; a light counts by its way to them.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for at in others.into_iter().map(raw) {
             low = AXES.map(|k| low[k].min(at[k]));

@@ -80,6 +80,7 @@ impl<M: Membership> Builder<'_, M> {
                 subtree.nodes.push(node);
                 let (left, right) = rayon::join(
                     || self.large(below, lower, levels - 1, sweep),
+                    // The right side may run on another thread, so it has lists of its own to sort in.
                     || self.large(above, upper, levels - 1, &mut Sweep::default()),
                 );
                 Ok([vec![subtree], left?, right?].into_iter().flatten().collect())
@@ -126,6 +127,7 @@ impl<M: Membership> Builder<'_, M> {
             packet.iter().filter_map(|member| self.membership.passed(member, &division, side, &child)).collect()
         };
         let (below, above) = (passed(Side::Left, lower), passed(Side::Right, upper));
+        // Only what crosses the plane is new. Threads share the sum, so that a tree is refused before it fills the memory.
         let more = (below.len() + above.len()).saturating_sub(packet.len());
         if self.references.fetch_add(more, Ordering::Relaxed) + more > MOST_REFERENCES {
             return Err(TooManyReferences);

@@ -42,6 +42,7 @@ impl BuiltTree {
     /// The tree in the box `root`.
     pub(super) fn new(root: Bounds, subtrees: Vec<Subtree>) -> BuiltTree {
         let mut sizes: Vec<[u32; 2]> = Vec::new();
+        // Nodes stand in the order of a walk, left side first: behind a leaf comes the right side that has waited least.
         let (mut level, mut waiting) = (0, Vec::new());
         for &node in subtrees.iter().flat_map(|subtree| &subtree.nodes) {
             if level == sizes.len() {
@@ -59,6 +60,7 @@ impl BuiltTree {
                 }
             };
         }
+        // Nodes and references of all levels above, which is where a level's numbers begin.
         let mut before = [0; 2];
         let mut levels = vec![before];
         for size in sizes {

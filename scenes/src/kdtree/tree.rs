@@ -81,6 +81,7 @@ impl KdTree {
                 }
             });
         }
+        // As many nodes as the inner ones announce, and each reached: the octets may come from a damaged image.
         (tree.nodes.len() == below as usize && tree.nodes().count() == below as usize).then_some(tree)
     }
 

@@ -30,6 +30,8 @@ impl Cutter {
         if count > 3 {
             self.project(vertices, corners);
             if !is_convex(&self.flat) {
+                // Cutting ears takes time by the square of the corners. Each corner of a file buys some, so files of many
+                // small polygons are never refused.
                 self.work += (count as u64).pow(2);
                 self.allowance += count as u64 * WORK_PER_CORNER;
                 if self.work > WORK + self.allowance {
@@ -41,6 +43,7 @@ impl Cutter {
                 }
             }
         }
+        // A fan from the first corner covers a convex outline, and keeps the edges of one that could not be cut.
         (1..count - 1).for_each(|n| triangle([corners[0], corners[n], corners[n + 1]]));
         true
     }
@@ -56,6 +59,7 @@ impl Cutter {
                 *sum += (p[l] - q[l]) * (p[m] + q[m]);
             }
         }
+        // Look along the normal's longest component: the outline is largest there, and least likely to fold.
         let size = normal.map(f64::abs);
         let axis = if size[0] >= size[1] && size[0] >= size[2] {
             0
@@ -65,6 +69,7 @@ impl Cutter {
             2
         };
         let (mut x, mut y) = ((axis + 1) % 3, (axis + 2) % 3);
+        // Seen from behind, the outline would turn to the right.
         if normal[axis] < 0.0 {
             (x, y) = (y, x);
         }
@@ -110,6 +115,7 @@ fn keeps_outline(triangles: &[u32], count: u32) -> bool {
     let mut inner: Vec<(u32, u32)> = edges.filter(|&(a, b)| b != (a + 1) % count).collect();
     let outer = triangles.len() - inner.len();
     inner.sort_unstable();
+    // Each inner edge belongs to two triangles, which run along it in opposite directions.
     let cancels = |&(a, b): &(u32, u32)| inner.binary_search(&(b, a)).is_ok();
     outer == count as usize && inner.windows(2).all(|pair| pair[0] != pair[1]) && inner.iter().all(cancels)
 }
@@ -122,6 +128,7 @@ fn split(ear: &[u32], outer: &[usize], count: u32, out: &mut Vec<u32>) {
         return;
     };
     let [from, to, apex] = [0, 1, 2].map(|n| ear[(k + n) % 3]);
+    // Corners between the ends of the edge become a fan around the third corner.
     let mut last = from;
     for step in 1..=between(from, to) {
         let middle = (from + step) % count;

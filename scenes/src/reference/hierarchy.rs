@@ -94,6 +94,7 @@ impl<'a> Hierarchy<'a> {
 
     /// Visits the leaves that the ray passes before `end`, near ones first; `visit` returns the new end.
     fn walk(&self, ray: &Ray, mut end: f64, mut visit: impl FnMut(&[u32]) -> f64) {
+        // A component 0 gives an infinite reciprocal, and with it the comparisons that are right for such a ray.
         let reciprocal = ray.direction.map(|d| 1.0 / d);
         let entry = |node: &BoxNode, end: f64| enters(node, ray.origin, reciprocal, end);
         let mut stack = [(0u32, 0.0f64); STACK];
@@ -112,6 +113,7 @@ impl<'a> Hierarchy<'a> {
                 let enter = |child: u32| Some((child, entry(&self.nodes[child as usize], end)?));
                 let near = match (enter(left), enter(right)) {
                     (Some(a), Some(b)) => {
+                        // The nearer child first: a hit there often ends the search before the other one is opened.
                         let (near, far) = if a.1 <= b.1 { (a, b) } else { (b, a) };
                         stack[height] = far;
                         height += 1;
@@ -130,6 +132,7 @@ impl<'a> Hierarchy<'a> {
                 }
                 height -= 1;
                 let (waiting, t) = stack[height];
+                // Hits since this one was put aside may lie in front of it.
                 if t <= end {
                     break waiting;
                 }
@@ -163,7 +166,9 @@ fn divide(shapes: &Shapes, part: &mut [u32], level: u32) -> usize {
     let side = AXES.map(|k| centroids.1[k] - centroids.0[k]);
     let axis = (1..3).fold(0, |best, k| if side[k] > side[best] { k } else { best });
     let half = part.len() / 2;
+    // The largest centroid would come into a bin of its own, behind the last.
     let bin = |b: Box3| (((middle(b, axis) - centroids.0[axis]) / side[axis] * BINS as f64) as usize).min(BINS - 1);
+    // Far down the tree is halved, so that the stack of a walk is never too small.
     if level < UNBALANCED && side[axis] > 0.0 {
         let mut bins = [(EMPTY, 0usize); BINS];
         for b in part.iter().map(box_of) {

@@ -88,6 +88,7 @@ fn unseen(job: &Job, crop: &Crop, words: &[[i32; 3]]) -> Result<Option<Diagnosti
         return Ok(None);
     }
     let warning = Diagnostic::warning("no camera ray meets anything: the picture shows the background alone");
+    // A scene seen edge-on has nothing to meet from there, and gets a view that shows it; else the box tells where to look.
     let (low, high) = scene.bounds().unwrap_or_default();
     let hint = match &view.camera {
         Camera::Orthographic if low[0] == high[0] || low[1] == high[1] => {
@@ -202,6 +203,7 @@ impl Drawing {
     pub fn operations(&self) -> Vec<u64> {
         let mut operations = vec![0; self.words.len()];
         for item in &self.frame.items {
+            // The first component of a work item's message is the number of its pixel.
             if let Some(pixel) = usize::try_from(item.subject[0]).ok().and_then(|at| operations.get_mut(at)) {
                 *pixel += item.elementary;
             }

@@ -20,10 +20,12 @@ const LARGEST: u64 = 256 << 10;
 /// # Errors
 /// A name that is neither, and what is wrong in the file.
 pub fn find(name: &str) -> Result<(String, Config), Report> {
+    // A preset wins over a file of its name, so that the name means the same in every folder.
     if let Some(preset) = PRESETS.iter().find(|preset| preset.name == name) {
         return Ok((preset.name.to_owned(), preset.config()));
     }
     let path = Path::new(name);
+    // A name that looks like a path is one: then the message is about a file that is missing, not about presets.
     let is_file = path.exists() || path.extension().is_some() || name.contains(std::path::is_separator);
     if !is_file {
         let names = || PRESETS.iter().map(|preset| preset.name);
@@ -105,6 +107,7 @@ fn filled(comment: &str) -> String {
 pub fn commented(name: &str, config: &Config) -> String {
     let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| filled(text));
     let mut text = format!("# Machine `{name}`. Keys that a file leaves out have the values of `{DEFAULT}`.\n\n");
+    // The keys come from the text itself, so that none of them can be missing here.
     let mut section = String::new();
     for line in config.text().lines() {
         let key = match line.strip_prefix('[').and_then(|line| line.strip_suffix(']')) {

@@ -122,6 +122,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let instructions = counted.tally.instructions();
     let pixels = u64::from(crop.width) * u64::from(crop.height);
     let own_packet = load.build.cores.symbols.get(Function::OwnPacket.name());
+    // Each secondary and shadow ray starts in its own packet, and looks for it once.
     let other_rays = own_packet.map_or(0, |&pc| counted.tally.word(&code, pc as u32).instructions);
 
     // Each runner once a round, so that a slow moment of the host meets all of them.

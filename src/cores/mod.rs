@@ -187,6 +187,7 @@ fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &Demand, cl
     let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
     let whole = frame.clocks.0 * u64::from(cores);
     let seconds = |clocks: f64| clocks / clock_hz as f64;
+    // The main processor's waiting counts as load: while it waits for the bus it feeds nobody.
     let main_work = main.iter().map(|main| main.busy.0 + main.waiting.0).sum();
     Point {
         cores,
@@ -215,6 +216,7 @@ fn saturation(points: &[Point]) -> Option<Saturation> {
         return None;
     }
     let highest = points.iter().max_by(|one, other| one.speed_up.total_cmp(&other.speed_up))?;
+    // Both may be nearly full; the one that is fuller holds the others up.
     let limit = match (last.utilisation, last.main_load) {
         (busy, main) if busy >= 0.95 && busy >= main => "bus",
         (_, main) if main >= 0.9 => "main-processor",

@@ -84,6 +84,7 @@ pub(super) fn memory(
     let mut end = 0u64;
     let mut regions = MemoryKind::ALL.map(|kind| (kind, 0..0));
     for ((_, range), length) in regions.iter_mut().zip(octets) {
+        // Each region begins at a multiple of 8, because a link of the wide layout keeps the axis in the lowest bits.
         let start = end.next_multiple_of(8);
         end = start.saturating_add(length);
         *range = u32::try_from(start).and_then(|start| Ok(start..u32::try_from(end)?)).map_err(|_| {
@@ -118,6 +119,7 @@ pub(super) fn memory(
         put(addresses.node(number), layout.node(), &mut values.into_iter());
         for (reference, &triangle) in (reference..).zip(packet) {
             let here = addresses.reference(reference);
+            // A packet names no triangle twice, so the last one is known by its number.
             let is_last = packet.last() == Some(&triangle);
             let next = if is_last { 0 } else { addresses.reference(reference + 1) };
             let values = [addresses.triangle(triangle), next].map(i64::from);
@@ -127,6 +129,7 @@ pub(super) fn memory(
     for (number, triangle) in (0..).zip(&scene.triangles) {
         let vertices = triangles.vertices(number as usize);
         let Bounds { low, high } = Bounds::of_triangle(&vertices);
+        // The report keeps each triangle's box beside it; the wide layout works boxes out where they are needed.
         let own: &[[i32; 3]] = match layout {
             Layout::Report => &[low, high],
             Layout::Wide => &[],
@@ -184,6 +187,7 @@ impl Addresses {
         };
         let next = node.next.map_or(0, |number| self.node(number));
         let corners = [node.bounds.low, node.bounds.high].map(|corner| corner.map(|x| i64::from(stored(x, shift))));
+        // Low and high corner once an axis: the report stores two corners for each of the three pairs of faces.
         let faces = (0..3).flat_map(|_| corners).flatten();
         let head = [left, right, next, first].map(i64::from).into_iter();
         head.chain([packet(node.content).len() as i64]).chain(faces).chain([axis as i64]).collect()

@@ -162,17 +162,20 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     let layout = options.layout;
     let grid = Grid::new(scene, view, options.word, options.formats.position)?;
     let shift = layout.coordinate_shift(options.word);
+    // Leave out first what the layout does not store, so that tree, boxes and kernels all see the same corners
     let vertices: Vec<[i32; 3]> =
         scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
     let mesh = GridMesh { vertices: &vertices, triangles: &scene.triangles };
     let unit = 1 << shift;
     let boxes = (0..mesh.count()).map(|index| Bounds::of_triangle(&mesh.vertices(index)));
+    // Without triangles the grid's own box remains, since the camera still needs one.
     let inner = boxes.reduce(|a, b| a.union(&b)).unwrap_or_else(|| {
         let Bounds { low, high } = grid.bounds();
         Bounds { low: low.map(|x| stored(x, shift) << shift), high: high.map(|x| stored(x, shift) << shift) }
     });
     let bounds = inner.enlarged(unit);
     let formats = Formats::new(scene, view, &grid, 2 * unit as u32 + 2, &options.formats)?;
+    // The camera comes to the grid with the scene, so that a scene moved by whole steps has the same rays.
     let local = View { camera: camera::mapped(&view.camera, |p| grid.local(p)), ..view.clone() };
     let rays = Rays::new(grid.local_corners(), &local)?;
     let camera = RawCamera::new(&rays, view.size, &formats, &bounds)?;
@@ -185,6 +188,7 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     let tree = kdtree::build_in_order(&mesh, bounds, options.kd_depth, options.kd_method)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
     let (bytes, regions) = encode::memory(&tree, scene, &mesh, &tables, layout, shift, view.size)?;
+    // The root is the first node, whatever the layout.
     let root = regions[1].1.start;
     let counts = Counts {
         triangles: scene.triangles.len() as u32,

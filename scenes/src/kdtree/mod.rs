@@ -101,6 +101,7 @@ impl Depth {
     pub fn levels(self, triangles: usize) -> u32 {
         match self {
             Depth::Levels(levels) => levels,
+            // As pbrt chooses the greatest depth.
             Depth::Auto => (8.0 + 1.3 * (triangles.max(1) as f64).log2()).round() as u32,
         }
         .min(DEEPEST)
@@ -184,6 +185,7 @@ pub(crate) fn build_in_order(
             builder::build(&ByBox { triangles: &boxes }, (0..count as u32).collect(), root, levels)
         }
         BuildMethod::Exact => {
+            // Parts are cut from the triangles themselves, so no list of boxes is kept.
             let membership = ByPart { triangles };
             builder::build(&membership, membership.whole(), root, levels)
         }

@@ -101,6 +101,8 @@ pub fn best(node: &Bounds, axis: usize, lows: &[i32], highs: &[i32], flats: &[i3
         flat += flats[flat..].iter().take_while(|&&x| x <= at).count();
         // Those before the candidate were counted away with their own coordinate, so what remains lies in the plane.
         let (right, in_plane) = ((count - high) as u128, (flat - before) as u128);
+        // A plane in a face of the node divides nothing off. Triangles that reach beyond the node have bounds there or
+        // further out, which still count as before or behind the others.
         if at >= node.high[axis] {
             return found;
         }

@@ -48,6 +48,7 @@ impl Faces {
             return false;
         }
         let (triangles, origins, face) = (&mut self.triangles, &mut self.origins, self.drawn);
+        // A triangle knows the face that it comes from, because attributes are given by face.
         let is_cut = self.cutter.cut(vertices, corners, |triangle| {
             triangles.push(triangle);
             origins.push(face);
@@ -88,6 +89,7 @@ impl Faces {
             let subject = counted(self.left_out, "face has", "faces have");
             warnings.push(Diagnostic::warning(format!("{name}: {subject} fewer than 3 corners and cannot be seen")));
         }
+        // Faces that were left out have had their warning.
         if self.triangles.is_empty() && self.left_out == 0 && !vertices.is_empty() {
             warnings.push(Diagnostic::warning(format!("{name}: vertices without faces cannot be seen")));
         }

@@ -208,6 +208,7 @@ impl<'a> Words<'a> {
 
     /// Notes what is wrong. After many errors, or many warnings, the rest of them is only counted.
     pub(super) fn complain(&mut self, message: Diagnostic) {
+        // Warnings do not use up the room of errors: each kind has its own.
         let alike = self.messages.iter().filter(|other| other.severity == message.severity).count();
         match message.severity {
             _ if alike < SHOWN => self.messages.push(message),
@@ -239,6 +240,7 @@ impl<'a> Words<'a> {
     /// Everything noted, in the order of the text.
     pub(super) fn into_report(mut self) -> Report {
         let offset = |message: &Diagnostic| message.place.as_ref().map_or(usize::MAX, |(place, _)| place.span.start);
+        // Readers look ahead, so messages may come out of the order of the file.
         self.messages.sort_by_key(offset);
         if self.hidden_errors > 0 {
             let hidden = counted(self.hidden_errors, "more error is", "more errors are");
@@ -269,6 +271,7 @@ impl<'a> Words<'a> {
     /// too large passes: that is a file cut short, which is better said where it ends. What the rest can really hold.
     pub(super) fn room(&mut self, count: u32, word: Word<'_>, what: &str, octets: usize) -> Option<usize> {
         let most = (self.remaining() + 1) / octets;
+        // A count that is a little too large is told where the file ends, which says more; only absurd ones are told here.
         if count as usize / 16 > most {
             let message = format!("{count} {what} are announced, but the rest of the file has room for {most} at most");
             self.refuse(word, message, "a wrong number, or the file is cut short");
@@ -295,6 +298,7 @@ impl<'a> Words<'a> {
                     complaint = complaint.hint("words are separated by spaces and tabs");
                 } else if word.text.replacen(',', ".", 1).parse::<f64>().is_ok() {
                     complaint = complaint.hint("decimals follow a point, not a comma");
+                // All numbers of such a file are written so, and one message is enough.
                 } else if word.text.contains(',') {
                     complaint = complaint.hint("numbers are separated by blanks, not commas");
                     self.is_lost = true;

@@ -102,6 +102,7 @@ fn read<'a>(words: &mut Words<'a>, name: &str) -> Option<ObjContents<'a>> {
             "usemtl" => {
                 let word = rest();
                 let next = contents.names.len() as u32;
+                // Names are numbered at their first use, which keeps the materials in the order of the file.
                 let number = *numbers.entry(word.text).or_insert(next);
                 if number == next {
                     contents.names.push(word);
@@ -164,6 +165,7 @@ impl<'a> ObjContents<'a> {
         for &word in arguments {
             let Some(number) = reference(words, word, face, self.vertices.len()) else { continue };
             if number as usize >= self.vertices.len() {
+                // A face may name a vertex that comes later; at the end it is known whether one did.
                 self.ahead.push((face, number, word));
             }
             self.corners.push(number);
@@ -201,6 +203,7 @@ impl<'a> ObjContents<'a> {
         let mut named = Vec::new();
         let mut start = 0;
         for &(end, material) in &self.faces {
+            // Faces that are left out have no material, so that list and faces stay in step.
             if faces.push(&self.vertices, &self.corners[start..end], Spec::Default) {
                 named.push(material);
             }
@@ -242,6 +245,7 @@ fn reference(words: &mut Words<'_>, word: Word<'_>, face: usize, known: usize) -
             Ok(number) => return Some(number),
             Err(_) => format!("face {face} has vertex {number}, which is too large a number"),
         },
+        // Negative numbers count back from the vertices so far: with 8 of them, -1 is the vertex 8, which has number 7 here.
         Ok(number) if has_good_rest => match known.checked_sub(number.unsigned_abs() as usize) {
             Some(number) => return Some(number as u32),
             None => {

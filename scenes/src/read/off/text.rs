@@ -84,6 +84,7 @@ fn numbers_of_vertex(words: &mut Words<'_>, header: &Header) -> usize {
     let at = words.position();
     let in_line = words.next().map_or(0, |word| words.rest_of_line(word).0);
     words.seek(at);
+    // The header says that there are colours, not of how many components: the first vertex shows it.
     if in_line == others + 3 { others + 3 } else { others + 4 }
 }
 
@@ -181,6 +182,7 @@ fn faces<'a>(
                 return None;
             };
             let number = words.whole(corner, || format!("a vertex number of face {n}"));
+            // Faces with a wrong corner are left out and read on from, so that the end of the file can tell which count is wrong.
             is_good &= number.is_some_and(|number| number < points.0);
             match (number, &mut beyond) {
                 (Some(number), _) if number < points.0 => corners.push(number),
@@ -249,6 +251,7 @@ impl ColourReader {
         let mut values = [0.0; 4];
         for (value, word) in values.iter_mut().zip(given.iter().flatten()) {
             *value = words.unused_number(*word, || format!("a colour component of face {n}"));
+            // One component with a point is enough: 1 0 0.5 is a colour from 0 to 1, 255 0 128 one from 0 to 255.
             if word.text.contains(['.', 'e', 'E']) {
                 writing = Writing::Decimal;
             }

@@ -77,6 +77,7 @@ pub(super) fn read<'a>(words: &mut Words<'a>) -> Option<(Header, Vec<Element<'a>
         }
         first.get_or_insert(word);
         let parts: Vec<Word<'a>> = line.parts().collect();
+        // The library names no place, so each line is tried by itself first.
         if parser.read_header_line(line.text).is_err() {
             refuse(words, word, line);
             // What follows is not wrong because of this.

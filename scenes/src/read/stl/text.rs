@@ -115,6 +115,7 @@ impl Statements<'_> {
             let end = rest.last().unwrap_or(&first).span().end;
             let keyword = lower(first.text);
             let step = self.step.unwrap_or(0);
+            // Some programs write `end solid`, and `end loop` and `end facet` with it.
             let is_end = keyword == "endsolid" || keyword == "end" && is_word(&rest, "solid");
             self.last.set(Last { span: first.start..end, step });
             match keyword.as_ref() {
@@ -240,6 +241,7 @@ fn explain(words: &mut Words<'_>, last: &Last) {
         words.complain(Diagnostic::error(format!("expected `{expected}`")).at(place, "not this"));
         return;
     }
+    // Keyword and number of words are right, so it must be one of the coordinates.
     for (word, name) in found[1..].iter().zip(["x", "y", "z"]) {
         let value = words.number(*word, || format!("{name} of a vertex"));
         if !(value as f32).is_finite() {

@@ -13,8 +13,13 @@ struct Wave {
     signals: BTreeMap<String, Vec<String>>,
 }
 
+/// Number of octets of the header block without its kind, of which the last 8 are what viewers add to all times.
+const HEADER: usize = 329;
+
 impl Wave {
     fn read(octets: Vec<u8>, start: u64, end: u64) -> Wave {
+        assert_eq!(octets[1..9], (HEADER as u64).to_be_bytes());
+        assert_eq!(octets[HEADER - 7..=HEADER], [0; 8], "times are those of the run as they are");
         let mut reader = FstReader::open(Cursor::new(octets)).expect("it is an FST file");
         let header = reader.get_header();
         assert_eq!((header.timescale_exponent, header.end_time), (-8, end), "a clock of 100 MHz is 10 ns");
@@ -79,7 +84,8 @@ fn a_wave_shows_the_bus_and_every_processor() {
         let is_name = |event: &&Value| event["name"] == "thread_name" && event["tid"] == track;
         events.iter().find(is_name).unwrap()["args"]["name"].as_str().unwrap().to_owned()
     };
-    assert_eq!((0..5).map(named).collect::<Vec<_>>(), ["core 0", "core 1", "core 2", "main", "bus"]);
+    assert!(events.iter().all(|event| event["tid"].as_u64() > Some(0)), "thread 0 is the idle task of a system");
+    assert_eq!((1..6).map(named).collect::<Vec<_>>(), ["core 0", "core 1", "core 2", "main", "bus"]);
     let clocks = |track: u64, name: &str| {
         let is_it = |event: &&Value| {
             event["tid"] == track && event["ph"] == "X" && event["name"].as_str().unwrap().starts_with(name)
@@ -87,14 +93,14 @@ fn a_wave_shows_the_bus_and_every_processor() {
         let length = |event: &Value| (event["dur"].as_f64().unwrap() * 100.0).round() as usize;
         events.iter().filter(is_it).map(length).sum::<usize>()
     };
-    assert_eq!(clocks(4, ""), wave.count("bus.busy", "1"));
-    assert_eq!(clocks(4, "core 1 "), wave.count("core1.grant", "1"));
+    assert_eq!(clocks(5, ""), wave.count("bus.busy", "1"));
+    assert_eq!(clocks(5, "core 1 "), wave.count("core1.grant", "1"));
     for (track, core) in masters.iter().enumerate() {
         for (name, state) in [("idle", "00"), ("busy", "01"), ("waiting", "10")] {
-            assert_eq!(clocks(track as u64, name), wave.count(&format!("{core}.state"), state), "{core} {name}");
+            assert_eq!(clocks(track as u64 + 1, name), wave.count(&format!("{core}.state"), state), "{core} {name}");
         }
     }
-    assert!(clocks(0, "pixel ") > 5_000 && clocks(4, "core 0 reads triangles") > 0);
+    assert!(clocks(1, "pixel ") > 5_000 && clocks(5, "core 0 reads triangles") > 0);
 }
 
 #[test]
@@ -107,10 +113,44 @@ fn a_pixel_is_shown_from_its_message_to_its_end() {
     let events = trace["traceEvents"].as_array().unwrap();
     let pixel = events.iter().find(|event| event["name"] == format!("pixel {}", 4 * 12 + 5)).expect("it is there");
     let (first, after) = (&pixel["args"]["first clock"], &pixel["args"]["clock after"]);
-    assert_eq!(pixel["dur"].as_f64().unwrap() * 100.0, (after.as_u64().unwrap() - first.as_u64().unwrap()) as f64);
+    let clocks = (pixel["dur"].as_f64().unwrap() * 100.0).round() as u64;
+    assert_eq!(clocks, after.as_u64().unwrap() - first.as_u64().unwrap());
     let own = |event: &&Value| event["tid"] == pixel["tid"] && event["ph"] == "X" && event["name"] != pixel["name"];
     let parts: f64 = events.iter().filter(own).map(|event| event["dur"].as_f64().unwrap()).sum();
     assert!((parts - pixel["dur"].as_f64().unwrap()).abs() < 1e-6, "busy, waiting and idle make up the pixel");
+}
+
+/// Nanoseconds of a time in microseconds, as viewers count.
+type Counted = fn(f64) -> u64;
+
+#[test]
+fn slices_lie_within_or_behind_each_other() {
+    let session = Session::new();
+    for clock_hz in [48_000_000, 100_000_000, 2_000_000_000] {
+        session.write("a.toml", &format!("clock_hz = {clock_hz}\n"));
+        session.succeed("trace cornell --size 8x6 --clocks 100..20000 --machine a.toml --perfetto a.json");
+        let trace: Value = serde_json::from_slice(&session.read("a.json")).unwrap();
+        let ways: [Counted; 2] = [|time| (time * 1e3) as u64, |time| (time * 1e3).round() as u64];
+        for counted in ways {
+            let mut tracks: BTreeMap<u64, Vec<(u64, u64)>> = BTreeMap::new();
+            for event in trace["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X") {
+                let [start, length] = ["ts", "dur"].map(|key| counted(event[key].as_f64().unwrap()));
+                tracks.entry(event["tid"].as_u64().unwrap()).or_default().push((start, start + length));
+            }
+            assert!(tracks.len() > 2);
+            for (track, mut slices) in tracks {
+                // The longer one of two that begin together holds the other one.
+                slices.sort_by_key(|&(start, end)| (start, u64::MAX - end));
+                let mut open: Vec<u64> = Vec::new();
+                for (start, end) in slices {
+                    open.retain(|&other| other > start);
+                    let inner = open.last().copied().unwrap_or(u64::MAX);
+                    assert!(end <= inner, "{clock_hz} Hz, track {track}: {start}..{end} reaches beyond {inner}");
+                    open.push(end);
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -76,6 +76,8 @@ pub(crate) struct Assembler<'a> {
     pub expansions: usize,
     pub lines_read: usize,
     pub octets_read: usize,
+    /// Octets that count towards [`crate::limits::EXPANDED_OCTETS`].
+    pub octets_expanded: usize,
     /// Some text could not be read, so that missing names say nothing.
     pub is_incomplete: bool,
     pub is_last_pass: bool,
@@ -123,6 +125,7 @@ pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
         expansions: 0,
         lines_read: 0,
         octets_read: 0,
+        octets_expanded: 0,
         is_incomplete: false,
         is_last_pass: false,
         body: None,

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::assembler::Assembler;
 use crate::conditional::Condition;
 use crate::explain;
-use crate::limits::{EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
+use crate::limits::{EXPANDED_LINE, EXPANDED_OCTETS, EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
 use crate::line::{Line, Substitution};
 use crate::message::{At, Call, Problem, Via};
 use crate::symbol::{Name, SymbolValue};
@@ -153,11 +153,13 @@ impl Assembler<'_> {
 
     /// The next line of the innermost frame.
     pub(crate) fn fetch_in_frame(&mut self) -> Option<Line> {
+        let is_nested = self.expansion_depth() > 1;
         let frame = self.frames.last_mut()?;
         let line = frame.lines.get(frame.next)?;
         frame.next += 1;
         // Lines of a macro are read in the context of the call, so that messages can name it.
         let context = frame.context.unwrap_or(line.context);
+        let written = line.text.len();
         let line = match &frame.substitution {
             Some(substitution) => line.substituted(substitution, context),
             None => {
@@ -168,11 +170,17 @@ impl Assembler<'_> {
         };
         self.lines_read += 1;
         self.octets_read += line.text.len();
+        self.octets_expanded += match is_nested {
+            true => line.text.len() + EXPANDED_LINE,
+            false => line.text.len().saturating_sub(written),
+        };
         // Count what was read, expansions included: a short text can ask for endless lines.
         let excess = if self.lines_read > LINES {
             Some(format!("the program has more than {LINES} lines with all its expansions"))
         } else if self.octets_read > TEXT_OCTETS {
             Some(format!("the program has more than {TEXT_OCTETS} octets of text with all its expansions"))
+        } else if self.octets_expanded > EXPANDED_OCTETS {
+            Some(format!("macro calls and repetitions inside others make more than {EXPANDED_OCTETS} octets of text"))
         } else if line.text.len() > LINE_OCTETS {
             Some(format!("the line is longer than {LINE_OCTETS} octets"))
         } else {
@@ -252,13 +260,18 @@ impl Assembler<'_> {
         None
     }
 
+    /// Number of macro calls and repetitions around this place.
+    pub(crate) fn expansion_depth(&self) -> usize {
+        self.frames.iter().filter(|frame| !matches!(frame.origin, Origin::File(_))).count()
+    }
+
     /// Enters a frame, unless there are too many inside each other.
     pub(crate) fn enter(&mut self, frame: Frame, at: At) {
-        let (is_file, most) = match frame.origin {
-            Origin::File(_) => (true, INCLUDE_DEPTH),
-            _ => (false, EXPANSION_DEPTH),
+        let depth = self.expansion_depth();
+        let (is_file, depth, most) = match frame.origin {
+            Origin::File(_) => (true, self.frames.len() - depth, INCLUDE_DEPTH),
+            _ => (false, depth, EXPANSION_DEPTH),
         };
-        let depth = self.frames.iter().filter(|other| matches!(other.origin, Origin::File(_)) == is_file).count();
         if depth >= most {
             let what = if is_file {
                 "files include each other"
@@ -276,6 +289,36 @@ impl Assembler<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_short_text_can_ask_for_so_much_work_only() {
+        let tenfold: String =
+            (1..12).map(|n| format!(".macro m{n}\n{}.endm\n", format!("m{}\n", n - 1).repeat(10))).collect();
+        let parameters: Vec<String> = (0..256).map(|n| format!("p{n}=1")).collect();
+        let names: Vec<String> = (0..5000).map(|n| format!("l{n}")).collect();
+        for text in [
+            format!(".macro m0\n.endm\n{tenfold}m11\n"),
+            ".rept 1000\n.rept 1000\n.rept 1000\nnop\n.endr\n.endr\n.endr\n".to_owned(),
+            format!(".macro m {}\n.endm\n.rept 100000\nm\n.endr\n", parameters.join(",")),
+            format!(".macro m\n.local {}\n.endm\n.rept 100000\nm\n.endr\n", names.join(",")),
+            format!(".macro m r:vararg\n{}.endm\nm {}\n", ".word \\r\n".repeat(1000), "1+".repeat(400_000) + "1"),
+            ".macro m n\nm (\\n + \\n)\n.endm\nm 1\n".to_owned(),
+        ] {
+            let (isa, options) = (isa::Isa::base(), crate::Options::default());
+            let mut assembler = crate::assembler::new(&isa, &options);
+            assembler.take_options(&messages::Source::new("t.s", text.as_str()));
+            assembler.enter_file(0, At::default());
+            assembler.read_frames();
+            let (calls, lines, octets) = (assembler.expansions, assembler.lines_read, assembler.octets_read);
+            assert!(assembler.is_incomplete, "it is given up: {text:.60}");
+            let most = EXPANDED_OCTETS / EXPANDED_LINE + 1000;
+            assert!(
+                calls <= most && lines <= most && octets <= 3 * EXPANDED_OCTETS,
+                "{calls} {lines} {octets}: {text:.60}"
+            );
+            assert!(assembler.octets_expanded <= EXPANDED_OCTETS + 2 * LINE_OCTETS, "{text:.60}");
+        }
+    }
 
     #[test]
     fn directives_are_found_behind_labels() {

@@ -10,6 +10,16 @@ pub const LINES: usize = 1_000_000;
 pub const LINE_OCTETS: usize = 1 << 20;
 /// Octets of all lines together.
 pub const TEXT_OCTETS: usize = 32 << 20;
+/// Octets that expansions make: those that arguments add to lines, and all of calls and repetitions inside others.
+pub const EXPANDED_OCTETS: usize = 4 << 20;
+/// Octets that a line inside of two expansions counts besides those of its text.
+pub const EXPANDED_LINE: usize = 16;
+/// Parameters of a macro.
+pub const PARAMETERS: usize = 256;
+/// Names that the suggestions of all messages are sought among, together.
+pub const COMPARED_NAMES: usize = 200_000;
+/// Octets of the longest name for which a similar one is sought.
+pub const COMPARED_OCTETS: usize = 100;
 /// Macro calls and repetitions inside each other.
 pub const EXPANSION_DEPTH: usize = 64;
 /// Files that include each other.

@@ -173,6 +173,11 @@ pub(crate) struct Substitution {
 }
 
 impl Substitution {
+    /// Octets of all names and texts.
+    pub fn octets(&self) -> usize {
+        self.arguments.iter().chain(&self.locals).map(|(name, text)| name.len() + text.len()).sum()
+    }
+
     /// The replacement of a backslash and the first octets of `rest`, and the number of those octets.
     fn backslash(&self, rest: &str) -> Option<(Rc<str>, usize)> {
         if let (true, Some(number)) = (rest.starts_with('@'), self.number) {

@@ -6,7 +6,7 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
 use crate::frame::{Frame, Origin, Repeat, leading_directive};
-use crate::limits::LINES;
+use crate::limits::{LINES, PARAMETERS};
 use crate::line::{Line, Substitution};
 use crate::message::{At, Call, Parsed, Problem, Via};
 use crate::symbol::SymbolValue;
@@ -156,6 +156,10 @@ impl Assembler<'_> {
                 let message = format!("the parameter `{text}` is there twice");
                 return Err(Problem::new(explain::DUPLICATE, message, at, "second one"));
             }
+            if parameters.len() == PARAMETERS {
+                let message = format!("the macro `{name}` has more than {PARAMETERS} parameters");
+                return Err(Problem::new(explain::SIZE, message, at, "one too many"));
+            }
             // One that takes the rest leaves nothing for another.
             if parameters.last().is_some_and(|last| last.takes_rest) {
                 return Err(Problem::new(
@@ -207,6 +211,10 @@ impl Assembler<'_> {
         match self.macro_arguments(definition, at, cursor) {
             Err(problem) => self.messages.add(problem),
             Ok(substitution) => {
+                // A short line that is repeated can call with long arguments: they count before they are put into any line.
+                if self.expansion_depth() > 0 {
+                    self.octets_expanded += substitution.octets();
+                }
                 let via = Via::Macro(definition.name.clone());
                 let context = self.messages.enter(Call { at: cursor.line.at_all(), via });
                 let mut frame = Frame::new(definition.lines.clone(), Origin::Macro);

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use messages::{Diagnostic, Place, Report, Severity, Source, nearest, question};
 
-use crate::limits::{KEPT_MESSAGES, MESSAGES};
+use crate::limits::{COMPARED_NAMES, COMPARED_OCTETS, KEPT_MESSAGES, MESSAGES};
 
 /// A place: octets of a file, and the chain of macro calls through which the text was reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -160,8 +160,25 @@ impl Messages {
         let is_error = |problem: &&Problem| problem.severity == Severity::Error;
         let beyond = self.unkept + self.kept.len().saturating_sub(MESSAGES);
         let errors = self.unkept_errors + self.kept.iter().skip(MESSAGES).filter(is_error).count();
-        let mut shown: Vec<Diagnostic> =
-            self.kept.into_iter().take(MESSAGES).map(|problem| diagnostic(problem, sources, &calls, &known)).collect();
+        // Every message may seek a name among all that there are: the first ones do until that becomes long.
+        let mut compared = 0;
+        let mut similar = |name: &str, among: Among| {
+            if compared > COMPARED_NAMES || name.len() > COMPARED_OCTETS {
+                return None;
+            }
+            let names = known(among);
+            compared += names.len();
+            if compared > COMPARED_NAMES {
+                return None;
+            }
+            nearest(name, names.into_iter().filter(|word| word.len() <= COMPARED_OCTETS))
+        };
+        let mut shown: Vec<Diagnostic> = self
+            .kept
+            .into_iter()
+            .take(MESSAGES)
+            .map(|problem| diagnostic(problem, sources, &calls, &mut similar))
+            .collect();
         if beyond > 0 {
             let text = if beyond == 1 { "message is" } else { "messages are" };
             shown.push(Diagnostic::note(format!("{beyond} more {text} not shown"), errors));
@@ -194,7 +211,7 @@ fn diagnostic<'a>(
     problem: Problem,
     sources: &[Arc<Source>],
     calls: &[Call],
-    known: &impl Fn(Among) -> Vec<&'a str>,
+    similar: &mut impl FnMut(&str, Among) -> Option<&'a str>,
 ) -> Diagnostic {
     let place = |at: At| Place::new(&sources[at.source as usize], at.start as usize..at.end as usize);
     let mut message = match problem.severity {
@@ -212,7 +229,7 @@ fn diagnostic<'a>(
     for call in shown_calls(problem.at.map_or(0, |at| at.context), calls) {
         message = message.also(place(call.at), call.via.label());
     }
-    let suggestion = problem.suggest.as_ref().and_then(|(name, among)| nearest(name, known(*among)));
+    let suggestion = problem.suggest.as_ref().and_then(|(name, among)| similar(name, *among));
     let is_same = problem.suggest.as_ref().is_some_and(|(name, _)| suggestion == Some(name.as_str()));
     match (suggestion, problem.hint) {
         (Some(word), _) if is_same => {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::assembler::{Assembler, Section};
 use crate::cursor::Cursor;
 use crate::explain;
-use crate::frame::{Origin, leading_directive};
+use crate::frame::leading_directive;
 use crate::line::Line;
 use crate::listing::Record;
 use crate::message::{At, Parsed, Problem};
@@ -38,7 +38,7 @@ impl Assembler<'_> {
     /// Notes a line for the listing, without anything made.
     pub(crate) fn record(&mut self, line: &Line) {
         let here = self.location() as u32;
-        let depth = self.frames.iter().filter(|frame| !matches!(frame.origin, Origin::File(_))).count();
+        let depth = self.expansion_depth();
         self.records.push(Record {
             source: line.source,
             line: line.number,

@@ -68,6 +68,25 @@ fn what_is_too_large_is_one_error() {
 }
 
 #[test]
+fn similar_names_are_sought_among_so_many_only() {
+    let hints = |labels: usize, name: &str| {
+        let text: String = (0..labels).map(|n| format!("{name}{n}: nop\n")).collect();
+        let found = report(&format!("{text}j {name}_1\n"));
+        found.render(false).contains("did you mean")
+    };
+    assert!(hints(1000, "label"));
+    assert!(!hints(limits::COMPARED_NAMES + 1, "label"));
+    assert!(!hints(10, &"long".repeat(limits::COMPARED_OCTETS / 4)));
+}
+
+#[test]
+fn macros_have_so_many_parameters_only() {
+    let header = |count: usize| (0..count).map(|n| format!("p{n}")).collect::<Vec<_>>().join(",");
+    assert_eq!(codes(&format!(".macro m {}\n.endm", header(limits::PARAMETERS))), [""; 0]);
+    assert_eq!(codes(&format!(".macro m {}\n.endm", header(limits::PARAMETERS + 1))), ["E025"]);
+}
+
+#[test]
 fn many_errors_are_cut_and_counted() {
     let found = report(&"frobnicate s1\n".repeat(250));
     assert_eq!(found.0.len(), limits::MESSAGES + 1);

@@ -9,7 +9,7 @@ use crate::limits::{BUFFER, WORDS};
 use crate::message::{Among, At, Parsed, Problem};
 use crate::token::{Kind, text_octets};
 
-/// Range of a number of `width` octets, signed or unsigned; eight octets are signed.
+/// Range of a number of `width` octets, signed or unsigned; eight octets are signed, where a pattern was made one by its reader.
 fn range(width: usize) -> (i64, i64) {
     match width {
         1 => (-(1 << 7), (1 << 8) - 1),
@@ -22,7 +22,10 @@ fn range(width: usize) -> (i64, i64) {
 impl Assembler<'_> {
     /// `.byte`, `.half`, `.word`, `.wide`: numbers of `width` octets.
     pub(crate) fn numbers(&mut self, width: usize, at: At, cursor: &mut Cursor) -> Parsed<()> {
-        self.number_list(width, at, cursor, |assembler, cursor| assembler.expression(cursor))
+        self.number_list(width, at, cursor, |assembler, cursor| match width {
+            8 => assembler.wide_expression(cursor),
+            _ => assembler.expression(cursor),
+        })
     }
 
     /// `.fixed format, number, ...`: 32 bits each.

@@ -110,7 +110,7 @@ directives! {
     ".half" [".short", ".hword"] "number, ..." Action::Numbers(2), "Numbers of 2 octets, -32768 to 65535, little-endian.";
     ".word" [".long", ".int"] "number, ..." Action::Numbers(4),
         "Numbers of 4 octets, -2^31 to 2^32-1, little-endian; in the code, words as they are.";
-    ".wide" [".quad"] "number, ..." Action::Numbers(8), "Numbers of 8 octets, little-endian.";
+    ".wide" [".quad"] "number, ..." Action::Numbers(8), "Numbers of 8 octets, little-endian; `0x` with up to 16 digits is the pattern of one with its sign.";
     ".fixed" "format, number, ..." Action::Fixed,
         "Numbers of 4 octets, each rounded to the nearest of the format, ties up; a number that is no decimal literal is raw.";
     ".ascii" "\"text\", ..." Action::Texts { ends_with_zero: false },

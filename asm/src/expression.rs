@@ -115,6 +115,21 @@ impl Assembler<'_> {
         self.expression(cursor)
     }
 
+    /// Reads a number of a `.wide` list: a literal of digits in base 16, 8 or 2 alone is a pattern of up to 64 bits.
+    pub(crate) fn wide_expression(&mut self, cursor: &mut Cursor) -> Parsed<Expression> {
+        if let Some(token) = cursor.peek()
+            && token.kind == Kind::Integer
+            && cursor.peek_second().is_none_or(|after| after.kind == Kind::Mark(","))
+            && cursor.text(token).starts_with(['0'])
+            && let Ok(pattern) = integer_value(cursor.text(token))
+        {
+            let at = cursor.at(token);
+            cursor.skip();
+            return Ok(Expression { steps: vec![(Step::Number(pattern as i64), at)], at });
+        }
+        self.expression(cursor)
+    }
+
     fn infix_expression(
         &mut self,
         cursor: &mut Cursor,

@@ -124,6 +124,17 @@ fn structures_have_odd_offsets_and_sizes() {
 }
 
 #[test]
+fn wide_numbers_are_read_as_they_are_printed() {
+    let text = ".buffer\n.wide 0xfffffffffffffff9, -9223372036854775808, 0x8000000000000000, 0x10";
+    let octets: Vec<u8> = [-7, i64::MIN, i64::MIN, 16].iter().flat_map(|number| number.to_le_bytes()).collect();
+    assert_eq!(program_with(text, &Options::default()).buffer, octets);
+    for text in [".wide 9223372036854775808", ".wide 0xfffffffffffffff9 + 1", ".word 0xfffffffffffffff9"] {
+        let source = Source::new("t.s", format!(".buffer\n{text}"));
+        assert!(assemble(&source, &Isa::base(), &Options::default()).is_err(), "{text}");
+    }
+}
+
+#[test]
 fn data_is_little_endian_at_any_octet() {
     let options = options_with(&[], &[("pos", 4)]);
     let text = "

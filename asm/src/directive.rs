@@ -6,6 +6,7 @@ use crate::assembler::{Assembler, Section};
 use crate::conditional::Test;
 use crate::cursor::Cursor;
 use crate::explain;
+use crate::foreign;
 use crate::macros::REPETITIONS;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::token::Kind;
@@ -314,9 +315,15 @@ impl Assembler<'_> {
     /// `.include "file"`
     fn include(&mut self, at: At, cursor: &mut Cursor) -> Parsed<()> {
         let token = cursor.peek();
-        let name = self.text_operand(cursor).inspect_err(|_| self.is_incomplete = true)?;
+        // A backslash is an escape, or belongs to no name that is the same on all systems.
+        let hint = token.and_then(|token| foreign::path(cursor.text(token)));
+        let hinted = |mut problem: Box<Problem>| {
+            problem.hint = hint.clone().or(problem.hint);
+            problem
+        };
+        let name = self.text_operand(cursor).inspect_err(|_| self.is_incomplete = true).map_err(hinted)?;
         let name_at = token.map_or(at, |token| cursor.at(token));
-        self.include_file(&name, name_at)
+        self.include_file(&name, name_at).map_err(hinted)
     }
 }
 

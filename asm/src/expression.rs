@@ -6,6 +6,7 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::decimal::Decimal;
 use crate::explain;
+use crate::foreign;
 use crate::function::{FUNCTIONS, Function, Parameters, is_function};
 use crate::limits::PARENTHESES;
 use crate::message::{At, Parsed, Problem};
@@ -284,6 +285,11 @@ impl Assembler<'_> {
                 Step::Symbol(self.names.intern(text))
             }
             Kind::Directive => Step::Symbol(self.names.intern(text)),
+            Kind::Mark("%") => {
+                let mut problem = cursor.expected("a number");
+                problem.hint = foreign::percent(&cursor.line.text[token.start as usize..]);
+                return Err(problem);
+            }
             _ => return Err(cursor.expected("a number")),
         };
         cursor.skip();

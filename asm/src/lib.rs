@@ -16,6 +16,7 @@ mod evaluation;
 pub mod explain;
 mod expression;
 pub mod extension;
+mod foreign;
 mod frame;
 pub mod function;
 pub mod hex;

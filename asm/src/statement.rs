@@ -64,7 +64,9 @@ impl Assembler<'_> {
             && !self.is_skipping()
         {
             let at = line.at(unreadable.start, unreadable.end);
-            self.messages.add(Problem::new(unreadable.code, &*unreadable.message, at, unreadable.label));
+            let mut problem = Problem::new(unreadable.code, &*unreadable.message, at, unreadable.label);
+            problem.hint = unreadable.hint.clone();
+            self.messages.add(problem);
             self.messages.is_muted = true;
         }
         let result = self.statement(&mut cursor);

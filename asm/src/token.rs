@@ -8,6 +8,7 @@ use nom::multi::many0_count;
 use nom::{IResult, Parser};
 
 use crate::explain;
+use crate::foreign;
 
 /// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +45,7 @@ pub(crate) struct Unreadable {
     pub code: &'static str,
     pub message: String,
     pub label: &'static str,
+    pub hint: Option<String>,
     pub start: usize,
     pub end: usize,
 }
@@ -161,6 +163,7 @@ fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
             code: explain::TEXT,
             message: "the text has no closing quotation mark".into(),
             label: "starts here",
+            hint: None,
             start,
             end: line_end,
         },
@@ -168,6 +171,7 @@ fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
             code: explain::TEXT,
             message: "a character stands between two apostrophes".into(),
             label: "not a character",
+            hint: None,
             start,
             end: start + 1,
         },
@@ -182,6 +186,7 @@ fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
                 _ if first.is_alphanumeric() => "names have the letters a to z",
                 _ => "unexpected character",
             },
+            hint: foreign::character(rest),
             start,
             end: start + first.len_utf8(),
         },

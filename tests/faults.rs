@@ -182,6 +182,66 @@ const FAULTS: &[Fault] = &[
         says: &["a.s:1:1", "the last word", "a program ends with `halt`"],
         ..QUIET
     },
+    // Files that guard themselves, and those that do not.
+    Fault {
+        files: &[("a.s", b".ifndef G\n.equ G, 1\n.include \"a.s\"\nmovi s1, 1\nhalt\n.endif\n")],
+        command: "run a.s",
+        says: &["halted after 2 instructions"],
+        ..QUIET
+    },
+    Fault {
+        files: &[
+            ("a.s", b".ifndef A\n.equ A, 1\n.include \"b.s\"\nmovi s1, b\nhalt\n.endif\n"),
+            ("b.s", b".ifndef B\n.equ B, 1\n.include \"a.s\"\n.equ b, 5\n.endif\n"),
+        ],
+        command: "run a.s",
+        says: &["halted after 2 instructions"],
+        ..QUIET
+    },
+    Fault {
+        files: &[("a.s", b".include \"a.s\"\nhalt\n")],
+        command: "assemble a.s",
+        exit: 1,
+        says: &["E021", "`a.s` includes itself"],
+        ..QUIET
+    },
+    // A gap in the listing.
+    Fault {
+        files: &[("a.s", b"nop\n.org 40000\nhalt\n")],
+        command: "assemble a.s --list",
+        says: &["000001  ", " x 39999"],
+        ..QUIET
+    },
+    // What other assemblers write otherwise.
+    Fault {
+        files: &[("a.s", b"add $s1, s2, s3\nmovhi s1, %hi(t)\nlw s1, [s2+4]\n.include \"lib\\x.s\"\n")],
+        command: "assemble a.s",
+        exit: 1,
+        says: &["without `$`: `s1`", "`high(t)`", "`4(s2)`", "`lib/x.s`"],
+        ..QUIET
+    },
+    // A wide number as `run` prints it.
+    Fault {
+        files: &[("a.s", b"halt\n.buffer\n.wide 0xfffffffffffffff9\n")],
+        command: "assemble a.s --list",
+        says: &["f9 ff ff ff ff ff ff ff"],
+        ..QUIET
+    },
+    // Short texts that ask for much.
+    Fault {
+        files: &[("a.s", b".rept 1000\n.rept 1000\n.rept 1000\nnop\n.endr\n.endr\n.endr\n")],
+        command: "assemble a.s",
+        exit: 1,
+        says: &["E025", "make more than 4194304 octets of text"],
+        ..QUIET
+    },
+    Fault {
+        files: &[("a.s", b".macro m n\nm (\\n + \\n)\n.endm\nm 1\n")],
+        command: "assemble a.s",
+        exit: 1,
+        says: &["E0"],
+        ..QUIET
+    },
     // Pipes.
     Fault { input: b"halt\n", command: "run -", says: &["halted after 1 instruction"], ..QUIET },
     Fault { input: b"halt\n", command: "assemble -", says: &["<standard input>: 1 word"], ..QUIET },

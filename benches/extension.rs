@@ -60,7 +60,7 @@ struct Vfma;
 impl Meaning for Vfma {
     #[inline]
     fn execute(&mut self, call: &mut Call) -> Result<Ending, Fault> {
-        // Which arithmetic it is is asked once instead of for each lane.
+        // Which arithmetic it is is asked once instead of for each component.
         let sum = match call.arithmetic {
             Numbers::Nearest32 => vfma(&Nearest32, &call.operands),
             other => vfma(other, &call.operands),

@@ -278,24 +278,24 @@ impl Place {
         format!("`{}` ({})", self.letter as char, register_name(self.kind, self.number))
     }
 
-    fn lanes(&self, registers: &Registers) -> Vec<i64> {
+    fn components(&self, registers: &Registers) -> Vec<i64> {
         match self.kind.register_file() {
             Some('s') => vec![registers.scalar(self.number).into()],
             Some('v') => {
-                let lanes: Vector = registers.vector(self.number);
-                lanes.map(i64::from).to_vec()
+                let components: Vector = registers.vector(self.number);
+                components.map(i64::from).to_vec()
             }
             _ => vec![registers.wide(self.number)],
         }
     }
 
     fn show(&self, registers: &Registers) -> String {
-        let lanes: Vec<String> = self.lanes(registers).iter().map(i64::to_string).collect();
-        if lanes.len() == 1 { lanes[0].clone() } else { format!("({})", lanes.join(", ")) }
+        let components: Vec<String> = self.components(registers).iter().map(i64::to_string).collect();
+        if components.len() == 1 { components[0].clone() } else { format!("({})", components.join(", ")) }
     }
 
     fn apart(&self, a: &Registers, b: &Registers) -> u64 {
-        let lanes = self.lanes(a).into_iter().zip(self.lanes(b));
-        lanes.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+        let components = self.components(a).into_iter().zip(self.components(b));
+        components.map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
     }
 }

@@ -25,7 +25,7 @@ pub struct Constants {
     pub literal_offset: i32,
     /// A distance beyond all others, raw: that of the nearest hit as long as there is none.
     pub never: i32,
-    /// What the triangle test returns for a miss: the largest word, beyond [`Constants::never`].
+    /// Distance that the triangle test returns for a miss: the largest word, beyond [`Constants::never`].
     pub missed: i32,
     /// Packets that a ray may visit after its first one; there are not as many.
     pub most_steps: u32,

@@ -60,7 +60,7 @@ functions! {
     Pixel "pixel" Core Always;
     /// Walks the tree of a pixel's rays.
     RayTree "ray_tree" Core Tree;
-    /// What a ray adds to its pixel.
+    /// Contribution of a ray to its pixel.
     Contribution "contribution" Core Always;
     /// Follows a ray to its nearest hit.
     Trace "trace" Core Always;
@@ -86,11 +86,11 @@ functions! {
     Sqrt "sqrt" Both Always;
     /// Whitted's local term.
     Shade "shade" Core Always;
-    /// Whether a ray is reflected.
+    /// Decision to reflect a ray.
     Reflects "reflects" Core Tree;
     /// The reflected ray.
     Reflect "reflect" Core Tree;
-    /// Whether a ray is refracted.
+    /// Decision to refract a ray.
     Refracts "refracts" Core Glass;
     /// The refracted ray.
     Refract "refract" Core Glass;

@@ -1,4 +1,4 @@
-//! What the loader tells a program about its scene, as assembly text: formats, features, structures, and the map of the local
+//! Prelude of a program, which is all that the loader tells it about its scene, as assembly text: formats, features, structures, and the map of the local
 //! buffer with its initial contents. The text stands before the kernels and can be printed and assembled by hand.
 
 use std::fmt::Write;
@@ -39,7 +39,7 @@ pub(crate) fn structure(text: &mut String, structure: &Structure) {
     let _ = writeln!(text, ".endstruct");
 }
 
-/// How a program remembers the far sides of its walks through the tree.
+/// Memory of a program for the far sides of its walks through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Walk {
     /// Not at all: each walk starts at the root.
@@ -95,7 +95,7 @@ fn written_formats(formats: &Formats) -> Formats {
     Formats { position, t: position + finer, ..*formats }
 }
 
-/// Whether the materials, and the lights, lie in the buffer from the start.
+/// True for a table (materials, lights) that lies in the buffer from the start.
 fn is_local(image: &MemoryImage, kind: MemoryKind) -> bool {
     image.region(kind).len() as u32 <= TABLES / 2
 }
@@ -147,14 +147,14 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
     entries
 }
 
-/// What a walk with boxes needs in any buffer.
+/// Map of what a walk with boxes needs in any buffer.
 const BOXES: &str = "\
 NODE: .space 2 * sizeof(node)
 RUNS: .space 24                 ; run x direction, a wide number an axis
 FARS: .space DEPTH * sizeof(far)
 ";
 
-/// What a walk with planes needs. The first note is the root's face by which the ray leaves the scene; it begins as no plane at all.
+/// Map of what a walk with planes needs. The first note is the root's face by which the ray leaves the scene; it begins as no plane at all.
 const PLANES: &str = "\
 NOTES: .wide -1
     .space (DEPTH + 1) * sizeof(note) - 8

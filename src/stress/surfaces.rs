@@ -8,12 +8,12 @@ use isa::number::ray::Ray;
 use isa::number::{Modes, Nearest32, Overflow, Quantization, Vector};
 use kernels::KernelSet;
 use kernels::twin::exact_triangle::exact_triangle;
-use kernels::twin::lanes::Lanes;
 use kernels::twin::ray;
 use kernels::twin::refract::{Refraction, refracts};
 use kernels::twin::stage::Material;
 use kernels::twin::surface::{Surface, normal, sides};
 use kernels::twin::unit::unit;
+use kernels::twin::vector_arithmetic::VectorArithmetic;
 
 use super::mesh::{Mesh, sphere};
 use super::random::Random;

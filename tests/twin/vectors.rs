@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use isa::number::{Modes, Vector};
-use kernels::twin::lanes::Lanes;
 use kernels::twin::reflect::reflect;
 use kernels::twin::refract::{Refraction, refract, refracts};
 use kernels::twin::stage::Material;
 use kernels::twin::surface::{Surface, normal};
 use kernels::twin::unit::unit;
+use kernels::twin::vector_arithmetic::VectorArithmetic;
 
 use super::accuracy::{Errors, Exact, WORDS, exact_cross, full, modes};
 use super::operands::Series;

@@ -11,7 +11,7 @@ pub const VECTORS: usize = 32;
 /// Wide accumulators that programs can name.
 pub const WIDES: usize = 8;
 
-/// A vector with a lane that is always 0: moved at once where the host can.
+/// A vector with a component that is always 0: moved at once where the host can.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(align(16))]
 struct Padded([i32; 4]);
@@ -107,7 +107,7 @@ impl Registers {
         [x, y, z]
     }
 
-    /// A vector with a fourth lane, which is 0.
+    /// A vector with a fourth component, which is 0.
     #[inline]
     pub(crate) fn padded(&self, number: u8) -> &[i32; 4] {
         &self.vectors[usize::from(number)].0

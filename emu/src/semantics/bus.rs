@@ -1,4 +1,4 @@
-//! Meanings of the rows that ask the machine for something: global memory, messages, barriers. When that happens, and
+//! Semantics of the instructions that ask the machine for something: global memory, messages, barriers. When that happens, and
 //! how long it takes, is the machine's business, behind [`Link`].
 
 use isa::number::Vector;
@@ -212,7 +212,7 @@ impl<L: Link> BusRoom for Port<'_, L> {
     #[inline(always)]
     fn ldv3(&mut self, a: u32, i: i32) -> Result<([Vector; 3], Done), Stop> {
         let words: [i32; 9] = self.link.words(a.wrapping_add_signed(i))?;
-        Ok((std::array::from_fn(|at| std::array::from_fn(|lane| words[3 * at + lane])), Done))
+        Ok((std::array::from_fn(|at| std::array::from_fn(|component| words[3 * at + component])), Done))
     }
 
     #[inline]

@@ -1,4 +1,4 @@
-//! Meanings of the rows that choose the next instruction. Program counters count words.
+//! Semantics of the instructions that choose the next instruction. Program counters count words.
 
 use isa::table::{Done, outcome};
 

@@ -1,4 +1,4 @@
-//! Meanings of the integer rows: 32 bits, modulo 2^32, whatever the machine's word and modes.
+//! Semantics of the integer rows: 32 bits, modulo 2^32, whatever the machine's word and modes.
 
 use isa::number::Arithmetic;
 use isa::table::Done;

@@ -1,4 +1,4 @@
-//! Meanings of the rows on the local buffer. Addresses are octets modulo 2^32; a fault leaves everything as it was.
+//! Semantics of the instructions on the local buffer. Addresses are octets modulo 2^32; a fault leaves everything as it was.
 
 use isa::number::Vector;
 use isa::table::Done;
@@ -63,8 +63,8 @@ impl LocalRoom for Buffer {
     #[inline]
     fn lvh(&mut self, a: u32, i: i32, j: i32) -> Result<(Vector, Done), Fault> {
         let octets: [u8; 6] = self.get(a.wrapping_add_signed(i))?;
-        let lane = |k: usize| i64::from(i16::from_le_bytes([octets[2 * k], octets[2 * k + 1]])) << j;
-        Ok((std::array::from_fn(|k| lane(k) as i32), Done))
+        let component = |k: usize| i64::from(i16::from_le_bytes([octets[2 * k], octets[2 * k + 1]])) << j;
+        Ok((std::array::from_fn(|k| component(k) as i32), Done))
     }
 
     #[inline]

@@ -11,7 +11,7 @@ pub enum Numbers<'a> {
     Other(&'a dyn Arithmetic),
 }
 
-/// Keeps what other arithmetic takes out of loops over lanes, so that the default's are unrolled.
+/// Keeps what other arithmetic takes out of loops over components, so that the default's are unrolled.
 #[cold]
 #[inline(never)]
 fn seldom<R>(compute: impl FnOnce() -> R) -> R {

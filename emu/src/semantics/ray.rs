@@ -1,4 +1,4 @@
-//! Meanings of the rows of the ray unit. The decisions are those of [`isa::number::ray`]; here they meet registers.
+//! Semantics of the instructions of the ray unit. The decisions are those of [`isa::number::ray`]; here they meet registers.
 
 use isa::number::ray::{
     BoxEnd, Plane, Ray, SplitEnd, TriangleEnd, across_box, exit_face, is_surely_before, ratio, step, triangle,

@@ -1,4 +1,4 @@
-//! Meanings of the numeric rows on scalars.
+//! Semantics of the numeric instructions on scalars.
 
 use isa::number::{Arithmetic, split_shift};
 use isa::table::Done;

@@ -1,4 +1,4 @@
-//! Meanings of the numeric rows on vectors of three lanes. Copies move raw bits, everything else quantizes each lane.
+//! Semantics of the numeric instructions on vectors of three components. Copies move raw bits, everything else quantizes each component.
 
 use std::array::from_fn;
 
@@ -8,21 +8,21 @@ use isa::table::Done;
 use super::VectorRoom;
 
 /// Lane `k` of the exact cross product. It fits 64 bits: the largest product is 2^62, the least -(2^62 - 2^31).
-fn cross_lane(a: Vector, b: Vector, k: usize) -> i64 {
+fn cross_component(a: Vector, b: Vector, k: usize) -> i64 {
     let (next, last) = ((k + 1) % 3, (k + 2) % 3);
     i64::from(a[next]) * i64::from(b[last]) - i64::from(a[last]) * i64::from(b[next])
 }
 
-/// The lanes shifted right by what brings the largest to the top of the word, and that shift.
-fn normalize(arithmetic: &impl Arithmetic, lanes: [i64; 3]) -> (Vector, i32) {
-    let [x, y, z] = lanes.map(i64::unsigned_abs);
+/// The components shifted right by what brings the largest to the top of the word, and that shift.
+fn normalize(arithmetic: &impl Arithmetic, components: [i64; 3]) -> (Vector, i32) {
+    let [x, y, z] = components.map(i64::unsigned_abs);
     let shift = normalizing_shift([x.max(y).max(z).into(), 0, 0], arithmetic.word());
-    // A lane that goes left ends within the word, so 64 bits hold it.
-    let lane = |lane: i64| match u32::try_from(shift) {
-        Ok(right) => arithmetic.narrow64(lane, right),
-        Err(_) => arithmetic.narrow64(lane << -shift, 0),
+    // A component that goes left ends within the word, so 64 bits hold it.
+    let component = |component: i64| match u32::try_from(shift) {
+        Ok(right) => arithmetic.narrow64(component, right),
+        Err(_) => arithmetic.narrow64(component << -shift, 0),
     };
-    (lanes.map(lane), shift)
+    (components.map(component), shift)
 }
 
 impl<T: Arithmetic> VectorRoom for T {
@@ -38,12 +38,12 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vneg(&self, a: Vector) -> (Vector, Done) {
-        (a.map(|lane| self.narrow64(-i64::from(lane), 0)), Done)
+        (a.map(|component| self.narrow64(-i64::from(component), 0)), Done)
     }
 
     #[inline]
     fn vabs(&self, a: Vector) -> (Vector, Done) {
-        (a.map(|lane| self.narrow64(i64::from(lane).abs(), 0)), Done)
+        (a.map(|component| self.narrow64(i64::from(component).abs(), 0)), Done)
     }
 
     #[inline]
@@ -63,12 +63,12 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vscale(&self, a: Vector, b: i32, i: i32) -> (Vector, Done) {
-        (a.map(|lane| self.narrow64(i64::from(lane) * i64::from(b), i as u32)), Done)
+        (a.map(|component| self.narrow64(i64::from(component) * i64::from(b), i as u32)), Done)
     }
 
     #[inline]
     fn vdiv(&self, a: Vector, b: i32, i: i32) -> (Vector, Done) {
-        (a.map(|lane| self.quotient(i128::from(lane) << i, b.into())), Done)
+        (a.map(|component| self.quotient(i128::from(component) << i, b.into())), Done)
     }
 
     #[inline]
@@ -79,12 +79,12 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vcross(&self, a: Vector, b: Vector, i: i32) -> (Vector, Done) {
-        (from_fn(|k| self.narrow64(cross_lane(a, b, k), i as u32)), Done)
+        (from_fn(|k| self.narrow64(cross_component(a, b, k), i as u32)), Done)
     }
 
     #[inline]
     fn vcrossn(&self, a: Vector, b: Vector) -> (Vector, Done) {
-        (normalize(self, from_fn(|k| cross_lane(a, b, k))).0, Done)
+        (normalize(self, from_fn(|k| cross_component(a, b, k))).0, Done)
     }
 
     #[inline]
@@ -110,9 +110,9 @@ impl<T: Arithmetic> VectorRoom for T {
 
     #[inline]
     fn vgetr(&self, a: Vector, b: i32) -> (i32, Done) {
-        // Lane by lane: engines that compute many at once have no use for an index.
-        let lane = |k: usize| if b & 3 == k as i32 { a[k] } else { 0 };
-        (lane(0) | lane(1) | lane(2), Done)
+        // Component by component: engines that compute many at once have no use for an index.
+        let component = |k: usize| if b & 3 == k as i32 { a[k] } else { 0 };
+        (component(0) | component(1) | component(2), Done)
     }
 
     #[inline]

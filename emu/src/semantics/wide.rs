@@ -1,4 +1,4 @@
-//! Meanings of the rows on wide accumulators. Numeric rows quantize to twice the word; rows on patterns always see the
+//! Semantics of the instructions on wide accumulators. Numeric rows quantize to twice the word; rows on patterns always see the
 //! 64 bits of the register.
 
 use isa::number::{Arithmetic, Vector, split_shift};

@@ -17,16 +17,16 @@
     mul   s12, s17, s12, \shift
 .endm
 
-; s12, shifted as what stands in lane \lane of v14. Scratch: s17.
-.macro shift_with lane
-    vget  s17, v14, \lane
+; s12, shifted as what stands in component \component of v14. Scratch: s17.
+.macro shift_with component
+    vget  s17, v14, \component
     scale s12, s12, s17
 .endm
 
-; \d = \a, shifted into range; by how much goes to lane \lane of v14. Scratch: s17.
-.macro shift_into_range d, a, lane
+; \d = \a, shifted into range; by how much goes to component \component of v14. Scratch: s17.
+.macro shift_into_range d, a, component
     vnorm \d, s17, \a
-    vput  v14, s17, \lane
+    vput  v14, s17, \component
 .endm
 
 .func triangle

@@ -4,7 +4,7 @@
 ;
 ; In: slot, origin, direction. Out: s12 = t, or MISSED. Returns by link_step. Scratch: v6 to v11, s12, w0 to w7.
 
-; Decides a number that is exactly 0 as if the direction were moved by (e, e^2, e^3), e infinitely small: by the first lane other
+; Decides a number that is exactly 0 as if the direction were moved by (e, e^2, e^3), e infinitely small: by the first component other
 ; than 0 of the wide normal \n. Falls through when that has the sign asked for; a normal of 0 is a miss.
 .macro decide_tie sign, n, n1, n2
     bwnez \n, decided_\@

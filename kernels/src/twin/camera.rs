@@ -4,13 +4,19 @@ use std::array::from_fn;
 
 use scenes::camera::RawCamera;
 
-use super::lanes::{Lanes, WideVector};
 use super::ray::Ray;
 use super::unit::sqrt;
+use super::vector_arithmetic::{VectorArithmetic, WideVector};
 
 /// The ray of a pixel, row 0 on top. In perspective each component is the quotient of the way to the pixel, in twice the word, and its
 /// length, in a word.
-pub fn camera(arithmetic: &impl Lanes, direction_bits: u32, camera: &RawCamera, column: u32, row: u32) -> Ray {
+pub fn camera(
+    arithmetic: &impl VectorArithmetic,
+    direction_bits: u32,
+    camera: &RawCamera,
+    column: u32,
+    row: u32,
+) -> Ray {
     let [column, row] = [column, row].map(|number| arithmetic.widen((number as i32).into(), 0));
     let step = |step: i64, number: i64| i128::from(arithmetic.widen(i128::from(step) * i128::from(number), 0));
     let right = |from: i64, by: i64| arithmetic.widen(i128::from(from) + step(by, column), 0);

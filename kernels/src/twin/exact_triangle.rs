@@ -4,8 +4,8 @@
 use isa::number::Vector;
 use isa::number::ray::ratio;
 
-use super::lanes::Lanes;
 use super::ray::Ray;
+use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::Constants;
 
 type Exact = [i128; 3];
@@ -21,7 +21,12 @@ fn dot(a: Exact, b: Exact) -> i128 {
 /// The distance at which a ray hits a triangle, or [`Constants::missed`], which a distance beyond the word is too.
 ///
 /// An edge that the ray meets exactly is decided as if the direction were moved by (e, e^2, e^3), e infinitely small.
-pub fn exact_triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+pub fn exact_triangle(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    ray: &Ray,
+    vertices: &[Vector; 3],
+) -> i32 {
     let seen = |vertex: Vector| std::array::from_fn(|k| i128::from(vertex[k]) - i128::from(ray.origin[k]));
     let [a, b, c]: [Exact; 3] = vertices.map(seen);
     let direction = ray.direction.map(i128::from);

@@ -8,7 +8,6 @@ pub mod descend;
 pub mod exact_triangle;
 pub mod exit_face;
 pub mod first_packet;
-pub mod lanes;
 pub mod planes;
 pub mod ray;
 pub mod ray_tree;
@@ -21,6 +20,7 @@ pub mod surface;
 mod trace;
 pub mod triangle;
 pub mod unit;
+pub mod vector_arithmetic;
 
 use std::fmt;
 
@@ -49,7 +49,7 @@ pub struct Twin<A> {
     pub features: SceneFeatures,
     /// Tree, triangles, materials and lights.
     pub stage: Stage,
-    /// Where the rays of the pixels start and go.
+    /// Origins and directions of the camera rays.
     pub camera: RawCamera,
     /// Ambient intensity in the colour format.
     pub ambient: i32,
@@ -57,7 +57,7 @@ pub struct Twin<A> {
     pub background: Vector,
 }
 
-/// Why there is no picture.
+/// Reason that there is no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
     /// The octets of the image hold no scene.

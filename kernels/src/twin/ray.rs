@@ -5,7 +5,7 @@ use std::ops::Range;
 use isa::number::Vector;
 use scenes::kdtree::Bounds;
 
-use super::lanes::Lanes;
+use super::vector_arithmetic::VectorArithmetic;
 
 /// A ray P(t) = origin + t direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,13 +14,13 @@ pub struct Ray {
     pub origin: Vector,
     /// The direction, of unit length.
     pub direction: Vector,
-    /// Absolute value of the direction, lane by lane.
+    /// Absolute value of the direction, component by component.
     pub steep: Vector,
 }
 
 impl Ray {
     /// A ray from its origin and direction.
-    pub fn new(arithmetic: &impl Lanes, origin: Vector, direction: Vector) -> Ray {
+    pub fn new(arithmetic: &impl VectorArithmetic, origin: Vector, direction: Vector) -> Ray {
         Ray { origin, direction, steep: arithmetic.magnitude(direction) }
     }
 

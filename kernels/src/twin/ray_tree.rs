@@ -3,12 +3,12 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::lanes::Lanes;
 use super::ray::{Packet, Ray, Search, Stuck};
 use super::reflect::{reflect, reflects};
 use super::refract::{Refraction, refract, refracts};
 use super::report;
 use super::surface::Surface;
+use super::vector_arithmetic::VectorArithmetic;
 use crate::set::Formulas;
 
 /// A node of the ray tree that is still to be visited.
@@ -33,6 +33,7 @@ impl<A: Arithmetic> Twin<A> {
         branches.clear();
         let weight = 1 << self.constants.formats.weight;
         branches.push(Branch { ray, packet: first, weight, inside: false, level: 0 });
+        // The last one pushed is visited first, so at most one sibling a level waits here.
         while let Some(branch) = branches.pop() {
             let Some(surface) = self.contribution(&branch, &mut colour)? else { continue };
             if self.features.has_tree() && branch.level < self.features.bounces {
@@ -53,6 +54,7 @@ impl<A: Arithmetic> Twin<A> {
             Some(surface) => self.shade(surface)?,
             None => self.background,
         };
+        // Two roundings, as in the kernel: the product, then the sum.
         let weighted = self.arithmetic.scaled(local, branch.weight, self.constants.formats.weight);
         *colour = self.arithmetic.sum(*colour, weighted);
         Ok(surface)
@@ -62,12 +64,14 @@ impl<A: Arithmetic> Twin<A> {
     fn grow(&self, branch: &Branch, surface: &Surface, branches: &mut Vec<Branch>) {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let mut child = |weight: i32, origin: Vector, inside: bool, direction: Vector| {
+            // A ray that cannot change a component of the pixel is not followed.
             if weight > self.features.cutoff {
                 let ray = Ray::new(arithmetic, origin, direction);
                 let packet = self.own_packet(&ray);
                 branches.push(Branch { ray, packet, weight, inside, level: branch.level + 1 });
             }
         };
+        // Total reflection adds its weight to the reflected ray, so the refracted one is decided first and visited last.
         let (total, refracted) = self.transmitted(surface, branch.weight, branch.inside);
         if let Some((weight, direction)) = refracted {
             child(weight, surface.behind, !branch.inside, direction);

@@ -2,12 +2,12 @@
 
 use isa::number::Vector;
 
-use super::lanes::Lanes;
 use super::surface::Surface;
 use super::unit::sqrt;
+use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::Constants;
 
-/// What becomes of the light that a material lets through.
+/// Fate of the light that a material lets through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refraction {
     /// The material is opaque.
@@ -16,7 +16,7 @@ pub enum Refraction {
     Total(i32),
     /// A ray goes through.
     Through {
-        /// Its weight.
+        /// Weight of the refracted ray.
         weight: i32,
         /// 1 - eta^2 (1 - cosine^2), in the direction format.
         k: i32,
@@ -25,9 +25,9 @@ pub enum Refraction {
     },
 }
 
-/// Whether a ray of weight `weight` goes through a surface; `inside` says whether it is in a body.
+/// Refraction of a ray of weight `weight` at a surface, if any; `inside` says whether it is in a body.
 pub fn refracts(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     surface: &Surface,
     weight: i32,
@@ -52,7 +52,13 @@ pub fn refracts(
 }
 
 /// The direction of the refracted ray, eta (D + c N) - sqrt(k) N: no part of it is longer than 1.
-pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface, k: i32, eta: i32) -> Vector {
+pub fn refract(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    surface: &Surface,
+    k: i32,
+    eta: i32,
+) -> Vector {
     let (bits, index) = (constants.formats.direction, constants.formats.index);
     let root = sqrt(arithmetic, arithmetic.widen(i128::from(k) << bits, 0));
     let tangent = arithmetic.sum(surface.incident, arithmetic.scaled(surface.facing, surface.cosine, bits));

@@ -3,12 +3,12 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::lanes::Lanes;
 use super::ray::{Ray, Search, Stuck};
 use super::report;
 use super::stage::Light;
 use super::surface::Surface;
 use super::unit::unit;
+use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::Constants;
 use crate::set::Formulas;
 
@@ -55,7 +55,12 @@ impl<A: Arithmetic> Twin<A> {
 }
 
 /// Direction and cosine for a surface that faces a light `way` from it: the direction to the light and the cosine of its angle with the normal.
-fn lit(arithmetic: &impl Lanes, constants: &Constants, facing: Vector, way: Vector) -> Option<(Vector, i32)> {
+fn lit(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    facing: Vector,
+    way: Vector,
+) -> Option<(Vector, i32)> {
     if arithmetic.wide_dot(facing, way) <= 0 {
         return None;
     }

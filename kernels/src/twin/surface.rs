@@ -1,13 +1,13 @@
-//! What a hit looks like: its point, moved off the surface to both sides, the normal there, and the material.
+//! Surface at a hit: its point, moved off the surface to both sides, the normal there, and the material.
 
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::lanes::Lanes;
 use super::ray::Ray;
 use super::report;
 use super::stage::Material;
 use super::unit::unit;
+use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::{Constants, SIDE_MARGIN};
 use crate::set::Formulas;
 
@@ -30,7 +30,7 @@ pub struct Surface {
 
 /// The unit normal of a triangle that faces a ray, and the cosine of incidence (report 4.1).
 pub fn normal(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     direction_bits: u32,
     direction: Vector,
     vertices: &[Vector; 3],
@@ -40,14 +40,14 @@ pub fn normal(
     let normal = unit(arithmetic, direction_bits, arithmetic.normalized_cross(edge1, edge2));
     let cosine = arithmetic.dot(normal, direction, direction_bits);
     if cosine > 0 {
-        (normal.map(|lane| arithmetic.negative(lane)), cosine)
+        (normal.map(|component| arithmetic.negative(component)), cosine)
     } else {
         (normal, arithmetic.negative(cosine))
     }
 }
 
 /// The point at distance `t` along a ray, each component rounded.
-pub fn point(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, t: i32) -> Vector {
+pub fn point(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, t: i32) -> Vector {
     arithmetic.sum(ray.origin, arithmetic.scaled(ray.direction, t, constants.along()))
 }
 
@@ -60,7 +60,7 @@ pub fn major_axis(vector: Vector) -> usize {
 /// Height of a point over a triangle's plane along an axis, in units of positions with `side_fraction` fraction bits: the volume of the
 /// edges and the way from a corner, by the area of the triangle's shadow along the axis.
 pub fn height(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     point: Vector,
     axis: usize,
@@ -81,7 +81,7 @@ pub fn height(
 /// The points on both sides of the surface at distance `t`: that of the ray first. The point is rounded, so it may lie in the surface or on the
 /// wrong side. Each moves along the normal's major axis by the fewest units, 0 or more, for which it lies strictly on its side.
 pub fn sides(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     ray: &Ray,
     t: i32,

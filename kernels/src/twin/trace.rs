@@ -58,6 +58,7 @@ impl<A: Arithmetic> Twin<A> {
             let has_lower_index = || !is_literal && search.triangle.is_some_and(|nearest| index < nearest);
             if t < search.t || t == search.t && has_lower_index() {
                 (search.t, search.triangle) = (t, Some(index));
+                // A shadow ray asks only for something in the way; the report's loop tests all triangles whatever it has found.
                 if search.takes_any && !is_literal {
                     return;
                 }
@@ -76,6 +77,7 @@ impl<A: Arithmetic> Twin<A> {
         }
         let exit = exit_face(&self.arithmetic, ray, &packet.bounds);
         if search.takes_any || search.triangle.is_some() {
+            // (t + 1) |D_k| < run_k: one unit more, since t may have been rounded down across the plane.
             let slope = i128::from(exit.slope);
             let reached = self.arithmetic.widen(slope + i128::from(search.t) * slope, 0);
             let end = self.arithmetic.widen(i128::from(exit.run) << self.constants.along(), 0);
@@ -83,6 +85,7 @@ impl<A: Arithmetic> Twin<A> {
                 return None;
             }
         }
+        // An exit plane on the scene's box is where the ray leaves the scene.
         let outer = if ray.is_backwards(exit.axis) { &self.stage.bounds.low } else { &self.stage.bounds.high };
         (outer[exit.axis] != exit.plane).then(|| descend(&self.arithmetic, &self.stage, ray, &exit))
     }

@@ -77,11 +77,11 @@ struct Met {
 #[target_feature(enable = "avx2,fma")]
 #[inline]
 fn meet(registers: &Registers, fields: &Fields) -> Met {
-    let (taint, direction) = (vector(registers, fields.a), vector(registers, fields.a.wrapping_add(1)));
+    let (origin, direction) = (vector(registers, fields.a), vector(registers, fields.a.wrapping_add(1)));
     let corner = vector(registers, fields.b);
     let edge1 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(1)), corner);
     let edge2 = _mm256_sub_pd(vector(registers, fields.b.wrapping_add(2)), corner);
-    let start = _mm256_sub_pd(taint, corner);
+    let start = _mm256_sub_pd(origin, corner);
     let (p, q) = (cross(direction, edge2), cross(start, edge1));
     let found =
         sums(_mm256_mul_pd(p, edge1), _mm256_mul_pd(p, start), _mm256_mul_pd(q, direction), _mm256_mul_pd(q, edge2));
@@ -255,7 +255,7 @@ mod tests {
         let parts = (1u32..32, 1u32..32).prop_flat_map(|(far, near)| {
             (vector(far), vector(near), vector(near), vector(far), -2i64..=66, vector(1), 0u32..5, -4i64..5)
         });
-        parts.prop_map(|(corner, edge1, edge2, taint, part, offset, target, scale)| {
+        parts.prop_map(|(corner, edge1, edge2, origin, part, offset, target, scale)| {
             let lanes =
                 |lane: &dyn Fn(usize) -> i64| [0, 1, 2].map(|k| lane(k).clamp(i32::MIN.into(), i32::MAX.into()) as i32);
             let moved = |edge: Vector, part: i64| lanes(&|k| i64::from(corner[k]) + ((i64::from(edge[k]) * part) >> 6));
@@ -266,13 +266,13 @@ mod tests {
                 _ => moved(inside, part),
             };
             let off = |k: usize| i64::from(offset[k]);
-            let towards = lanes(&|k| (i64::from(aim[k]) - i64::from(taint[k])) * scale + off(k));
-            let (taint, direction) = match target {
+            let towards = lanes(&|k| (i64::from(aim[k]) - i64::from(origin[k])) * scale + off(k));
+            let (origin, direction) = match target {
                 3 => (lanes(&|k| i64::from(aim[k]) - scale * i64::from(towards[k]) / 1024 + off(k)), towards),
-                4 => (taint, lanes(&|k| scale * i64::from(edge1[k]) + part * i64::from(edge2[k]) / 16 + off(k))),
-                _ => (taint, towards),
+                4 => (origin, lanes(&|k| scale * i64::from(edge1[k]) + part * i64::from(edge2[k]) / 16 + off(k))),
+                _ => (origin, towards),
             };
-            [taint, direction, corner, b, c]
+            [origin, direction, corner, b, c]
         })
     }
 
@@ -280,12 +280,12 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 20_000, rng_seed: RngSeed::Fixed(11), ..ProptestConfig::default() })]
 
         #[test]
-        fn it_decides_as_integers_do([taint, direction, a, b, c] in close(), shift in 0i32..32) {
+        fn it_decides_as_integers_do([origin, direction, a, b, c] in close(), shift in 0i32..32) {
             if !crate::engine::HostSimd::Avx2.is_present() {
                 return Ok(());
             }
             let mut found = Registers::default();
-            found.set_vectors(1, [taint, direction, a, b, c]);
+            found.set_vectors(1, [origin, direction, a, b, c]);
             let mut exact = found.clone();
             let fields = Fields { d: 4, e: 9, a: 1, b: 3, i: shift, ..Fields::default() };
             // SAFETY: the host has the features.

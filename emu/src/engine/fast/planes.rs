@@ -18,11 +18,11 @@ struct Meeting {
 
 impl Meeting {
     #[inline(always)]
-    fn of(pattern: i64, taint: &[i32; 4], direction: &[i32; 4]) -> Meeting {
+    fn of(pattern: i64, origin: &[i32; 4], direction: &[i32; 4]) -> Meeting {
         let axis = (pattern >> 32 & 3) as usize;
-        // Along time, the fourth lane, the taint is 0 and the direction 1.
+        // Along time, the fourth lane, the origin is 0 and the direction 1.
         let slope = i64::from(direction[axis]) | i64::from(axis == TIME);
-        Meeting { axis, run: i64::from(pattern as i32) - i64::from(taint[axis]), slope }
+        Meeting { axis, run: i64::from(pattern as i32) - i64::from(origin[axis]), slope }
     }
 
     /// True where the ray, its direction moved, meets this plane before the other one; see [`isa::number::ray`]. A run has 33 bits with its sign and is
@@ -40,9 +40,9 @@ impl Meeting {
 /// A step down a kd tree; see the row.
 #[inline(always)]
 pub(super) fn rstep(registers: &Registers, fields: &Fields) -> (i32, i32, Outcome) {
-    let (taint, direction) = (registers.padded(fields.a), registers.padded(fields.a.wrapping_add(1)));
+    let (origin, direction) = (registers.padded(fields.a), registers.padded(fields.a.wrapping_add(1)));
     let [node, entry, exit]: [i64; 3] = registers.wides(fields.b);
-    let split = Meeting::of(node, taint, direction);
+    let split = Meeting::of(node, origin, direction);
     let left = (node >> 32) as i32 & !3;
     if split.axis == TIME {
         return (left, -1, Outcome::Leaf);
@@ -51,9 +51,9 @@ pub(super) fn rstep(registers: &Registers, fields: &Fields) -> (i32, i32, Outcom
     let (near, far) = if split.slope < 0 { (right, left) } else { (left, right) };
     if if split.slope < 0 { split.run >= 0 } else { split.run <= 0 } {
         (far, 0, Outcome::Behind)
-    } else if !Meeting::of(entry, taint, direction).is_before(split) {
+    } else if !Meeting::of(entry, origin, direction).is_before(split) {
         (far, 0, Outcome::Passed)
-    } else if !split.is_before(Meeting::of(exit, taint, direction)) {
+    } else if !split.is_before(Meeting::of(exit, origin, direction)) {
         (near, 0, Outcome::Near)
     } else {
         (near, far, Outcome::Both)

@@ -8,9 +8,9 @@ use scenes::kdtree::Bounds;
 use super::scalar::dot;
 use super::walk::descend;
 use crate::constants::Constants;
-use crate::twin::lanes::Lanes;
 use crate::twin::ray::{Packet, Ray};
 use crate::twin::stage::Stage;
+use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// Exit of a ray from a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +31,7 @@ struct Crossing {
     plane: i32,
     /// s = n . (V0 - P0) / n . u.
     t: i32,
-    /// P0 + s u, with each lane rounded.
+    /// P0 + s u, with each component rounded.
     point: Vector,
     /// n . u: positive where the ray leaves by the plane.
     slope: i32,
@@ -39,7 +39,7 @@ struct Crossing {
 
 /// The crossings with the six planes of a box, those that are parallel to the ray left out: by axis, the plane of small coordinates first.
 fn crossings(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     ray: &Ray,
     bounds: &Bounds,
@@ -61,7 +61,7 @@ fn crossings(
 }
 
 /// The nearest of the crossings by which the ray leaves; of equal ones the last. Each point is brought into the packet.
-pub fn exit_face(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, bounds: &Bounds) -> ExitPoint {
+pub fn exit_face(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, bounds: &Bounds) -> ExitPoint {
     let mut exit = ExitPoint { axis: 3, plane: 0, t: constants.missed, point: [0; 3] };
     for Crossing { axis, plane, t, mut point, slope } in crossings(arithmetic, constants, ray, bounds) {
         if slope > 0 && t <= exit.t {
@@ -75,7 +75,12 @@ pub fn exit_face(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, boun
 
 /// The first packet of a ray that may start outside the scene's box; `None` when no crossing lies in the box's surface. The nearest one
 /// that does is where the ray enters (report, pseudo code 4).
-pub fn first_packet(arithmetic: &impl Lanes, constants: &Constants, stage: &Stage, ray: &Ray) -> Option<Packet> {
+pub fn first_packet(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    stage: &Stage,
+    ray: &Ray,
+) -> Option<Packet> {
     let bounds = &stage.bounds;
     let is_between = |point: Vector, k: usize| (bounds.low[k]..=bounds.high[k]).contains(&point[k]);
     if (0..3).all(|k| is_between(ray.origin, k)) {

@@ -1,17 +1,17 @@
-//! What a hit looks like, and the secondary rays that start there (report 4.1, 4.2): each asks for the normal anew.
+//! Surface at a hit, and the secondary rays that start there (report 4.1, 4.2): each asks for the normal anew.
 
 use isa::number::Vector;
 
 use super::scalar::{cross, dot};
 use crate::constants::Constants;
-use crate::twin::lanes::Lanes;
 use crate::twin::ray::Ray;
 use crate::twin::surface::{self, Surface};
 use crate::twin::unit::sqrt;
+use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// The unit vector, with `fraction` bits, in the direction of one that is scaled into [2^(word-3), 2^(word-2)]: its product with the
 /// reciprocal of its length.
-pub fn unit(arithmetic: &impl Lanes, fraction: u32, vector: Vector) -> Vector {
+pub fn unit(arithmetic: &impl VectorArithmetic, fraction: u32, vector: Vector) -> Vector {
     let inverse = 2 * arithmetic.word() - 5;
     let length = sqrt(arithmetic, arithmetic.wide_dot(vector, vector));
     let inverted = arithmetic.quotient(1 << inverse, length.into());
@@ -19,7 +19,7 @@ pub fn unit(arithmetic: &impl Lanes, fraction: u32, vector: Vector) -> Vector {
 }
 
 /// The unit normal of a triangle on the side that the order of its vertices gives (report, Annex II).
-pub fn normal(arithmetic: &impl Lanes, fraction: u32, vertices: &[Vector; 3]) -> Vector {
+pub fn normal(arithmetic: &impl VectorArithmetic, fraction: u32, vertices: &[Vector; 3]) -> Vector {
     let [v0, v1, v2] = *vertices;
     let scaled = |vector: Vector| arithmetic.normalized(vector.map(i64::from));
     let edges = [v1, v2].map(|vertex| scaled(arithmetic.difference(vertex, v0)));
@@ -28,7 +28,7 @@ pub fn normal(arithmetic: &impl Lanes, fraction: u32, vertices: &[Vector; 3]) ->
 
 /// The normal on the side of the ray, -normal . direction, and the points on both sides of the surface at distance `t`, moved by a constant.
 pub fn sides(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     ray: &Ray,
     t: i32,
@@ -36,7 +36,7 @@ pub fn sides(
 ) -> (Vector, i32, Vector, Vector) {
     let cosine = dot(arithmetic, normal, ray.direction, constants.formats.direction);
     let (facing, cosine) = match cosine > 0 {
-        true => (normal.map(|lane| arithmetic.negative(lane)), cosine),
+        true => (normal.map(|component| arithmetic.negative(component)), cosine),
         false => (normal, arithmetic.negative(cosine)),
     };
     let point = surface::point(arithmetic, constants, ray, t);
@@ -49,22 +49,27 @@ pub fn sides(
 }
 
 /// The direction of the reflected ray, V = 2 (I . N) N - I, as D - (-2 c) N.
-pub fn reflect(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface) -> Vector {
+pub fn reflect(arithmetic: &impl VectorArithmetic, constants: &Constants, surface: &Surface) -> Vector {
     let twice = arithmetic.times(surface.cosine, -2, 0);
     arithmetic.difference(surface.incident, arithmetic.scaled(surface.facing, twice, constants.formats.direction))
 }
 
-/// What becomes of a ray that goes through a surface.
+/// Fate of a ray that goes through a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transmission {
     /// Nothing: it is totally reflected.
     Total,
-    /// It goes in this direction.
+    /// Refracted, in this direction.
     Through(Vector),
 }
 
 /// The refracted ray, T = eta (D + c N) - sqrt(k) N with eta = ni / nt divided anew.
-pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface, inside: bool) -> Transmission {
+pub fn refract(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    surface: &Surface,
+    inside: bool,
+) -> Transmission {
     let (bits, index) = (constants.formats.direction, constants.formats.index);
     let (one, unit_index) = (1 << bits, 1 << index);
     let (from, to) = if inside { (surface.material.index, unit_index) } else { (unit_index, surface.material.index) };
@@ -82,10 +87,10 @@ pub fn refract(arithmetic: &impl Lanes, constants: &Constants, surface: &Surface
     Transmission::Through(arithmetic.difference(along, arithmetic.scaled(surface.facing, root, bits)))
 }
 
-/// What becomes of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
+/// Fate of the light that a surface lets through: the weight that total reflection adds to the reflected ray, and the weight and
 /// direction of the refracted one.
 pub fn transmitted(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     surface: &Surface,
     weight: i32,
@@ -101,8 +106,13 @@ pub fn transmitted(
     }
 }
 
-/// Whether a surface faces a light that lies `way` from it: the direction to the light and the cosine of its angle with the normal.
-pub fn lit(arithmetic: &impl Lanes, constants: &Constants, facing: Vector, way: Vector) -> Option<(Vector, i32)> {
+/// Light that lies `way` from a surface, if the surface faces it: the direction to the light and the cosine of its angle with the normal.
+pub fn lit(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    facing: Vector,
+    way: Vector,
+) -> Option<(Vector, i32)> {
     let bits = constants.formats.direction;
     let direction = unit(arithmetic, bits, arithmetic.normalized(way.map(i64::from)));
     let cosine = dot(arithmetic, facing, direction, bits);

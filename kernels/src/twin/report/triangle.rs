@@ -4,8 +4,8 @@ use isa::number::{Vector, normalizing_shift, split_shift};
 
 use super::scalar::{cross, dot};
 use crate::constants::Constants;
-use crate::twin::lanes::Lanes;
 use crate::twin::ray::Ray;
+use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// Results of the formulas of 3.1.2.
 struct Solution {
@@ -17,7 +17,7 @@ struct Solution {
 
 /// Ray against triangle by the formulas of 3.1.2, or [`Constants::missed`]: no early out, inclusive comparisons, (1 / det) x three times.
 /// Edges and determinant are shifted into range, and quotients back.
-pub fn triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+pub fn triangle(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
     let Solution { determinant, t, u, v } = solve(arithmetic, constants, ray, vertices);
     let one = 1 << constants.formats.barycentric;
     let is_outside = u < 0 || u > one || v < 0 || v > one || arithmetic.plus(v, u) > one;
@@ -25,12 +25,17 @@ pub fn triangle(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, verti
 }
 
 /// u and v by the same formulas, for a ray that hits.
-pub fn barycentric(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> [i32; 2] {
+pub fn barycentric(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    ray: &Ray,
+    vertices: &[Vector; 3],
+) -> [i32; 2] {
     let Solution { u, v, .. } = solve(arithmetic, constants, ray, vertices);
     [u, v]
 }
 
-fn solve(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> Solution {
+fn solve(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> Solution {
     let formats = &constants.formats;
     let (word, bits, barycentric) = (formats.word, formats.direction, formats.barycentric);
     // Fraction bits of 1 / det beyond those of a determinant.
@@ -53,14 +58,14 @@ fn solve(arithmetic: &impl Lanes, constants: &Constants, ray: &Ray, vertices: &[
     Solution { determinant, t, u, v }
 }
 
-/// The vector with its largest lane in [2^(word-3), 2^(word-2)], and by how much it was shifted right.
-fn into_range(arithmetic: &impl Lanes, vector: Vector) -> (Vector, i32) {
-    let lanes = vector.map(i64::from);
-    (arithmetic.normalized(lanes), normalizing_shift(lanes.map(i128::from), arithmetic.word()))
+/// The vector with its largest component in [2^(word-3), 2^(word-2)], and by how much it was shifted right.
+fn into_range(arithmetic: &impl VectorArithmetic, vector: Vector) -> (Vector, i32) {
+    let components = vector.map(i64::from);
+    (arithmetic.normalized(components), normalizing_shift(components.map(i128::from), arithmetic.word()))
 }
 
 /// A number shifted right, or left by a negative shift.
-fn shifted(arithmetic: &impl Lanes, x: i32, shift: i32) -> i32 {
+fn shifted(arithmetic: &impl VectorArithmetic, x: i32, shift: i32) -> i32 {
     let (value, right) = split_shift(x.into(), shift);
     arithmetic.narrow(value, right)
 }

@@ -4,9 +4,9 @@ use isa::number::Vector;
 
 use super::crossing::exit_face;
 use crate::constants::Constants;
-use crate::twin::lanes::Lanes;
 use crate::twin::ray::{Packet, Ray, Search};
 use crate::twin::stage::Stage;
+use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// From the root down to the packet that has a point; in the plane of a split the ray's direction decides.
 pub fn descend(stage: &Stage, ray: &Ray, point: Vector) -> Packet {
@@ -20,7 +20,7 @@ pub fn own_packet(stage: &Stage, ray: &Ray) -> Packet {
 
 /// The packet after the current one; `None` when the search is over: the ray leaves the scene, or the nearest hit is nearer than the exit.
 pub fn next_packet(
-    arithmetic: &impl Lanes,
+    arithmetic: &impl VectorArithmetic,
     constants: &Constants,
     stage: &Stage,
     ray: &Ray,

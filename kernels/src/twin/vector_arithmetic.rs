@@ -5,7 +5,7 @@ use std::array::from_fn;
 
 use isa::number::{Arithmetic, Vector, normalizing_shift, split_shift};
 
-/// Three wide lanes.
+/// Three wide components.
 pub type WideVector = [i64; 3];
 
 fn product(a: i32, b: i32) -> i64 {
@@ -16,14 +16,14 @@ fn dot(a: Vector, b: Vector) -> i128 {
     i128::from(product(a[0], b[0]) + product(a[1], b[1])) + i128::from(product(a[2], b[2]))
 }
 
-/// Exact cross product; a lane fits 64 bits: the largest product is 2^62, the least -(2^62 - 2^31).
+/// Exact cross product; a component fits 64 bits: the largest product is 2^62, the least -(2^62 - 2^31).
 fn cross(a: Vector, b: Vector) -> WideVector {
     let minor = |j: usize, k: usize| product(a[j], b[k]) - product(a[k], b[j]);
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 /// Operations that round once. A `shift` goes to the right.
-pub trait Lanes: Arithmetic {
+pub trait VectorArithmetic: Arithmetic {
     /// Sum.
     fn plus(&self, a: i32, b: i32) -> i32 {
         self.narrow64(i64::from(a) + i64::from(b), 0)
@@ -44,27 +44,27 @@ pub trait Lanes: Arithmetic {
         self.narrow64(product(a, b), shift)
     }
 
-    /// Sum, lane by lane.
+    /// Sum, component by component.
     fn sum(&self, a: Vector, b: Vector) -> Vector {
         from_fn(|k| self.plus(a[k], b[k]))
     }
 
-    /// Difference, lane by lane.
+    /// Difference, component by component.
     fn difference(&self, a: Vector, b: Vector) -> Vector {
         from_fn(|k| self.minus(a[k], b[k]))
     }
 
-    /// Absolute value, lane by lane.
+    /// Absolute value, component by component.
     fn magnitude(&self, a: Vector) -> Vector {
-        a.map(|lane| self.narrow64(i64::from(lane).abs(), 0))
+        a.map(|component| self.narrow64(i64::from(component).abs(), 0))
     }
 
-    /// Product with a scalar, lane by lane.
+    /// Product with a scalar, component by component.
     fn scaled(&self, a: Vector, b: i32, shift: u32) -> Vector {
-        a.map(|lane| self.times(lane, b, shift))
+        a.map(|component| self.times(component, b, shift))
     }
 
-    /// Product, lane by lane.
+    /// Product, component by component.
     fn products(&self, a: Vector, b: Vector, shift: u32) -> Vector {
         from_fn(|k| self.times(a[k], b[k], shift))
     }
@@ -89,30 +89,30 @@ pub trait Lanes: Arithmetic {
         self.widen(dot(a, b), 0)
     }
 
-    /// Cross product in wide lanes.
+    /// Cross product in wide components.
     fn wide_cross(&self, a: Vector, b: Vector) -> WideVector {
-        cross(a, b).map(|lane| self.widen(lane.into(), 0))
+        cross(a, b).map(|component| self.widen(component.into(), 0))
     }
 
-    /// Dot product of wide lanes and a vector: with [`Lanes::wide_cross`], a determinant.
+    /// Dot product of wide components and a vector: with [`VectorArithmetic::wide_cross`], a determinant.
     fn wide_mixed(&self, a: WideVector, b: Vector, shift: u32) -> i64 {
         self.widen((0..3).map(|k| i128::from(a[k]) * i128::from(b[k])).sum(), shift)
     }
 
-    /// The vector times the power of two that brings its largest lane into [2^(word-3), 2^(word-2)]; zero stays zero.
+    /// The vector times the power of two that brings its largest component into [2^(word-3), 2^(word-2)]; zero stays zero.
     fn normalized(&self, a: WideVector) -> Vector {
-        let lanes = a.map(i128::from);
-        let shift = normalizing_shift(lanes, self.word());
-        lanes.map(|lane| {
-            let (value, right) = split_shift(lane, shift);
+        let components = a.map(i128::from);
+        let shift = normalizing_shift(components, self.word());
+        components.map(|component| {
+            let (value, right) = split_shift(component, shift);
             self.narrow(value, right)
         })
     }
 
-    /// The direction of the cross product, scaled as in [`Lanes::normalized`].
+    /// The direction of the cross product, scaled as in [`VectorArithmetic::normalized`].
     fn normalized_cross(&self, a: Vector, b: Vector) -> Vector {
         self.normalized(cross(a, b))
     }
 }
 
-impl<A: Arithmetic> Lanes for A {}
+impl<A: Arithmetic> VectorArithmetic for A {}

@@ -1,4 +1,4 @@
-//! Time to build a kd tree, by size, depth and method: `cargo bench -p scenes --bench kdtree`.
+//! Time to build a kd tree, by size, depth and method: `cargo bench -p lancer-scenes --bench kdtree`.
 
 use std::hint::black_box;
 use std::time::Duration;

@@ -14,6 +14,10 @@ pub const TEXT_OCTETS: usize = 32 << 20;
 pub const EXPANDED_OCTETS: usize = 4 << 20;
 /// Octets that a line inside of two expansions counts besides those of its text.
 pub const EXPANDED_LINE: usize = 16;
+/// Tokens of a line with arguments that count by their octets alone.
+pub const EXPANDED_TOKENS: usize = 64;
+/// Octets that each token beyond those counts: a long expression takes its time by its operators.
+pub const EXPANDED_TOKEN: usize = 8;
 /// Parameters of a macro.
 pub const PARAMETERS: usize = 256;
 /// Names that the suggestions of all messages are sought among, together.

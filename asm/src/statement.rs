@@ -6,6 +6,7 @@ use crate::assembler::{Assembler, Section};
 use crate::cursor::Cursor;
 use crate::explain;
 use crate::frame::leading_directive;
+use crate::limits::{EXPANDED_TOKEN, EXPANDED_TOKENS};
 use crate::line::Line;
 use crate::listing::Record;
 use crate::message::{At, Parsed, Problem};
@@ -59,6 +60,9 @@ impl Assembler<'_> {
             }
         }
         let (tokens, unreadable) = tokens(&line.text);
+        if line.is_substituted() {
+            self.octets_expanded += tokens.len().saturating_sub(EXPANDED_TOKENS) * EXPANDED_TOKEN;
+        }
         let mut cursor = Cursor { line, tokens: &tokens, position: 0 };
         if let Some(unreadable) = &unreadable
             && !self.is_skipping()

@@ -38,20 +38,20 @@ impl Reciprocal {
 impl Meaning for Reciprocal {
     fn execute(&mut self, call: &mut Call) -> Result<Ending, Fault> {
         let (a, fraction) = (call.operands.vector('a'), call.operands.immediate('i'));
-        let square = call.arithmetic.widen_products(a.map(|lane| i64::from(lane) * i64::from(lane)));
+        let square = call.arithmetic.widen_products(a.map(|component| i64::from(component) * i64::from(component)));
         let length = call.arithmetic.root(square as u128);
         if length == 0 {
-            call.set_vector('d', a.map(|lane| call.arithmetic.quotient(i128::from(lane) << fraction, 0)));
+            call.set_vector('d', a.map(|component| call.arithmetic.quotient(i128::from(component) << fraction, 0)));
             return Ok(Ending::DONE);
         }
         let shift = self.bits + length.ilog2();
         let reciprocal = ((2i128 << shift) / i128::from(length) + 1) >> 1;
-        let mut lane = |lane: i32| {
-            let product = (i128::from(lane) * reciprocal) << fraction;
+        let mut component = |component: i32| {
+            let product = (i128::from(component) * reciprocal) << fraction;
             let chance = i128::from(self.chance()) << shift >> 32;
             call.arithmetic.narrow((product + chance) >> shift, 0)
         };
-        let unit = [lane(a[0]), lane(a[1]), lane(a[2])];
+        let unit = [component(a[0]), component(a[1]), component(a[2])];
         call.set_vector('d', unit);
         Ok(Ending::DONE)
     }

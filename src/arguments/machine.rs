@@ -26,7 +26,7 @@ pub struct MachineArguments {
 /// The engine is chosen.
 const AUTO: &str = "auto";
 
-/// EngineKind that is no more; whoever asks for it is told which one to take.
+/// Name of an engine that is no more; whoever asks for it is told which one to take.
 const LOCKSTEP: &str = "lockstep";
 
 /// Names of the engines.

@@ -32,9 +32,9 @@ pub struct RunResult {
     pub program: String,
     /// Name of the machine.
     pub machine: String,
-    /// Engine that executed it: native, fast or checked, of which a former one may not suit or not be wanted.
+    /// Engine that was chosen: native (which leaves what runs briefly to fast), fast or checked.
     pub engine: &'static str,
-    /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
+    /// Reason for which a faster engine that was wanted was not chosen; `None` where it did.
     pub engine_because: Option<&'static str>,
     /// Instructions executed.
     pub instructions: u64,

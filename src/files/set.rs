@@ -3,7 +3,7 @@
 
 use std::fs::{self, Permissions};
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use messages::{Diagnostic, Report};
 use tempfile::{Builder, NamedTempFile};
@@ -56,8 +56,7 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
     for (path, octets) in files {
         let (path, octets) = (path.as_ref(), octets.as_ref());
         check_target(path)?;
-        // A link keeps leading to the file.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let target = behind_links(path);
         if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
             in_place.push((path, octets));
             continue;
@@ -74,6 +73,25 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
         file.persist(&target).map_err(|error| refusal(path, &error.error))?;
     }
     Ok(())
+}
+
+/// Links that are followed at most, as Linux does.
+const MOST_LINKS: usize = 40;
+
+/// The file to which a path leads through links, there or not: a link keeps leading to the file that is written.
+fn behind_links(path: &Path) -> PathBuf {
+    if let Ok(target) = fs::canonicalize(path) {
+        return target;
+    }
+    // What the last link names is not there yet, so the links are followed one by one.
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&target) {
+            Ok(next) => target = folder_of(&target).join(next),
+            Err(_) => break,
+        }
+    }
+    target
 }
 
 fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
@@ -111,18 +129,25 @@ fn remove_leftovers(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.take(MOST_ENTRIES).flatten() {
         let name = entry.file_name();
-        let Some(rest) = name.to_str().and_then(|name| name.strip_prefix(PREFIX)) else { continue };
-        if !is_owned(rest) && is_unlocked(&entry.path()) {
+        let Some(process) = name.to_str().and_then(writer) else { continue };
+        if !is_running(process) && is_unlocked(&entry.path()) {
             // Another run may have been faster.
             let _ = fs::remove_file(entry.path());
         }
     }
 }
 
-/// True where the process that a temporary file's name begins with may still be there.
-fn is_owned(rest: &str) -> bool {
-    let Some((process, _)) = rest.split_once('-') else { return false };
-    process.parse().is_ok_and(|process: u32| process == std::process::id()) || Path::new("/proc").join(process).is_dir()
+/// Number of the process that writes a file, by the file's name; `None` for a name that no run gives: `.lancer-217-a8Kd0z` is one of
+/// process 217, `.lancer-notes` is a user's.
+fn writer(name: &str) -> Option<u32> {
+    let (process, random) = name.strip_prefix(PREFIX)?.split_once('-')?;
+    let is_given = random.len() == 6 && random.bytes().all(|octet| octet.is_ascii_alphanumeric());
+    process.parse().ok().filter(|_| is_given)
+}
+
+/// True where a process may still be there.
+fn is_running(process: u32) -> bool {
+    process == std::process::id() || Path::new("/proc").join(process.to_string()).is_dir()
 }
 
 /// True of a regular file that no run has locked.
@@ -186,6 +211,11 @@ mod tests {
         write(&link, b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&file).unwrap(), b"new");
+        // The same where the file is not there yet.
+        fs::remove_file(&file).unwrap();
+        write(&link, b"newer").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"newer");
     }
 
     #[test]
@@ -202,22 +232,25 @@ mod tests {
     fn leftovers_of_killed_runs_are_removed_and_files_of_running_ones_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        // No process has this number on a host with /proc; the second is as an older version named its files.
-        for name in [".lancer-4294967295-abc", ".lancer-FfrhI4", ".lancer-locked", ".other"] {
+        // No process has these numbers on a host with /proc; the last three are names that a user may give.
+        let (left_over, locked) = (".lancer-4294967295-Ab3dE9", ".lancer-4294967294-Ab3dE9");
+        let of_users = [".lancer-notes", ".lancer-4294967295-my.toml", ".other"];
+        for name in [left_over, locked].iter().chain(&of_users) {
             fs::write(at(name), "half").unwrap();
         }
-        let running = at(&format!(".lancer-{}-abc", std::process::id()));
-        fs::write(&running, "half").unwrap();
-        let locked = fs::File::open(at(".lancer-locked")).unwrap();
-        locked.lock().unwrap();
+        let running = format!(".lancer-{}-Ab3dE9", std::process::id());
+        fs::write(at(&running), "half").unwrap();
+        let locked_file = fs::File::open(at(locked)).unwrap();
+        locked_file.lock().unwrap();
         write(&at("a.txt"), b"whole").unwrap();
         let mut left: Vec<String> = fs::read_dir(folder.path())
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())
             .collect();
         left.sort();
-        let running = running.file_name().unwrap().to_str().unwrap();
-        assert_eq!(left, [running, ".lancer-locked", ".other", "a.txt"]);
+        let mut expected = [&[running.as_str(), locked, "a.txt"], &of_users[..]].concat();
+        expected.sort();
+        assert_eq!(left, expected);
     }
 
     #[cfg(unix)]

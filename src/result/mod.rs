@@ -111,9 +111,9 @@ pub struct Render {
     pub method: &'static str,
     /// Reason for which the frame was not replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
-    /// Engine that executed the cores' program: native, fast or checked. Nothing else depends on it.
+    /// Engine that was chosen for the cores' program: native (which leaves what runs briefly to fast), fast or checked. Nothing else depends on it.
     pub engine: &'static str,
-    /// Reason for which a faster engine that was wanted did not execute it; `None` where it did.
+    /// Reason for which a faster engine that was wanted was not chosen; `None` where it did.
     pub engine_because: Option<&'static str>,
     /// Clocks of each core: computing, waiting, idle.
     pub cores: Vec<ProcessorResult>,

@@ -83,9 +83,9 @@ fn on_side(index: u32, came: &Ray, direction: Vector) -> i128 {
     along(direction).signum() * -along(came.direction).signum()
 }
 
-/// Unit vectors of vectors between 2^-14 and 2^14 long with 16 fraction bits; the error of a lane in units in the last place.
+/// Unit vectors of vectors between 2^-14 and 2^14 long with 16 fraction bits; the error of a component in units in the last place.
 ///
-/// Brought into the word, a vector is exact and at least 2^29 long. Its length is off by at most 1/2, so a lane of the unit vector by at most 1,
+/// Brought into the word, a vector is exact and at least 2^29 long. Its length is off by at most 1/2, so a component of the unit vector by at most 1,
 /// and its own rounding adds 1/2.
 pub fn normalising(seed: u64, trials: Range<u64>) -> Tally {
     tally(trials, |trial| {

@@ -32,6 +32,9 @@ const RESULTS: &[(&str, &str)] = &[
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
 ];
 
+/// A conversion of 300/256, which is rounded to 19/16.
+const VECTOR: &str = "cvt,s,16,8,300,-,-,-,-,-,-,-,-,s,8,4,RND_CONV,WRAP,1,19,1,0";
+
 fn schema(session: &Session, name: &str) -> Value {
     serde_json::from_str(&session.succeed(&format!("schema {name}"))).unwrap()
 }
@@ -46,7 +49,7 @@ fn session() -> Session {
     session.write("sum.s", ".func f\n    imul s1, s2, s3\n.endfunc\n    halt\n");
     session.write("half.isa", ".extension half\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
     session.write("trap.s", "    trap 7\n");
-    session.write("vectors.csv", &format!("{}\n", conformance::HEADER));
+    session.write("vectors.csv", &format!("{}\n{VECTOR}\n", conformance::HEADER));
     session
 }
 

@@ -1,4 +1,4 @@
-; The formulas of Moeller and Trumbore, with tests before divisions. An edge function of 0 is decided by the sign of the first lane other
+; The formulas of Moeller and Trumbore, with tests before divisions. An edge function of 0 is decided by the sign of the first component other
 ; than 0 of the edge's normal, found by logic; a normal of 0 counts as negative.
 ; range: a 14 bits
 ; range: b 14 bits
@@ -40,7 +40,7 @@ v:      .space 8
         wmulw w6, w2, w6
         wadd \d, \d, w6
         .endm
-; The sign of a lane, as long as all before it were 0: s23 collects the sign, s30 stays all ones as long as there was none.
+; The sign of a component, as long as all before it were 0: s23 collects the sign, s30 stays all ones as long as there was none.
         .macro sign_of p, q, r, s
         minor w5, \p, \q, \r, \s
         whigh s17, w5

@@ -1,7 +1,7 @@
-; The larger of each lane and its negation.
-        .irp lane, 0, 1, 2
-        vget s8, a, \lane
+; The larger of each component and its negation.
+        .irp component, 0, 1, 2
+        vget s8, a, \component
         neg  s9, s8
         max  s8, s8, s9
-        vput d, s8, \lane
+        vput d, s8, \component
         .endr

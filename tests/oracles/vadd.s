@@ -1,7 +1,7 @@
-; The sums of the lanes.
-        .irp lane, 0, 1, 2
-        vget s8, a, \lane
-        vget s9, b, \lane
+; The sums of the components.
+        .irp component, 0, 1, 2
+        vget s8, a, \component
+        vget s9, b, \component
         add  s8, s8, s9
-        vput d, s8, \lane
+        vput d, s8, \component
         .endr

@@ -1,5 +1,5 @@
-; In each lane two exact products, an exact difference and one rounding.
-        .macro minor lane, j, k
+; In each component two exact products, an exact difference and one rounding.
+        .macro minor component, j, k
         vget s8, a, \j
         vget s9, b, \k
         wmul w0, s8, s9
@@ -8,7 +8,7 @@
         wmul w1, s8, s9
         wsub w0, w0, w1
         wround s8, w0, i
-        vput d, s8, \lane
+        vput d, s8, \component
         .endm
         minor 0, 1, 2
         minor 1, 2, 0

@@ -1,5 +1,5 @@
-; An exact cross product, moved so that its largest lane has 30 bits. How far is looked up by the number of zero bits
-; above the largest magnitude, which takes no arithmetic: for a negative lane the complement has as many bits as the
+; An exact cross product, moved so that its largest component has 30 bits. How far is looked up by the number of zero bits
+; above the largest magnitude, which takes no arithmetic: for a negative component the complement has as many bits as the
 ; magnitude, except that of -2^k, which lacks one. The k bits below are all zero then, and that shows when the others
 ; are moved out.
 ; arithmetic: default

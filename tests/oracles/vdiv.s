@@ -1,6 +1,6 @@
-; The quotients of the lanes and a scalar.
-        .irp lane, 0, 1, 2
-        vget s8, a, \lane
+; The quotients of the components and a scalar.
+        .irp component, 0, 1, 2
+        vget s8, a, \component
         div  s8, s8, b, i
-        vput d, s8, \lane
+        vput d, s8, \component
         .endr

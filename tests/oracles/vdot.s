@@ -2,9 +2,9 @@
 ; arithmetic: default
 ; range: a 30 bits
 ; range: b 30 bits
-        .macro product wide, lane
-        vget s8, a, \lane
-        vget s9, b, \lane
+        .macro product wide, component
+        vget s8, a, \component
+        vget s9, b, \component
         wmul \wide, s8, s9
         .endm
         product w0, 0

@@ -1,6 +1,6 @@
 ; Absolute values of 32 unsigned bits, and two comparisons.
-        .macro magnitude to, lane
-        vget \to, a, \lane
+        .macro magnitude to, component
+        vget \to, a, \component
         srai s8, \to, 31
         xor  \to, \to, s8
         isub \to, \to, s8

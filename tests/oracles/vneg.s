@@ -1,6 +1,6 @@
-; The negations of the lanes.
-        .irp lane, 0, 1, 2
-        vget s8, a, \lane
+; The negations of the components.
+        .irp component, 0, 1, 2
+        vget s8, a, \component
         neg  s8, s8
-        vput d, s8, \lane
+        vput d, s8, \component
         .endr

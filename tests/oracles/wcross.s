@@ -1,4 +1,4 @@
-; In each lane two exact products and an exact difference.
+; In each component two exact products and an exact difference.
         .macro minor wide, j, k
         vget s8, a, \j
         vget s9, b, \k

@@ -3,10 +3,10 @@
 ; range: a 34 bits
 ; range: b 26 bits
 ; range: i 31..63
-        .macro product wide, lanes, lane
-        vget s8, b, \lane
+        .macro product wide, components, component
+        vget s8, b, \component
         wextend \wide, s8, 0
-        wmulw \wide, \wide, \lanes
+        wmulw \wide, \wide, \components
         .endm
         product w0, w1, 0
         product w5, w2, 1

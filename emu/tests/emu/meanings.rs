@@ -77,40 +77,40 @@ proptest! {
     #[test]
     fn vectors(a in vector(), b in vector(), s in scalar(), i in 0i32..64) {
         let (x, y) = (exact(a), exact(b));
-        let lanes = |lane: &dyn Fn(usize) -> i128| (std::array::from_fn(|k| word(lane(k))), Done);
-        prop_assert_eq!(Nearest32.vadd(a, b), lanes(&|k| x[k] + y[k]));
-        prop_assert_eq!(Nearest32.vsub(a, b), lanes(&|k| x[k] - y[k]));
-        prop_assert_eq!(Nearest32.vneg(a), lanes(&|k| -x[k]));
-        prop_assert_eq!(Nearest32.vabs(a), lanes(&|k| x[k].abs()));
-        prop_assert_eq!(Nearest32.vmul(a, b, i), lanes(&|k| nearest(x[k] * y[k], i)));
-        prop_assert_eq!(Nearest32.vscale(a, s, i), lanes(&|k| nearest(x[k] * i128::from(s), i)));
-        prop_assert_eq!(Nearest32.vdiv(a, s, i), lanes(&|k| quotient(x[k] << i, s.into()).into()));
+        let components = |component: &dyn Fn(usize) -> i128| (std::array::from_fn(|k| word(component(k))), Done);
+        prop_assert_eq!(Nearest32.vadd(a, b), components(&|k| x[k] + y[k]));
+        prop_assert_eq!(Nearest32.vsub(a, b), components(&|k| x[k] - y[k]));
+        prop_assert_eq!(Nearest32.vneg(a), components(&|k| -x[k]));
+        prop_assert_eq!(Nearest32.vabs(a), components(&|k| x[k].abs()));
+        prop_assert_eq!(Nearest32.vmul(a, b, i), components(&|k| nearest(x[k] * y[k], i)));
+        prop_assert_eq!(Nearest32.vscale(a, s, i), components(&|k| nearest(x[k] * i128::from(s), i)));
+        prop_assert_eq!(Nearest32.vdiv(a, s, i), components(&|k| quotient(x[k] << i, s.into()).into()));
         prop_assert_eq!(Nearest32.vdot(a, b, i), (word(nearest(dot(a, b), i)), Done));
-        prop_assert_eq!(Nearest32.vcross(a, b, i), lanes(&|k| nearest(cross(a, b)[k], i)));
-        let major = (0..3).max_by_key(|&k| (x[k].abs(), -(k as i32))).expect("three lanes");
+        prop_assert_eq!(Nearest32.vcross(a, b, i), components(&|k| nearest(cross(a, b)[k], i)));
+        let major = (0..3).max_by_key(|&k| (x[k].abs(), -(k as i32))).expect("three components");
         prop_assert_eq!(Nearest32.vmajor(a), (major as i32, Done));
         let bits = (0..3).filter(|&k| a[k] < b[k]).map(|k| 1 << k).sum();
         prop_assert_eq!(Nearest32.vlt(a, b), (bits, Done));
-        prop_assert_eq!(Nearest32.vselect(a, b, s), lanes(&|k| if s & 1 << k == 0 { x[k] } else { y[k] }));
+        prop_assert_eq!(Nearest32.vselect(a, b, s), components(&|k| if s & 1 << k == 0 { x[k] } else { y[k] }));
     }
 
     #[test]
     fn normalized_vectors_fill_the_word(a in vector(), b in vector(), bits in 8u32..=32) {
         let modes = Modes { word: bits, ..Modes::default() };
-        for (lanes, found) in [(exact(a), modes.vnorm(a).0), (cross(a, b), modes.vcrossn(a, b).0)] {
-            let largest = lanes.map(i128::abs).into_iter().max().expect("three lanes");
+        for (components, found) in [(exact(a), modes.vnorm(a).0), (cross(a, b), modes.vcrossn(a, b).0)] {
+            let largest = components.map(i128::abs).into_iter().max().expect("three components");
             if largest == 0 {
                 prop_assert_eq!(found, [0; 3]);
                 continue;
             }
-            let top = found.map(i32::unsigned_abs).into_iter().max().expect("three lanes");
+            let top = found.map(i32::unsigned_abs).into_iter().max().expect("three components");
             prop_assert!((1 << (bits - 3)..=1 << (bits - 2)).contains(&top), "{:?}", found);
-            // Some one power of two explains all lanes.
-            let scaled = |shift: i32| lanes.map(|lane| if shift < 0 { lane << -shift } else { nearest(lane, shift) });
-            prop_assert!((-32..64).any(|shift| scaled(shift) == exact(found)), "{:?} is not {:?}", found, lanes);
+            // Some one power of two explains all components.
+            let scaled = |shift: i32| components.map(|component| if shift < 0 { component << -shift } else { nearest(component, shift) });
+            prop_assert!((-32..64).any(|shift| scaled(shift) == exact(found)), "{:?} is not {:?}", found, components);
         }
         let (found, shift, _) = modes.vnorm(a);
-        let expected = exact(a).map(|lane| if shift < 0 { lane << -shift } else { nearest(lane, shift) });
+        let expected = exact(a).map(|component| if shift < 0 { component << -shift } else { nearest(component, shift) });
         prop_assert_eq!(exact(found), expected);
     }
 
@@ -141,10 +141,10 @@ proptest! {
     #[test]
     fn products_of_three_vectors(a in vector(), b in vector(), c in vector(), i in 0i32..64) {
         prop_assert_eq!(Nearest32.wdot(a, b), (double_word(dot(a, b)), Done));
-        let lanes = cross(a, b).map(|lane| lane as i64);
-        prop_assert_eq!(Nearest32.wcross(a, b), (lanes, Done), "64 bits hold a cross product exactly");
-        let determinant: i128 = cross(a, b).into_iter().zip(exact(c)).map(|(lane, c)| lane * c).sum();
-        prop_assert_eq!(Nearest32.wmixed(lanes, c, i), (double_word(nearest(determinant, i)), Done));
+        let components = cross(a, b).map(|component| component as i64);
+        prop_assert_eq!(Nearest32.wcross(a, b), (components, Done), "64 bits hold a cross product exactly");
+        let determinant: i128 = cross(a, b).into_iter().zip(exact(c)).map(|(component, c)| component * c).sum();
+        prop_assert_eq!(Nearest32.wmixed(components, c, i), (double_word(nearest(determinant, i)), Done));
     }
 
     #[test]
@@ -201,5 +201,5 @@ fn lane_three_is_nowhere() {
     assert_eq!(Nearest32.vgetr([7, 8, 9], -4), (7, Done));
     assert_eq!(Nearest32.vputr([7, 8, 9], 1, 3), ([7, 8, 9], Done));
     assert_eq!(Nearest32.vput([7, 8, 9], 1, 1), ([7, 1, 9], Done));
-    assert_eq!(Nearest32.vmajor([-5, 5, 5]), (0, Done), "of equal lanes the first");
+    assert_eq!(Nearest32.vmajor([-5, 5, 5]), (0, Done), "of equal components the first");
 }

@@ -39,7 +39,7 @@ fn word(frame: &RunOutcome, index: u32) -> i32 {
     frame.memory.word(4 * index).expect("it is in the memory")
 }
 
-/// Sends five vectors, the first lane being `value`, to each core.
+/// Sends five vectors, the first component being `value`, to each core.
 fn send_to_all(p: &mut Builder, value: i64) {
     p.emit(Op::movi, &[2, value]).emit(Op::vput, &[0, 2, 0]).emit(Op::movi, &[1, 0]).emit(Op::cores, &[3]);
     let next = p.here();
@@ -50,7 +50,7 @@ fn send_to_all(p: &mut Builder, value: i64) {
 #[test]
 fn the_earliest_message_is_taken_first_then_the_lowest_senders() {
     let mut mailboxes = Mailboxes::new(4);
-    let message = |lane| Message::new([[lane; 3]; 2]);
+    let message = |component| Message::new([[component; 3]; 2]);
     assert_eq!(mailboxes.next(1), None);
     mailboxes.put(1, 3, Clocks(10), message(3));
     mailboxes.put(1, 2, Clocks(20), message(2));

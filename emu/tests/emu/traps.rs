@@ -189,8 +189,8 @@ fn a_trap_on_the_machine_names_the_work_item() {
     });
     let main = program(|p| {
         p.emit(Op::movi, &[1, 1]);
-        for (lane, value) in [(0, 12), (1, 98), (2, -7)] {
-            p.emit(Op::movi, &[2, value]).emit(Op::vput, &[4, 2, lane]);
+        for (component, value) in [(0, 12), (1, 98), (2, -7)] {
+            p.emit(Op::movi, &[2, value]).emit(Op::vput, &[4, 2, component]);
         }
         p.emit(Op::send5, &[1, 4]).emit(Op::halt, &[]);
     });

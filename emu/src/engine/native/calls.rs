@@ -17,10 +17,10 @@ use crate::semantics::{
 };
 
 /// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].
-pub(super) type Helper = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
+pub(super) type RowFunction = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
 
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
-pub(super) type UnitsHelper = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
+pub(super) type UnitsFunction = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
 
 /// Tells who measures functions that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
 pub(super) type Went = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
@@ -44,7 +44,7 @@ macro_rules! finish {
 }
 
 /// The function of a row.
-macro_rules! helper {
+macro_rules! row_function {
     ({ pure $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
         /// Yields the number of the exit, and in the high half its units.
         ///
@@ -99,7 +99,7 @@ macro_rules! helper {
     ({ $style:ident $trait:ident $name:ident } $read:tt $written:tt) => {};
 }
 
-macro_rules! helpers {
+macro_rules! row_functions {
     ($($style:ident $room:ident $trait:ident $room_doc:literal {
         $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
     })*) => {
@@ -107,11 +107,11 @@ macro_rules! helpers {
         mod rows {
             use super::*;
 
-            $($(split_operands! { helper { $style $trait $name } [] [] ($($operands)*) })*)*
+            $($(split_operands! { row_function { $style $trait $name } [] [] ($($operands)*) })*)*
         }
 
         /// The function of a row that needs only values: see [`rows`].
-        fn of_values<T: Watch>(op: Op) -> Option<Helper> {
+        fn of_values<T: Watch>(op: Op) -> Option<RowFunction> {
             match op {
                 $($(Op::$name => of_values!($style $name),)*)*
                 Op::Ext(_) => None,
@@ -119,7 +119,7 @@ macro_rules! helpers {
         }
 
         /// The function of a row that asks the machine.
-        fn of_machine(op: Op) -> Option<Helper> {
+        fn of_machine(op: Op) -> Option<RowFunction> {
             match op {
                 $($(Op::$name => of_machine!($style $name),)*)*
                 Op::Ext(_) => None,
@@ -146,11 +146,11 @@ macro_rules! of_machine {
     };
 }
 
-isa::instructions!(helpers);
+isa::instructions!(row_functions);
 
 /// The function of a row that needs only values: it yields the number of the exit, and in the high half its units; [`STOPPED`] where it has
 /// divided by zero and that traps.
-pub(super) fn pure(op: Op, recipe: &Recipe) -> Helper {
+pub(super) fn pure(op: Op, recipe: &Recipe) -> RowFunction {
     if recipe.is_watching {
         return of_values::<Watching>(op).expect("the row needs only values");
     }
@@ -174,7 +174,7 @@ unsafe extern "C" fn rtri(_: *mut Context, registers: *mut Registers, step: *con
 }
 
 /// The function of a row that asks the machine: it yields 0, or the [`Status`] with which to leave.
-pub(super) fn bus(op: Op) -> Helper {
+pub(super) fn bus(op: Op) -> RowFunction {
     of_machine(op).expect("the row asks the machine")
 }
 

@@ -1,5 +1,5 @@
 //! Programs as native code, generated at run time by Cranelift: each instruction inline or as a call of its meaning, counted by the ways
-//! between its runs. Whatever is bailout is left to [`super::interpreter`], which goes on where this stopped, from the same state.
+//! between its runs. Whatever is unusual is left to [`super::interpreter`], which goes on where this stopped, from the same state.
 //!
 //! What is counted, followed or noted is decided when code is generated, by a `Recipe`.
 

@@ -222,7 +222,7 @@ fn end_of_notes(before: i64) -> u64 {
 }
 
 impl Native<'_> {
-    /// Runs until the program halts, waits or comes to something bailout. `taint` is what is known of the cores; it is followed where the
+    /// Runs until the program halts, waits or comes to something unusual. `taint` is what is known of the cores; it is followed where the
     /// recipe says so.
     pub(super) fn run_code<T: Watch>(
         &mut self,

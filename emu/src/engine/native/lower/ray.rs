@@ -28,15 +28,15 @@ impl Lower<'_, '_> {
         let axis = self.b.ins().band_imm_s(axis, 3);
         let offset = self.b.ins().ishl_imm_s(axis, 2);
         let at = self.b.ins().iadd(self.registers, offset);
-        let taint = self.b.ins().sload32(aligned(), at, Registers::vector_offset(ray.0));
+        let origin = self.b.ins().sload32(aligned(), at, Registers::vector_offset(ray.0));
         let slope = self.b.ins().sload32(aligned(), at, Registers::vector_offset(ray.0.wrapping_add(1)));
-        // Along time, the fourth component, the taint is 0 and the direction 1.
+        // Along time, the fourth component, the origin is 0 and the direction 1.
         let is_time = self.b.ins().icmp_imm_s(IntCC::Equal, axis, TIME);
         let is_time = self.b.ins().uextend(I64, is_time);
         let slope = self.b.ins().bor(slope, is_time);
         let place = self.b.ins().ireduce(I32, pattern);
         let place = self.b.ins().sextend(I64, place);
-        PlaneMeeting { axis: offset, run: self.b.ins().isub(place, taint), slope }
+        PlaneMeeting { axis: offset, run: self.b.ins().isub(place, origin), slope }
     }
 
     /// Goes one way where a ray, its direction moved, meets the first plane before the other one, else the other way; see
@@ -141,7 +141,7 @@ impl RayRoom for Lower<'_, '_> {
         let inner = self.b.create_block();
         self.b.ins().brif(is_leaf, leaf, &[], inner, &[]);
 
-        // Leave where the split is behind the taint.
+        // Leave where the split is behind the origin.
         self.b.switch_to_block(inner);
         let split = self.meet(node, a);
         let distance = self.c32(i);

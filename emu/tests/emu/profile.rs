@@ -41,6 +41,33 @@ fn adds(profile: &Profile, name: &str) -> [u64; 5] {
 }
 
 #[test]
+fn loops_up_to_the_step_limit_have_the_same_profile_on_all_engines() {
+    let program = program(|p| {
+        let leaf = p.label();
+        p.function("forever", |p| {
+            let top = p.here();
+            p.emit(Op::iadd, &[1, 1, 2]).emit(Op::add, &[3, 3, 4]).emit(Op::isubi, &[5, 5, 1]);
+            p.branch(Op::bne, &[5, 0], top);
+            p.branch(Op::call, &[31], leaf).branch(Op::jump, &[], top);
+        });
+        p.function("leaf", |p| {
+            p.place(leaf).emit(Op::iadd, &[1, 1, 1]).emit(Op::movi, &[5, 100]).emit(Op::ret, &[31]);
+        });
+    });
+    let (isa, config) = (Isa::base(), Config::default());
+    for step_limit in [1 << 17, (1 << 18) + 3] {
+        let one_core = OneCore { step_limit, has_profile: true, ..OneCore::new(&config, &isa, &program) };
+        let run = |wish| one_core::run_with(&one_core, Memory::default(), wish).expect("the setup is right");
+        let checked = run(Wish::CHECKED);
+        assert_eq!(checked.state.steps, step_limit);
+        for run in [run(Wish::native()), run(Wish::fast(HostSimd::best()))] {
+            assert_eq!((&run.profile, &run.tally), (&checked.profile, &checked.tally), "{}", run.engine.kind.name());
+            assert_eq!((&run.state, &run.trap), (&checked.state, &checked.trap), "{}", run.engine.kind.name());
+        }
+    }
+}
+
+#[test]
 fn calls_count_what_they_call_and_regions_what_is_inside() {
     let (profile, counts) = run(&program(|p| {
         let (outer, leaf) = (p.label(), p.label());

@@ -309,8 +309,10 @@ impl Native<'_> {
                 _ => {}
             }
             counters.cut[place as usize] += 1;
-            if let (Some(classes), Some(watcher)) = (&code.classes, &mut host.watcher) {
-                // The rest of the block was added and is not executed.
+            if status != Status::Full
+                && let (Some(classes), Some(watcher)) = (&code.classes, &mut host.watcher)
+            {
+                // The rest of the block was added and is not executed. Full sums are found before a block is added.
                 watcher.take_back(&classes.span(place, code.ends[place as usize]));
             }
             break match status {

@@ -196,8 +196,9 @@ impl Lower<'_, '_> {
                 self.go(place, step.target);
                 Continuation::Left
             }
-            Step::UNIT => self.unit(step),
-            Step::BAILOUT => {
+            // A division by zero is known only when the registers are written, which the interpreter takes back.
+            Step::UNIT if !self.source.recipe.computes.traps_division_by_zero => self.unit(step),
+            Step::UNIT | Step::BAILOUT => {
                 self.leave(Status::Bailout, place, self.rest());
                 Continuation::Left
             }

@@ -5,6 +5,8 @@ mod examples;
 mod faults;
 mod findings;
 mod meanings;
+#[cfg(feature = "native")]
+mod native;
 mod refusals;
 #[path = "../../examples/reciprocal/study.rs"]
 mod study;

@@ -1,5 +1,7 @@
 //! Functions that generated code calls: a row each, stamped from the same meanings as the interpreter's.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use isa::Op;
 use isa::number::Nearest32;
 use isa::table::{AnyOutcome, outcome};
@@ -8,7 +10,6 @@ use super::context::Context;
 use super::run::Host;
 use super::{Recipe, Status};
 use crate::code::registers::{Registers, read};
-use crate::code::trap::Stop;
 use crate::engine::HostSimd;
 use crate::engine::fast::operands::put;
 use crate::engine::plan::Step;
@@ -220,15 +221,18 @@ pub(super) unsafe extern "C" fn unit(context: *mut Context, registers: *mut Regi
     host.ask(context, step);
     let (link, numbers) = (&mut host.link, &host.numbers);
     let mut read = |address, words: &mut [i32]| link.read(address, words);
-    let ended: Result<_, Stop> = unit.execute(&step.fields, registers, buffer, &mut read, numbers);
+    let execute = || unit.execute(&step.fields, registers, buffer, &mut read, numbers);
+    // Nothing can unwind through generated code. What the instruction has touched is not looked at again: the panic goes on from `run_code`.
+    let ended = catch_unwind(AssertUnwindSafe(execute));
     match ended {
-        Ok(ending) => {
+        Ok(Ok(ending)) => {
             if ending.units != 0 {
                 host.add_units(context, step.exit as usize + usize::from(ending.exit), ending.units);
             }
             host.answered(context, step, 0);
             u64::from(ending.exit) | if ending.is_taken { u64::from(TAKEN) } else { 0 }
         }
-        Err(stop) => host.stop(stop) << 32,
+        Ok(Err(stop)) => host.stop(stop) << 32,
+        Err(panic) => host.panicked(panic) << 32,
     }
 }

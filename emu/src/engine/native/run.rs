@@ -1,5 +1,8 @@
 //! Runs generated code, and what it needs of the machine meanwhile.
 
+use std::any::Any;
+use std::panic::resume_unwind;
+
 use isa::Counts;
 
 use super::classes::Lanes;
@@ -79,6 +82,8 @@ pub(super) struct Host<'a> {
     layout: Layout,
     reads_inline: bool,
     fault: Option<Fault>,
+    /// What an instruction with a meaning in Rust panicked with.
+    panic: Option<Box<dyn Any + Send>>,
     /// The profiler, where functions are measured.
     watcher: Option<&'a mut dyn Watcher>,
     /// The link has no room for what it was told of.
@@ -154,6 +159,12 @@ impl<'a> Host<'a> {
                 Status::Fault as u64
             }
         }
+    }
+
+    /// The status with which to leave after a panic, which goes on where generated code has returned.
+    pub fn panicked(&mut self, panic: Box<dyn Any + Send>) -> u64 {
+        self.panic = Some(panic);
+        Status::Bailout as u64
     }
 
     /// Hands what was added up by class to who measures functions.
@@ -259,6 +270,7 @@ impl Native<'_> {
             layout: code.layout,
             reads_inline: !shared.recipe.is_stepped(),
             fault: None,
+            panic: None,
             watcher: code.classes.is_some().then_some(watcher),
             is_full: false,
         };
@@ -289,6 +301,9 @@ impl Native<'_> {
             let status = Status::of(unsafe { (code.function)(context, registers, place) });
             // SAFETY: as above, and the code has returned.
             let context = unsafe { &mut *context };
+            if let Some(panic) = host.panic.take() {
+                resume_unwind(panic);
+            }
             host.empty(context);
             host.add_classes(context);
             let found = context.place;

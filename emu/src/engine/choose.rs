@@ -158,6 +158,12 @@ macro_rules! engines {
                 }
             }
 
+            fn replacement(&self) -> Option<Choice> {
+                match self {
+                    $(Ready::$kind(engine) => engine.replacement(),)*
+                }
+            }
+
             fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
                 match self {
                     $(Ready::$kind(engine) => engine.fold(tally, add_octets),)*
@@ -202,9 +208,9 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
-    /// The engine that was chosen.
+    /// The engine that was chosen; after a run in which that one had to give up, the one that runs the program instead.
     pub fn choice(&self) -> Choice {
-        self.choice
+        self.ready.as_ref().and_then(Ready::replacement).unwrap_or(self.choice)
     }
 
     /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`Runner::fold`].

@@ -70,6 +70,11 @@ pub trait Engine<'a>: Sized {
     /// Notes that the interpreter has executed so many steps of the program.
     fn interpreted(&mut self, _steps: u64) {}
 
+    /// Engine that runs the program instead, and why, where that was found only when the program ran.
+    fn replacement(&self) -> Option<Choice> {
+        None
+    }
+
     /// Adds the passes of all runs since the last call to a tally of the program, and octets of reads that no link was told of.
     fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets);
 }

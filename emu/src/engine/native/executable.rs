@@ -1,6 +1,7 @@
 //! Machine code in memory that may be executed and not written, given back when nobody holds it any more.
 
 use std::io;
+use std::sync::OnceLock;
 
 use memmap2::{Mmap, MmapMut};
 
@@ -26,6 +27,12 @@ impl Executable {
     pub fn start(&self) -> *const u8 {
         self.0.as_ptr()
     }
+}
+
+/// True where the host gives memory for code at all, found out once.
+pub(super) fn is_given() -> bool {
+    static IS_GIVEN: OnceLock<bool> = OnceLock::new();
+    *IS_GIVEN.get_or_init(|| Executable::new(&[]).is_ok())
 }
 
 /// Other hosts than x86-64 may still hold in their instruction caches what the memory held before.

@@ -23,7 +23,7 @@ use super::host::HostSimd;
 use super::plan::{Plan, Step};
 use super::state::{CoreId, State};
 use super::taint::Taint;
-use super::{AddOctets, Answers, Demand, Engine, NotedRead, Refusal, Stopped, TimedLink};
+use super::{AddOctets, Answers, Choice, Demand, Engine, EngineKind, NotedRead, Refusal, Stopped, TimedLink};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
 use crate::profile::RunObserver;
@@ -144,6 +144,9 @@ struct SharedCode {
 const PATIENCE: u64 = 1000;
 const QUICKER: u64 = 3;
 
+/// Refusal of a host that lets nobody execute what was written.
+const NO_MEMORY: Refusal = "the host gives no memory for code";
+
 /// Steps before that at which it does not matter any more: the fast engine stops in front of a run that would go beyond its limit.
 const LAST: u64 = 1 << 14;
 
@@ -165,6 +168,9 @@ impl<'a> Engine<'a> for Native<'a> {
             return Err("native code counts no losses");
         }
         host()?;
+        if !executable::is_given() {
+            return Err(NO_MEMORY);
+        }
         let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
         let plan = plan.regardless_of_cores();
         let recipe = Recipe::new(demand, &plan);
@@ -201,20 +207,29 @@ impl<'a> Engine<'a> for Native<'a> {
                 return stopped;
             }
         }
+        let is_refused = self.shared.code(&self.plan, self.patience).is_none();
+        if is_refused && let Some(first) = &mut self.first {
+            return first.run(core, state, arithmetic, link, taint, observer);
+        }
         let mut link: &mut dyn TimedLink = link;
         self.run_code(core, state, arithmetic, &mut link, taint, observer)
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {
-        let is_refused = matches!(self.shared.compiled.get(), Some(Err(_)));
         match self.shared.rest(self.patience) {
-            _ if is_refused || run::is_near_limit(core, state.steps + state.inner_steps) => u64::MAX,
+            _ if run::is_near_limit(core, state.steps + state.inner_steps) => u64::MAX,
             rest => rest.max(1),
         }
     }
 
     fn interpreted(&mut self, steps: u64) {
         self.shared.executed.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    fn replacement(&self) -> Option<Choice> {
+        let refusal = self.shared.compiled.get()?.as_ref().err().copied()?;
+        let kind = if self.first.is_some() { EngineKind::Fast } else { EngineKind::Checked };
+        Some(Choice { kind, refusal: Some(refusal) })
     }
 
     fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
@@ -226,11 +241,12 @@ impl<'a> Engine<'a> for Native<'a> {
 }
 
 impl SharedCode {
-    /// Steps that other engines are to execute before the program is compiled.
+    /// Steps that other engines are to execute before the program is compiled; no end of them where it cannot be.
     fn rest(&self, patience: u64) -> u64 {
         match self.compiled.get() {
             None => patience.saturating_sub(self.executed.load(Ordering::Relaxed)),
-            Some(_) => 0,
+            Some(Ok(_)) => 0,
+            Some(Err(_)) => u64::MAX,
         }
     }
 
@@ -278,7 +294,7 @@ impl Compiled {
         if !compiled.buffer.relocs().is_empty() {
             return Err("the host lacks an instruction that compiled programs need");
         }
-        let executable = Executable::new(compiled.code_buffer()).map_err(|_| "the host gives no memory for code")?;
+        let executable = Executable::new(compiled.code_buffer()).map_err(|_| NO_MEMORY)?;
         // SAFETY: what was generated is a function of that signature, in the host's calling convention, with nothing left to relocate.
         let function = unsafe { std::mem::transmute::<*const u8, Function>(executable.start()) };
         Ok(Compiled {
@@ -313,4 +329,59 @@ fn host() -> Result<cranelift_codegen::isa::OwnedTargetIsa, Refusal> {
         return Err(UNKNOWN);
     }
     Ok(isa)
+}
+
+#[cfg(test)]
+mod tests {
+    use isa::number::Nearest32;
+    use isa::{Isa, Op, Program};
+
+    use super::*;
+    use crate::code::Code;
+    use crate::code::octets::Buffer;
+    use crate::code::trap::Stop;
+    use crate::engine::{Pause, Wish, choose};
+    use crate::profile::Unobserved;
+    use crate::semantics::{Link, Message, methods};
+
+    /// A machine of which nobody asks anything.
+    struct Silent;
+
+    impl Link for Silent {
+        methods! { refuse! }
+    }
+
+    #[test]
+    fn a_program_that_cannot_be_compiled_runs_on_the_first_engine_and_says_so() {
+        let isa = Isa::base();
+        let word = |op, operands: &[i64]| isa.encode(op, operands).expect("operands are in their ranges");
+        // As many rounds as there is patience, and more.
+        let words = vec![
+            word(Op::movi, &[1, 30_000]),
+            word(Op::isubi, &[1, 1, 1]),
+            word(Op::bne, &[1, 0, -1]),
+            word(Op::halt, &[]),
+        ];
+        let program = Program { words, region_of: vec![], ..Program::default() };
+        let buffer_octets = 64;
+        for (is_eager, kind, interpreted) in [(false, EngineKind::Fast, 0), (true, EngineKind::Checked, 60_002)] {
+            let code = Code::new(&program, &isa, Default::default());
+            let wish = Wish { is_eager, ..Wish::native() };
+            let demand = Demand::new(&code, wish, Computes::default(), buffer_octets);
+            let native = Native::new(&demand).expect("there is a compiler for this host");
+            let mut runner = choose(&demand);
+            assert_eq!(runner.choice(), Choice { kind: EngineKind::Native, refusal: None });
+            native.shared.compiled.set(Err(NO_MEMORY)).expect("nothing is compiled yet");
+
+            let core = CoreId { core: 0, cores: 1, step_limit: 1 << 30 };
+            let mut state = State::new(&code, Buffer::new(&[], buffer_octets));
+            let mut tally = Tally::new(&code);
+            let pause = runner.run(core, &mut state, &Nearest32, &mut Silent, &mut tally, &mut Unobserved);
+            assert_eq!((pause, state.steps), (Pause::Halt, 60_002));
+            assert_eq!(tally.instructions(), interpreted, "by the interpreter");
+            runner.fold(&mut tally, &mut |_, _| {});
+            assert_eq!(tally.instructions(), 60_002);
+            assert_eq!(runner.choice(), Choice { kind, refusal: Some(NO_MEMORY) });
+        }
+    }
 }

@@ -18,10 +18,10 @@ use crate::semantics::{
 };
 
 /// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].
-pub(super) type RowFunction = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
+pub(super) type RowCall = unsafe extern "C" fn(*mut Context, *mut Registers, *const Step) -> u64;
 
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
-pub(super) type UnitsFunction = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
+pub(super) type UnitsCall = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
 
 /// Tells who measures functions that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
 pub(super) type Went = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
@@ -112,7 +112,7 @@ macro_rules! row_functions {
         }
 
         /// The function of a row that needs only values: see [`rows`].
-        fn of_values<T: Watch>(op: Op) -> Option<RowFunction> {
+        fn of_values<T: Watch>(op: Op) -> Option<RowCall> {
             match op {
                 $($(Op::$name => of_values!($style $name),)*)*
                 Op::Ext(_) => None,
@@ -120,7 +120,7 @@ macro_rules! row_functions {
         }
 
         /// The function of a row that asks the machine.
-        fn of_machine(op: Op) -> Option<RowFunction> {
+        fn of_machine(op: Op) -> Option<RowCall> {
             match op {
                 $($(Op::$name => of_machine!($style $name),)*)*
                 Op::Ext(_) => None,
@@ -151,7 +151,7 @@ isa::instructions!(row_functions);
 
 /// The function of a row that needs only values: it yields the number of the exit, and in the high half its units; [`STOPPED`] where it has
 /// divided by zero and that traps.
-pub(super) fn pure(op: Op, recipe: &Recipe) -> RowFunction {
+pub(super) fn pure(op: Op, recipe: &Recipe) -> RowCall {
     if recipe.is_watching {
         return of_values::<Watching>(op).expect("the row needs only values");
     }
@@ -175,7 +175,7 @@ unsafe extern "C" fn rtri(_: *mut Context, registers: *mut Registers, step: *con
 }
 
 /// The function of a row that asks the machine: it yields 0, or the [`Status`] with which to leave.
-pub(super) fn bus(op: Op) -> RowFunction {
+pub(super) fn bus(op: Op) -> RowCall {
     of_machine(op).expect("the row asks the machine")
 }
 

@@ -82,7 +82,7 @@ pub(super) struct Host<'a> {
     layout: Layout,
     reads_inline: bool,
     fault: Option<Fault>,
-    /// What an instruction with a meaning in Rust panicked with.
+    /// Payload of a panic of an instruction with a meaning in Rust.
     panic: Option<Box<dyn Any + Send>>,
     /// The profiler, where functions are measured.
     watcher: Option<&'a mut dyn Watcher>,

@@ -9,13 +9,13 @@ use super::{BusRoom, Continuation, Form, Lower, S, V, aligned, flags};
 use crate::code::registers::Registers;
 use crate::engine::cost::CLOCKS;
 use crate::engine::native::NotedRead;
-use crate::engine::native::calls::{self, RowFunction, STOPPED};
+use crate::engine::native::calls::{self, RowCall, STOPPED};
 use crate::engine::native::context::{BEFORE, MEMORY, NOTED_AT, NOTED_END, READS};
 use crate::engine::plan::Step;
 
 impl Lower<'_, '_> {
     /// Calls a function for a step, and yields what it returns.
-    fn call_function(&mut self, function: RowFunction, step: &Step) -> Value {
+    fn call_function(&mut self, function: RowCall, step: &Step) -> Value {
         // The step that lives as long as the code, and not a copy.
         debug_assert!(self.source.steps.as_ptr_range().contains(&std::ptr::from_ref(step)));
         let function = self.c64(function as usize as i64);
@@ -55,7 +55,7 @@ impl Lower<'_, '_> {
         let (some, on) = (self.cold_block(), self.b.create_block());
         self.b.ins().brif(units, some, &[], on, &[]);
         self.b.switch_to_block(some);
-        let function = self.c64(calls::add_units as calls::UnitsFunction as usize as i64);
+        let function = self.c64(calls::add_units as calls::UnitsCall as usize as i64);
         let step_at = self.c64(std::ptr::from_ref(step) as i64);
         self.b.ins().call_indirect(self.call, function, &[self.context, step_at, exit]);
         self.b.ins().jump(on, &[]);

@@ -110,7 +110,7 @@ fn entry_signature(isa: &dyn TargetIsa) -> Signature {
     signature
 }
 
-/// Signature of [`super::calls::RowFunction`].
+/// Signature of [`super::calls::RowCall`].
 fn call_signature(isa: &dyn TargetIsa) -> Signature {
     let mut signature = Signature::new(isa.default_call_conv());
     signature.params.extend([AbiParam::new(I64); 3]);

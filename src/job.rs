@@ -94,7 +94,7 @@ impl Job {
             layout: self.layout(),
             kd_depth: self.kd_depth,
             kd_method: self.kd_method,
-            formats: self.formats.clone(),
+            formats: self.formats,
         }
     }
 

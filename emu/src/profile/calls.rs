@@ -74,15 +74,13 @@ impl Running {
     /// Carries over what everything open has taken, and operations of whatever number.
     #[cold]
     pub fn carry_over<'e>(&mut self, open: impl Iterator<Item = &'e mut Entered>, more: &Counts) {
-        let mut number = 0;
-        for entered in open {
+        for (number, entered) in open.enumerate() {
             let took = self.long_since(entered, number) + *more;
             match self.carried.get_mut(number) {
                 Some(carried) => *carried = took,
                 None => self.carried.push(took),
             }
             *entered = Entered { near: [0; CLASSES], is_carried: true };
-            number += 1;
         }
         self.near = [0; CLASSES];
     }
@@ -119,9 +117,9 @@ impl Calls {
             (self.least, self.most) = (*cost, *cost);
             (self.least_elementary, self.most_elementary) = (elementary, elementary);
         }
-        for at in 0..CLASSES {
-            self.least[at] = self.least[at].min(cost[at]);
-            self.most[at] = self.most[at].max(cost[at]);
+        for ((least, most), &cost) in self.least.iter_mut().zip(&mut self.most).zip(cost) {
+            *least = (*least).min(cost);
+            *most = (*most).max(cost);
         }
         self.least_elementary = self.least_elementary.min(elementary);
         self.most_elementary = self.most_elementary.max(elementary);

@@ -78,6 +78,9 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
     Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
 }
 
+/// Outcome of one machine, or the reason for which it has to be stepped.
+type Replayed = Result<Result<RunOutcome, Failure>, Reason>;
+
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
 fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     setups: &[Setup],
@@ -85,7 +88,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> (PrerunTotals, Vec<Result<Result<RunOutcome, Failure>, Reason>>) {
+) -> (PrerunTotals, Vec<Replayed>) {
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
     let recorded_cores = setups[0].config.cores;

@@ -11,6 +11,9 @@ use super::{obj, off, ply, stl};
 /// Extension of scene descriptions.
 pub(super) const DESCRIPTION: &str = "dsc";
 
+/// Reading of the octets of a file with a name for messages; libraries of materials are opened where the caller has an opener.
+pub(super) type Parse = fn(Vec<u8>, &str, Option<&mut Libraries<'_>>) -> Result<Mesh, Report>;
+
 /// A reader of meshes: its row in [`MESH_READERS`].
 pub(super) struct MeshReader {
     /// Extensions of its files, in lower case; the first is its name.
@@ -18,7 +21,7 @@ pub(super) struct MeshReader {
     /// Likelihood that a file without a known extension has the format, from its octets and its first word (comments left out).
     pub sniff: fn(&[u8], &str) -> Likelihood,
     /// Reads the octets of a file with a name for messages. Libraries of materials are opened where the caller has an opener.
-    pub parse: fn(Vec<u8>, &str, Option<&mut Libraries<'_>>) -> Result<Mesh, Report>,
+    pub parse: Parse,
 }
 
 /// All readers of meshes, in the order in which one is looked for beside a `.dsc`.

@@ -57,8 +57,9 @@ macro_rules! row_function {
             step: *const Step,
         ) -> u64 {
             // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
-            let (arithmetic, registers, fields) =
-                unsafe { (&*(*context).arithmetic.cast::<T>(), &mut *registers, &(*step).fields) };
+            let arithmetic = unsafe { &*(*context).arithmetic.cast::<T>() };
+            // SAFETY: as above.
+            let (registers, fields) = unsafe { (&mut *registers, &(*step).fields) };
             let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
             if T::IS_WATCHING && arithmetic.take_division_by_zero() {
                 return STOPPED;

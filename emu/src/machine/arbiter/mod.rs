@@ -119,17 +119,19 @@ fn grant(master: Option<u32>, clock: Clocks) -> Verdict {
 }
 
 /// The arbiters that a machine can have: a line each, with its file, its type, its name in a machine's file, and how it is made for some masters.
+/// The one that is the default has the attribute.
 macro_rules! arbiters {
-    ($($file:ident $arbiter:ident $name:literal ($config:pat, $masters:pat) => $new:expr;)*) => {
+    ($($(#[$default:ident])? $file:ident $arbiter:ident $name:literal ($config:pat, $masters:pat) => $new:expr;)*) => {
         $(mod $file;)*
         $(pub use $file::$arbiter;)*
 
         /// Kinds of arbiters that a machine can have.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum ArbiterKind {
             $(
                 #[doc = concat!("[`", stringify!($arbiter), "`].")]
                 #[serde(rename = $name)]
+                $(#[$default])?
                 $arbiter,
             )*
         }
@@ -160,19 +162,13 @@ macro_rules! arbiters {
 
 arbiters! {
     fixed_priority FixedPriority "fixed-priority" (_, _) => FixedPriority;
-    round_robin RoundRobin "round-robin" (_, _) => RoundRobin::new();
+    #[default] round_robin RoundRobin "round-robin" (_, _) => RoundRobin::new();
     weighted Weighted "weighted" (config, masters) => Weighted::new(masters, &config.weights);
     oldest_first OldestFirst "oldest-first" (_, _) => OldestFirst;
     tdma Tdma "tdma" (config, masters) => Tdma::new(masters, Clocks(config.slot_clocks));
 }
 
-impl Default for ArbiterKind {
-    fn default() -> ArbiterKind {
-        ArbiterKind::RoundRobin
-    }
-}
-
-/// BusRequests of these masters, each from a clock on, for that long.
+/// Requests of these masters, each from a clock on, for that long.
 #[cfg(test)]
 fn requests(masters: u32, asking: impl IntoIterator<Item = (u32, u64, u64)>) -> BusRequests {
     let mut requests = BusRequests::new(masters);

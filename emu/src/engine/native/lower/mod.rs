@@ -138,7 +138,7 @@ pub(super) fn function(isa: &dyn TargetIsa, source: &Source) -> Function {
     // Any join can be entered; what else is asked for is the interpreter's.
     let mut switch = Switch::new();
     for (place, block) in entries.iter().enumerate() {
-        block.into_iter().for_each(|&block| switch.set_entry(place as u128, block));
+        block.iter().for_each(|&block| switch.set_entry(place as u128, block));
     }
     let stray = b.create_block();
     b.set_cold_block(stray);

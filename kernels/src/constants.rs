@@ -43,6 +43,7 @@ impl Constants {
     pub fn new(image: &MemoryImage) -> Constants {
         let formats = image.formats;
         let bits = difference_bits(image);
+        // Sums of products: a determinant of a direction and two edges has three pairs of them, which takes 3 bits beyond the factors'.
         let (edge, reach) = (2 * bits + formats.direction + 3, 3 * bits + 3);
         let (side, near) = (2 * bits + 2, NEAR.ilog2());
         let spare = |needed: u32| needed.saturating_sub(2 * formats.word);
@@ -56,6 +57,7 @@ impl Constants {
             side_fraction: side_fraction(formats.word),
             offset,
             literal_offset: offset.max(1 << (formats.word / 2 - 4)),
+            // One below the distance of a miss, so that a miss is never nearer than what has been found.
             never: largest - 1,
             missed: largest,
             most_steps: image.tree.leaves as u32 + 1,

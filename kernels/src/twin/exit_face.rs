@@ -14,6 +14,7 @@ pub fn exit_face(arithmetic: &impl VectorArithmetic, ray: &Ray, bounds: &Bounds)
     let plane = from_fn(|k| if ray.is_backwards(k) { bounds.low[k] } else { bounds.high[k] });
     let run = runs(arithmetic, ray, plane);
     let axis = (1..3).fold(0, |first, k| {
+        // run_a / |D_a| against run_b / |D_b| as products, so an axis along which the ray does not move is never the first.
         let met = arithmetic.wide_product(run[first], ray.steep[k]);
         let other = arithmetic.wide_product(run[k], ray.steep[first]);
         if other < met || other == met && ray.is_backwards(first) { k } else { first }

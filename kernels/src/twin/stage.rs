@@ -92,6 +92,7 @@ impl Stage {
                 Node::Inner { axis, at, left } => (axis, at, left),
                 Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
             };
+            // The children share the plane: it becomes a face of the one that is entered.
             if is_right(axis, at) {
                 bounds.low[axis] = at;
                 number = left + 1;
@@ -108,6 +109,7 @@ impl Stage {
             Node::Inner { left, .. } => number < *left as usize && (*left as usize) < self.nodes.len() - 1,
             Node::Leaf(_) => true,
         };
+        // Searches rely on this instead of checking at each step.
         !self.nodes.is_empty()
             && self.nodes.iter().enumerate().all(has_children)
             && self.triangles.iter().all(|triangle| (triangle.material as usize) < self.materials.len())

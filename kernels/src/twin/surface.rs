@@ -72,6 +72,7 @@ pub fn height(
         let (j, l) = ((k + 1) % 3, (k + 2) % 3);
         p[j] * q[l] - p[l] * q[j]
     };
+    // Exact: three factors of at most 32 bits each, and a sum of six products.
     let volume: i128 = (0..3).map(|k| a[k] * minor(b, way, k)).sum();
     let (volume, area) = (arithmetic.widen(volume, constants.side_shift), arithmetic.widen(minor(a, b, axis), 0));
     let fraction = constants.side_shift + constants.side_fraction;

@@ -122,7 +122,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
 /// Puts recorded work items on a machine's clock. The counts of the cores are then missing from the frame.
 ///
 /// # Errors
-/// Why the machine does not do what was recorded; the inner error is a trap.
+/// Reason for which the machine does not do what was recorded; the inner error is a trap.
 fn on_clock<T: Watch, O: RunObserver>(
     setup: &Setup,
     memory: Memory,

@@ -1,7 +1,7 @@
 //! Programs as native code, generated at run time by Cranelift: each instruction inline or as a call of its meaning, counted by the ways
 //! between its runs. Whatever is unusual is left to [`super::interpreter`], which goes on where this stopped, from the same state.
 //!
-//! What is counted, followed or noted is decided when code is generated, by a `Recipe`.
+//! A `Recipe` decides, when code is generated, what it counts, follows and notes.
 
 mod blocks;
 mod calls;
@@ -263,7 +263,7 @@ impl Compiled {
     /// Generates the code of a plan.
     ///
     /// # Errors
-    /// Why that cannot be done.
+    /// Refused, with the reason.
     fn new(plan: &Plan, recipe: &Recipe) -> Result<Compiled, Refusal> {
         let isa = host()?;
         let steps: Box<[Step]> = plan.steps().into();

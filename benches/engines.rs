@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use emu::engine::EngineKind;
-use emu::machine::Options;
+use emu::machine::RunOptions;
 use kernels::KernelSet;
 use lancer::job::Job;
 use lancer::load::Load;
@@ -30,7 +30,7 @@ fn engines(criterion: &mut Criterion) {
             group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
             group.throughput(Throughput::Elements(u64::from(SIZE.0 * SIZE.1)));
             for engine in EngineKind::ALL {
-                let setup = load.setup(&job.machine, Options { engine, ..Options::default() });
+                let setup = load.setup(&job.machine, RunOptions { engine, ..RunOptions::default() });
                 group.bench_function(BenchmarkId::from_parameter(engine.name()), |bencher| {
                     bencher.iter(|| emu::count(&setup, &load.memory).expect("it runs").expect("it is counted"));
                 });

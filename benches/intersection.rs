@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use emu::engine::EngineKind;
-use emu::machine::{Config, Options, Setup};
+use emu::machine::{Config, RunOptions, Setup};
 use emu::octets::Memory;
 use isa::number::ray::{Ray, TriangleEnd, ratio, triangle};
 use isa::number::{Arithmetic, Nearest32, Vector};
@@ -263,7 +263,7 @@ fn main() {
         let engine = |engine: EngineKind| {
             let (config, isa, core, main, memory) = (&config, &isa, &core, &main, &memory);
             move || {
-                let options = Options { engine, ..Options::default() };
+                let options = RunOptions { engine, ..RunOptions::default() };
                 let setup = Setup { config, isa, core, main, kinds: Vec::new(), options };
                 let count = emu::count(&setup, memory).expect("it runs").expect("it is counted");
                 (0..RAYS as u32).fold(0i32, |sum, ray| sum.wrapping_add(count.memory.word(4 * ray).expect("an answer")))

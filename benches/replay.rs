@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, Options};
+use emu::machine::{Config, RunOptions};
 use emu::replay::Recorded;
 use lancer::job::Job;
 use lancer::load::Load;
@@ -40,7 +40,7 @@ fn measure(name: &str, load: &Load, machine: &str, config: &Config, cores: &[u32
     }
     let mut config = config.clone();
     config.main.traffic = name != "annex";
-    let options = Options::default();
+    let options = RunOptions::default();
     let recorded = Recorded::new(&load.setup(&config, options), &load.memory).expect("it can be replayed");
     for &cores in cores {
         config.cores = cores;

@@ -132,7 +132,8 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     // Run the machine, with the reference beside it on a thread of its own.
     let has_profile = job.detail == Detail::Functions;
     let (has_losses, engine) = (job.flags, job.engine);
-    let options = machine::Options { has_profile, has_items: true, has_losses, engine, ..machine::Options::default() };
+    let options =
+        machine::RunOptions { has_profile, has_items: true, has_losses, engine, ..machine::RunOptions::default() };
     let setup = load.setup(&job.machine, options);
     let engine = setup.engine();
     let (frame, reference) = std::thread::scope(|scope| {

@@ -63,11 +63,11 @@ impl From<Diagnostic> for Failure {
     }
 }
 
-impl From<emu::machine::Failure> for Failure {
-    fn from(failure: emu::machine::Failure) -> Failure {
+impl From<emu::machine::RunFailure> for Failure {
+    fn from(failure: emu::machine::RunFailure) -> Failure {
         let exit = match &failure {
-            emu::machine::Failure::Setup(_) => Exit::Input,
-            emu::machine::Failure::Trap(trap) => Exit::of_trap(trap),
+            emu::machine::RunFailure::Setup(_) => Exit::Input,
+            emu::machine::RunFailure::Trap(trap) => Exit::of_trap(trap),
         };
         Failure::Message { report: failure.report(), exit }
     }

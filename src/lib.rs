@@ -35,7 +35,7 @@ pub mod trace;
 pub use drawing::{Drawing, draw, render};
 pub use emu::machine::Config as MachineConfig;
 pub use failure::Failure;
-pub use files::picture::Format;
+pub use files::picture::PictureFormat;
 pub use input::scene;
 pub use job::Job;
 pub use kernels::KernelSet;

@@ -2,7 +2,7 @@
 //! one such load, the report's estimate of a picture another.
 
 use emu::engine::EngineKind;
-use emu::machine::{Config, Options, Setup};
+use emu::machine::{Config, RunOptions, Setup};
 use emu::octets::Memory;
 use isa::Isa;
 use kernels::annex::load;
@@ -73,7 +73,7 @@ impl Load {
     }
 
     /// The load on a machine.
-    pub fn setup<'a>(&'a self, config: &'a Config, options: Options) -> Setup<'a> {
+    pub fn setup<'a>(&'a self, config: &'a Config, options: RunOptions) -> Setup<'a> {
         Setup {
             config,
             isa: &self.isa,

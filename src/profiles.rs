@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::{Detail, Job, SHIFT, result_name};
-use crate::result::{ByClass, Formats, image_hash};
+use crate::result::{ByClass, FormatTable, image_hash};
 
 /// Version of [`Profiles`].
 pub const SCHEMA: &str = "lancer-profiles-1";
@@ -60,7 +60,7 @@ pub struct ProfileResult {
     /// Words of the cores' program.
     pub program_words: usize,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: Formats,
+    pub formats: FormatTable,
     /// Pixels that differ from the double-precision reference by 1/255 or more.
     pub off_pixels: u64,
     /// SHA-256 of the picture.

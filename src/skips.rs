@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
-use crate::result::{ByClass, Formats, image_hash};
+use crate::result::{ByClass, FormatTable, image_hash};
 
 /// Difference of a component up to which corners agree, where a job names none.
 pub const DIFFERENCE: f64 = 0.01;
@@ -37,7 +37,7 @@ pub struct SkipsResult {
     /// Height of the picture in pixels.
     pub height: u32,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: Formats,
+    pub formats: FormatTable,
     /// First the picture without any skip, then each alone, then all together, then with interpolation, which changes the picture.
     pub rows: Vec<SkipResult>,
 }

@@ -6,7 +6,7 @@ use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
 use crate::numeral::{count, grouped, percent, short};
-use crate::result::{ProcessorResult, Region, Render};
+use crate::result::{ProcessorResult, RegionCounts, Render};
 use crate::table::{row, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -52,18 +52,18 @@ pub fn functions(result: &Render) -> String {
 }
 
 /// Lists of functions, each under a prefix, those with the most inclusive operations first.
-pub fn function_table(lists: &[(&[Region], &str)]) -> String {
+pub fn function_table(lists: &[(&[RegionCounts], &str)]) -> String {
     let head = ["function", "calls", "incl.", "own"].into_iter().map(str::to_owned);
     let mut rows: Vec<Vec<String>> = vec![head.chain(COLUMNS.iter().map(|class| class.name().to_owned())).collect()];
     for (regions, prefix) in lists {
-        let mut regions: Vec<&Region> = regions.iter().filter(|region| region.calls != 0).collect();
+        let mut regions: Vec<&RegionCounts> = regions.iter().filter(|region| region.calls != 0).collect();
         regions.sort_by_key(|region| std::cmp::Reverse(region.inclusive.0.elementary()));
         rows.extend(regions.into_iter().map(|region| function(region, prefix)));
     }
     table(rows)
 }
 
-fn function(region: &Region, prefix: &str) -> Vec<String> {
+fn function(region: &RegionCounts, prefix: &str) -> Vec<String> {
     let own = &region.exclusive.0;
     let totals = [region.calls, region.inclusive.0.elementary(), own.elementary()];
     let classes = COLUMNS.iter().map(|&class| own[class]);

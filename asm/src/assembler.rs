@@ -13,18 +13,18 @@ use messages::Source;
 use crate::definition::Alias;
 use crate::directive::DIRECTIVES;
 use crate::explain;
-use crate::expression::{Expression, Step};
+use crate::expression::{EvaluationStep, Expression};
 use crate::extension::Template;
-use crate::frame::Frame;
+use crate::frame::OpenText;
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
-use crate::line::Line;
+use crate::line::OriginLine;
 use crate::listing::Record;
 use crate::macros::Macro;
 use crate::message::{Among, At, Messages, Problem};
 use crate::pseudo::PSEUDOS;
 use crate::region::OpenRegion;
-use crate::structure::Structure;
+use crate::structure::OpenStructure;
 use crate::symbol::{Name, Names, SymbolValue};
 use crate::{Attempt, Options};
 
@@ -56,9 +56,9 @@ pub(crate) struct Assembler<'a> {
     pub names: Names,
     pub macros: HashMap<Rc<str>, Rc<Macro>>,
     pub aliases: Vec<HashMap<Rc<str>, Alias>>,
-    pub frames: Vec<Frame>,
+    pub frames: Vec<OpenText>,
     pub section: Section,
-    pub structure: Option<Structure>,
+    pub structure: Option<OpenStructure>,
     pub regions: Vec<OpenRegion>,
     pub known_regions: HashMap<(String, bool, Option<u16>), u16>,
     pub numeric: HashMap<Rc<str>, u32>,
@@ -66,7 +66,7 @@ pub(crate) struct Assembler<'a> {
     pub asserts: Vec<(Expression, String, At)>,
     pub entry: Option<Expression>,
     /// Names that decide the layout and were not known yet.
-    pub early: Vec<(Step, At)>,
+    pub early: Vec<(EvaluationStep, At)>,
     /// Files by the name that was asked for and the file that asked.
     pub included: HashMap<(String, u16), u16>,
     pub records: Vec<Record>,
@@ -189,7 +189,7 @@ impl Assembler<'_> {
     }
 
     /// Appends a word to the code.
-    pub(crate) fn emit(&mut self, word: u32, line: &Line) {
+    pub(crate) fn emit(&mut self, word: u32, line: &OriginLine) {
         if !self.takes_step(line) {
             return;
         }

@@ -8,7 +8,7 @@ use crate::message::{At, Parsed, Problem};
 
 /// State of an open `.if`: what happens to the lines that follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum ConditionalState {
     /// Reads them.
     Taking,
     /// Skips them until a branch is true.
@@ -20,7 +20,7 @@ enum State {
 /// An open `.if`.
 #[derive(Clone, Debug)]
 pub(crate) struct Condition {
-    state: State,
+    state: ConditionalState,
     has_else: bool,
     at: At,
 }
@@ -65,10 +65,10 @@ impl Assembler<'_> {
     /// The lines here are skipped.
     pub(crate) fn is_skipping(&self) -> bool {
         let conditions = self.frames.last().map(|frame| &frame.conditions);
-        conditions.and_then(|open| open.last()).is_some_and(|condition| condition.state != State::Taking)
+        conditions.and_then(|open| open.last()).is_some_and(|condition| condition.state != ConditionalState::Taking)
     }
 
-    fn push_condition(&mut self, state: State, at: At) {
+    fn push_condition(&mut self, state: ConditionalState, at: At) {
         if let Some(frame) = self.frames.last_mut() {
             frame.conditions.push(Condition { state, has_else: false, at });
         }
@@ -77,12 +77,12 @@ impl Assembler<'_> {
     /// An `.if` of some kind. A condition without a value counts as true, so that what it guards is defined.
     pub(crate) fn open_condition(&mut self, test: Test, at: At, cursor: &mut Cursor) -> Parsed<()> {
         if self.is_skipping() {
-            self.push_condition(State::Done, at);
+            self.push_condition(ConditionalState::Done, at);
             return Ok(());
         }
         let result = self.test(test, cursor);
         let is_true = *result.as_ref().unwrap_or(&true);
-        self.push_condition(if is_true { State::Taking } else { State::Seeking }, at);
+        self.push_condition(if is_true { ConditionalState::Taking } else { ConditionalState::Seeking }, at);
         result.map(|_| ())
     }
 
@@ -90,7 +90,7 @@ impl Assembler<'_> {
     /// stands where nothing is read.
     pub(crate) fn open_unknown_condition(&mut self, at: At) -> bool {
         let is_skipping = self.is_skipping();
-        self.push_condition(if is_skipping { State::Done } else { State::Taking }, at);
+        self.push_condition(if is_skipping { ConditionalState::Done } else { ConditionalState::Taking }, at);
         is_skipping
     }
 
@@ -129,20 +129,20 @@ impl Assembler<'_> {
         };
         if condition.has_else {
             let other = condition.at;
-            condition.state = State::Done;
+            condition.state = ConditionalState::Done;
             let message = format!("`{name}` after `.else`");
             return Err(Problem::new(explain::UNOPENED, message, at, "too late").also(Some(other), "opened here"));
         }
         condition.has_else = is_last;
-        if condition.state != State::Seeking {
-            condition.state = State::Done;
+        if condition.state != ConditionalState::Seeking {
+            condition.state = ConditionalState::Done;
             return Ok(());
         }
         let is_true = if is_last { cursor.end().map(|_| true) } else { self.test(Test::Expression, cursor) };
         if *is_true.as_ref().unwrap_or(&true)
             && let Some(condition) = self.frames.last_mut().and_then(|frame| frame.conditions.last_mut())
         {
-            condition.state = State::Taking;
+            condition.state = ConditionalState::Taking;
         }
         is_true.map(|_| ())
     }

@@ -1,14 +1,14 @@
 //! Walking along the tokens of a line.
 
 use crate::explain;
-use crate::line::Line;
+use crate::line::OriginLine;
 use crate::message::{At, Parsed, Problem};
-use crate::token::{Kind, Token};
+use crate::token::{Token, TokenKind};
 
 /// A position in the tokens of a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cursor<'t> {
-    pub line: &'t Line,
+    pub line: &'t OriginLine,
     pub tokens: &'t [Token],
     pub position: usize,
 }
@@ -25,13 +25,13 @@ impl<'t> Cursor<'t> {
     }
 
     /// The kind of the token here.
-    pub fn kind(&self) -> Option<Kind> {
+    pub fn kind(&self) -> Option<TokenKind> {
         self.peek().map(|token| token.kind)
     }
 
     /// This punctuation is here.
     pub fn is_mark(&self, mark: &str) -> bool {
-        matches!(self.kind(), Some(Kind::Mark(here)) if here == mark)
+        matches!(self.kind(), Some(TokenKind::Mark(here)) if here == mark)
     }
 
     /// Goes on to the next token.
@@ -107,7 +107,7 @@ impl<'t> Cursor<'t> {
     /// Takes a name.
     pub fn name(&mut self, what: &str) -> Parsed<(&'t str, At)> {
         match self.peek() {
-            Some(token) if token.kind == Kind::Name => {
+            Some(token) if token.kind == TokenKind::Name => {
                 self.skip();
                 Ok((self.text(token), self.at(token)))
             }

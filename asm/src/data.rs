@@ -2,12 +2,12 @@
 
 use crate::assembler::{Assembler, Fixup, Section};
 use crate::cursor::Cursor;
-use crate::evaluation::Failure;
+use crate::evaluation::EvaluationFailure;
 use crate::explain;
 use crate::expression::Expression;
 use crate::limits::{BUFFER, WORDS};
 use crate::message::{Among, At, Parsed, Problem};
-use crate::token::{Kind, text_octets};
+use crate::token::{TokenKind, text_octets};
 
 /// Range of a number of `width` octets, signed or unsigned; eight octets are signed, where a pattern was made one by its reader.
 fn range(width: usize) -> (i64, i64) {
@@ -75,7 +75,7 @@ impl Assembler<'_> {
         let raw = if expression.steps.is_empty() { Ok(0) } else { self.data_value(width, &expression) };
         let value = match raw {
             Ok(value) => value,
-            Err(Failure::Later(..)) => {
+            Err(EvaluationFailure::Later(..)) => {
                 self.settle(&mut expression);
                 self.fixups.push(match self.section {
                     Section::Code => Fixup::Word { expression, pc },
@@ -96,7 +96,7 @@ impl Assembler<'_> {
     }
 
     /// A number for `width` octets.
-    pub(crate) fn data_value(&self, width: usize, expression: &Expression) -> Result<i64, Failure> {
+    pub(crate) fn data_value(&self, width: usize, expression: &Expression) -> Result<i64, EvaluationFailure> {
         let value = self.evaluate(expression)?;
         let (least, mut most) = range(width);
         if expression.is_fixed() {
@@ -105,7 +105,7 @@ impl Assembler<'_> {
         if value < least || value > most {
             let message = format!("{value} does not fit {width} octet{}", if width == 1 { "" } else { "s" });
             let label = format!("must be {least} to {most}");
-            return Err(Failure::Wrong(Problem::new(explain::RANGE, message, expression.at, label)));
+            return Err(EvaluationFailure::Wrong(Problem::new(explain::RANGE, message, expression.at, label)));
         }
         Ok(value)
     }
@@ -131,12 +131,12 @@ impl Assembler<'_> {
             return Err(only_in_buffer(at));
         }
         loop {
-            let Some(token) = cursor.peek().filter(|token| token.kind == Kind::Text) else {
+            let Some(token) = cursor.peek().filter(|token| token.kind == TokenKind::Text) else {
                 return Err(cursor.expected("a text in quotation marks"));
             };
             let mut octets = self.text_value(cursor, token)?;
             cursor.skip();
-            while let Some(token) = cursor.peek().filter(|token| token.kind == Kind::Text) {
+            while let Some(token) = cursor.peek().filter(|token| token.kind == TokenKind::Text) {
                 octets.extend(self.text_value(cursor, token)?);
                 cursor.skip();
             }

@@ -4,9 +4,9 @@ use std::rc::Rc;
 
 use crate::assembler::{Assembler, Section};
 use crate::cursor::Cursor;
-use crate::evaluation::Failure;
+use crate::evaluation::EvaluationFailure;
 use crate::explain;
-use crate::expression::{Expression, Step};
+use crate::expression::{EvaluationStep, Expression};
 use crate::function::is_function;
 use crate::limits::FRACTION_BITS;
 use crate::message::{At, Parsed, Problem};
@@ -106,7 +106,7 @@ impl Assembler<'_> {
     fn constant(&mut self, expression: &Expression) -> SymbolValue {
         match self.evaluate(expression) {
             Ok(value) => SymbolValue::Constant(value),
-            Err(Failure::Later(..)) => {
+            Err(EvaluationFailure::Later(..)) => {
                 let mut expression = expression.clone();
                 self.settle(&mut expression);
                 SymbolValue::Pending(expression.into())
@@ -127,7 +127,7 @@ impl Assembler<'_> {
         });
         let value = expression.and_then(|expression| {
             let is_first = self.names.find(text).is_none();
-            if is_first && matches!(self.evaluate(&expression), Err(Failure::Later(..))) {
+            if is_first && matches!(self.evaluate(&expression), Err(EvaluationFailure::Later(..))) {
                 // Set from what is defined further on: a constant, and a second `.set` is refused.
                 let value = self.constant(&expression);
                 self.named = Some(self.define(text, at, value)?);
@@ -272,7 +272,7 @@ impl Assembler<'_> {
             self.program.entry = start.filter(|&address| i64::from(address) < words).unwrap_or(0);
             return;
         };
-        let is_data = matches!(expression.steps[..], [(Step::Symbol(name), _)]
+        let is_data = matches!(expression.steps[..], [(EvaluationStep::Symbol(name), _)]
             if matches!(self.names.get(name).map(|s| &s.value), Some(SymbolValue::Buffer(_))));
         match self.evaluate(&expression) {
             Ok(address) if !is_data && (0..words).contains(&address) => self.program.entry = address as u32,

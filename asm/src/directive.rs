@@ -9,7 +9,7 @@ use crate::explain;
 use crate::foreign;
 use crate::macros::REPETITIONS;
 use crate::message::{Among, At, Parsed, Problem};
-use crate::token::Kind;
+use crate::token::TokenKind;
 
 #[derive(Clone, Copy, Debug)]
 enum Action {
@@ -278,7 +278,7 @@ impl Assembler<'_> {
     }
 
     fn text_operand(&mut self, cursor: &mut Cursor) -> Parsed<String> {
-        let Some(token) = cursor.peek().filter(|token| token.kind == Kind::Text) else {
+        let Some(token) = cursor.peek().filter(|token| token.kind == TokenKind::Text) else {
             return Err(cursor.expected("a text in quotation marks"));
         };
         let octets = self.text_value(cursor, token)?;

@@ -5,17 +5,17 @@ use std::rc::Rc;
 
 use crate::assembler::Assembler;
 use crate::explain;
-use crate::expression::{Expression, Step, has_fixed};
-use crate::function::Function;
+use crate::expression::{EvaluationStep, Expression, has_fixed};
+use crate::function::ExpressionFunction;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::operator::{Checked, OVERFLOW};
 use crate::symbol::{Name, SymbolValue};
 
 /// The reason for which an expression has no value.
 #[derive(Debug)]
-pub(crate) enum Failure {
+pub(crate) enum EvaluationFailure {
     /// A name that may be defined further on.
-    Later(Step, At),
+    Later(EvaluationStep, At),
     /// The reason has been reported already.
     Reported,
     /// The arithmetic fails whatever follows.
@@ -24,8 +24,8 @@ pub(crate) enum Failure {
 
 impl Assembler<'_> {
     /// The value of an expression as far as it is known.
-    pub(crate) fn evaluate(&self, expression: &Expression) -> Result<i64, Failure> {
-        if let [(Step::Number(value), _)] = expression.steps[..] {
+    pub(crate) fn evaluate(&self, expression: &Expression) -> Result<i64, EvaluationFailure> {
+        if let [(EvaluationStep::Number(value), _)] = expression.steps[..] {
             return Ok(value);
         }
         let stack = self.run(&expression.steps)?;
@@ -35,7 +35,7 @@ impl Assembler<'_> {
     /// The numbers on both sides of the comparison that is the whole expression, for messages.
     pub(crate) fn sides(&self, expression: &Expression) -> Option<(&'static str, i64, i64)> {
         let (last, before) = expression.steps.split_last()?;
-        let Step::Binary(operator) = last.0 else { return None };
+        let EvaluationStep::Binary(operator) = last.0 else { return None };
         match self.run(before).ok()?[..] {
             [a, b] => Some((operator.mark(), a, b)),
             _ => None,
@@ -43,54 +43,56 @@ impl Assembler<'_> {
     }
 
     /// The stack after these steps.
-    fn run(&self, steps: &[(Step, At)]) -> Result<Vec<i64>, Failure> {
+    fn run(&self, steps: &[(EvaluationStep, At)]) -> Result<Vec<i64>, EvaluationFailure> {
         // Reverse Polish: `2 + 3 * x` is 2, 3, x, *, +.
         let mut stack: Vec<i64> = Vec::with_capacity(8);
         let mut next = 0;
         while let Some((step, at)) = steps.get(next) {
             next += 1;
             let checked = |result: Checked, what: &dyn Fn() -> String| {
-                result.map_err(|(code, message)| Failure::Wrong(Problem::new(code, message, *at, what())))
+                result.map_err(|(code, message)| EvaluationFailure::Wrong(Problem::new(code, message, *at, what())))
             };
             let mut pop = || stack.pop().expect("the parser pushes operands before operators");
             let value = match step {
-                Step::Number(value) => *value,
-                Step::Symbol(name) => self.symbol_value(*name, step, *at)?,
-                Step::Size(name) => self.names.size(*name).ok_or_else(|| Failure::Later(step.clone(), *at))?,
-                Step::Fixed(decimal, format) => {
-                    let bits = self.names.format(*format).ok_or_else(|| Failure::Later(step.clone(), *at))?;
+                EvaluationStep::Number(value) => *value,
+                EvaluationStep::Symbol(name) => self.symbol_value(*name, step, *at)?,
+                EvaluationStep::Size(name) => {
+                    self.names.size(*name).ok_or_else(|| EvaluationFailure::Later(step.clone(), *at))?
+                }
+                EvaluationStep::Fixed(decimal, format) => {
+                    let bits = self.names.format(*format).ok_or_else(|| EvaluationFailure::Later(step.clone(), *at))?;
                     checked(decimal.to_fixed(bits).ok_or(OVERFLOW), &|| format!("with {bits} fraction bits"))?
                 }
-                Step::Negate => {
+                EvaluationStep::Negate => {
                     let a = pop();
                     checked(a.checked_neg().ok_or(OVERFLOW), &|| format!("-({a})"))?
                 }
-                Step::Complement => !pop(),
-                Step::Not => i64::from(pop() == 0),
-                Step::Truth => i64::from(pop() != 0),
+                EvaluationStep::Complement => !pop(),
+                EvaluationStep::Not => i64::from(pop() == 0),
+                EvaluationStep::Truth => i64::from(pop() != 0),
                 // `a && b` skips b when a is 0, `a || b` when it is not; what is skipped may even be without a value.
-                Step::UnlessZero(end) => {
+                EvaluationStep::UnlessZero(end) => {
                     if pop() != 0 {
                         continue;
                     }
                     next = *end;
                     0
                 }
-                Step::IfZero(end) => {
+                EvaluationStep::IfZero(end) => {
                     if pop() == 0 {
                         continue;
                     }
                     next = *end;
                     1
                 }
-                Step::Binary(operator) => {
+                EvaluationStep::Binary(operator) => {
                     let (b, a) = (pop(), pop());
                     checked(operator.apply(a, b), &|| format!("{a} {} {b}", operator.mark()))?
                 }
-                Step::Function(name) => {
-                    let b = if matches!(name, Function::Min | Function::Max) { pop() } else { 0 };
+                EvaluationStep::Function(name) => {
+                    let b = if matches!(name, ExpressionFunction::Min | ExpressionFunction::Max) { pop() } else { 0 };
                     let a = pop();
-                    let is_half = matches!(name, Function::Low | Function::High);
+                    let is_half = matches!(name, ExpressionFunction::Low | ExpressionFunction::High);
                     // A literal in a format is meant with its sign, so 0.9 in 32 fraction bits is no number of 32 bits.
                     if is_half && a > i64::from(i32::MAX) && has_fixed(steps) {
                         let fits = Err((explain::RANGE, "the number does not fit 32 bits with its sign"));
@@ -104,17 +106,17 @@ impl Assembler<'_> {
         Ok(stack)
     }
 
-    fn symbol_value(&self, name: Name, step: &Step, at: At) -> Result<i64, Failure> {
-        let later = || Failure::Later(step.clone(), at);
+    fn symbol_value(&self, name: Name, step: &EvaluationStep, at: At) -> Result<i64, EvaluationFailure> {
+        let later = || EvaluationFailure::Later(step.clone(), at);
         match self.names.get(name).map(|symbol| &symbol.value) {
             None => self.names.format(name).map(i64::from).ok_or_else(later),
             Some(SymbolValue::Code(value) | SymbolValue::Buffer(value) | SymbolValue::Constant(value)) => Ok(*value),
             Some(SymbolValue::Pending(_)) => Err(later()),
-            Some(SymbolValue::Broken) => Err(Failure::Reported),
+            Some(SymbolValue::Broken) => Err(EvaluationFailure::Reported),
             Some(SymbolValue::Variable(value, times)) => {
                 if self.is_last_pass && *times > 1 {
                     let text = self.names.text(name);
-                    return Err(Failure::Wrong(
+                    return Err(EvaluationFailure::Wrong(
                         Problem::new(explain::UNSET, format!("`{text}` is used before it is set"), at, "not set yet")
                             .hint("it is set more than once, so that its value depends on the place"),
                     ));
@@ -127,10 +129,10 @@ impl Assembler<'_> {
     /// Puts the numbers of names that may change into an expression that is evaluated later.
     pub(crate) fn settle(&self, expression: &mut Expression) {
         for (step, _) in &mut expression.steps {
-            if let Step::Symbol(name) = step
+            if let EvaluationStep::Symbol(name) = step
                 && let Some(SymbolValue::Variable(value, _)) = self.names.get(*name).map(|symbol| &symbol.value)
             {
-                *step = Step::Number(*value);
+                *step = EvaluationStep::Number(*value);
             }
         }
     }
@@ -142,9 +144,9 @@ impl Assembler<'_> {
     pub(crate) fn value_now(&mut self, expression: &Expression) -> Parsed<Option<i64>> {
         match self.evaluate(expression) {
             Ok(value) => Ok(Some(value)),
-            Err(Failure::Reported) => Ok(None),
-            Err(Failure::Wrong(problem)) => Err(problem),
-            Err(Failure::Later(step, at)) => {
+            Err(EvaluationFailure::Reported) => Ok(None),
+            Err(EvaluationFailure::Wrong(problem)) => Err(problem),
+            Err(EvaluationFailure::Later(step, at)) => {
                 self.early.push((step, at));
                 Ok(None)
             }
@@ -155,13 +157,13 @@ impl Assembler<'_> {
     pub(crate) fn report_early(&mut self) {
         for (step, at) in std::mem::take(&mut self.early) {
             let known = match &step {
-                Step::Symbol(name) => self.names.get(*name).map(|symbol| symbol.at),
-                Step::Size(name) => self.names.size(*name).map(|_| None),
-                Step::Fixed(_, name) => self.names.format(*name).map(|_| None),
+                EvaluationStep::Symbol(name) => self.names.get(*name).map(|symbol| symbol.at),
+                EvaluationStep::Size(name) => self.names.size(*name).map(|_| None),
+                EvaluationStep::Fixed(_, name) => self.names.format(*name).map(|_| None),
                 _ => None,
             };
             let Some(place) = known else {
-                self.report_failure(Failure::Later(step, at));
+                self.report_failure(EvaluationFailure::Later(step, at));
                 continue;
             };
             let problem = Problem::new(explain::LAYOUT, "the value must be known at this line", at, "known only later");
@@ -174,11 +176,11 @@ impl Assembler<'_> {
     }
 
     /// A name without a definition.
-    pub(crate) fn undefined(&self, step: &Step, at: At) -> Box<Problem> {
+    pub(crate) fn undefined(&self, step: &EvaluationStep, at: At) -> Box<Problem> {
         let (text, what, code, among) = match step {
-            Step::Fixed(_, name) => (self.names.text(*name), "format", explain::FORMAT, Among::Formats),
-            Step::Size(name) => (self.names.text(*name), "structure", explain::UNDEFINED, Among::Sizes),
-            Step::Symbol(name) => (self.names.text(*name), "symbol", explain::UNDEFINED, Among::Symbols),
+            EvaluationStep::Fixed(_, name) => (self.names.text(*name), "format", explain::FORMAT, Among::Formats),
+            EvaluationStep::Size(name) => (self.names.text(*name), "structure", explain::UNDEFINED, Among::Sizes),
+            EvaluationStep::Symbol(name) => (self.names.text(*name), "symbol", explain::UNDEFINED, Among::Symbols),
             _ => unreachable!("only names are defined later"),
         };
         if let Some((number, _)) = text.split_once('#') {
@@ -220,7 +222,7 @@ impl Assembler<'_> {
                 open.last_mut().expect("not empty").1 = true;
                 visited.insert(name);
                 for (step, step_at) in &expression.steps {
-                    let Step::Symbol(used) = step else { continue };
+                    let EvaluationStep::Symbol(used) = step else { continue };
                     if self.pending(*used).is_none() {
                         continue;
                     }
@@ -252,12 +254,12 @@ impl Assembler<'_> {
     }
 
     /// Reports why an expression has no value, now that everything is defined that ever will be.
-    pub(crate) fn report_failure(&mut self, failure: Failure) {
+    pub(crate) fn report_failure(&mut self, failure: EvaluationFailure) {
         match failure {
-            Failure::Reported => {}
-            Failure::Wrong(problem) => self.messages.add(problem),
-            Failure::Later(..) if self.is_incomplete => {}
-            Failure::Later(step, at) => {
+            EvaluationFailure::Reported => {}
+            EvaluationFailure::Wrong(problem) => self.messages.add(problem),
+            EvaluationFailure::Later(..) if self.is_incomplete => {}
+            EvaluationFailure::Later(step, at) => {
                 let problem = self.undefined(&step, at);
                 self.messages.add(problem);
             }

@@ -2,7 +2,7 @@
 
 /// A code with its explanation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Code {
+pub struct DiagnosticCode {
     /// `E001` and so on; warnings begin with `W`. A code keeps its meaning for ever.
     pub code: &'static str,
     /// The subject, in a few words.
@@ -12,7 +12,7 @@ pub struct Code {
 }
 
 /// The code of that name, in capital or small letters.
-pub fn find(code: &str) -> Option<&'static Code> {
+pub fn find(code: &str) -> Option<&'static DiagnosticCode> {
     CODES.iter().find(|known| known.code.eq_ignore_ascii_case(code))
 }
 
@@ -21,7 +21,7 @@ macro_rules! codes {
         $(pub(crate) const $name: &str = $code;)*
 
         /// All codes, in their order.
-        pub const CODES: &[Code] = &[$(Code { code: $code, title: $title, text: $text }),*];
+        pub const CODES: &[DiagnosticCode] = &[$(DiagnosticCode { code: $code, title: $title, text: $text }),*];
     };
 }
 

@@ -7,16 +7,16 @@ use crate::cursor::Cursor;
 use crate::decimal::Decimal;
 use crate::explain;
 use crate::foreign;
-use crate::function::{FUNCTIONS, Function, Parameters, is_function};
+use crate::function::{ExpressionFunction, FUNCTIONS, Parameters, is_function};
 use crate::limits::PARENTHESES;
 use crate::message::{At, Parsed, Problem};
 use crate::operator::Binary;
 use crate::symbol::Name;
-use crate::token::{Kind, Token, character_value, integer_value};
+use crate::token::{Token, TokenKind, character_value, integer_value};
 
 /// One step of an evaluation on a stack.
 #[derive(Clone, Debug)]
-pub(crate) enum Step {
+pub(crate) enum EvaluationStep {
     Number(i64),
     Symbol(Name),
     Size(Name),
@@ -31,13 +31,13 @@ pub(crate) enum Step {
     IfZero(usize),
     /// 1 for anything but 0.
     Truth,
-    Function(Function),
+    Function(ExpressionFunction),
 }
 
 /// An expression.
 #[derive(Clone, Debug)]
 pub(crate) struct Expression {
-    pub steps: Vec<(Step, At)>,
+    pub steps: Vec<(EvaluationStep, At)>,
     pub at: At,
 }
 
@@ -45,7 +45,7 @@ impl Expression {
     /// The symbol that is the whole expression.
     pub fn symbol(&self) -> Option<Name> {
         match self.steps[..] {
-            [(Step::Symbol(name), _)] => Some(name),
+            [(EvaluationStep::Symbol(name), _)] => Some(name),
             _ => None,
         }
     }
@@ -56,16 +56,16 @@ impl Expression {
     }
 
     /// A function of this expression.
-    pub fn under(&self, function: Function) -> Expression {
+    pub fn under(&self, function: ExpressionFunction) -> Expression {
         let mut steps = self.steps.clone();
-        steps.push((Step::Function(function), self.at));
+        steps.push((EvaluationStep::Function(function), self.at));
         Expression { steps, at: self.at }
     }
 }
 
 /// A fixed-point literal is among the steps.
-pub(crate) fn has_fixed(steps: &[(Step, At)]) -> bool {
-    steps.iter().any(|(step, _)| matches!(step, Step::Fixed(..)))
+pub(crate) fn has_fixed(steps: &[(EvaluationStep, At)]) -> bool {
+    steps.iter().any(|(step, _)| matches!(step, EvaluationStep::Fixed(..)))
 }
 
 enum Infix {
@@ -99,18 +99,18 @@ impl Assembler<'_> {
         let mut ahead = *cursor;
         let is_negative = ahead.accept("-");
         if let Some(token) = ahead.peek()
-            && matches!(token.kind, Kind::Integer | Kind::Decimal)
+            && matches!(token.kind, TokenKind::Integer | TokenKind::Decimal)
             && ahead.text(token).starts_with(|c: char| c.is_ascii_digit())
             && !ahead.text(token).contains(['x', 'X', 'o'])
         {
-            let ends = ahead.peek_second().is_none_or(|after| after.kind == Kind::Mark(","));
+            let ends = ahead.peek_second().is_none_or(|after| after.kind == TokenKind::Mark(","));
             // Only when nothing but the literal stands there; `1 + 2` is a raw number.
             if ends {
                 ahead.skip();
                 *cursor = ahead;
                 let at = cursor.since(first);
                 let decimal = decimal(cursor.text(token), at, is_negative)?;
-                return Ok(Expression { steps: vec![(Step::Fixed(decimal, format), at)], at });
+                return Ok(Expression { steps: vec![(EvaluationStep::Fixed(decimal, format), at)], at });
             }
         }
         self.expression(cursor)
@@ -119,14 +119,14 @@ impl Assembler<'_> {
     /// Reads a number of a `.wide` list: a literal of digits in base 16, 8 or 2 alone is a pattern of up to 64 bits.
     pub(crate) fn wide_expression(&mut self, cursor: &mut Cursor) -> Parsed<Expression> {
         if let Some(token) = cursor.peek()
-            && token.kind == Kind::Integer
-            && cursor.peek_second().is_none_or(|after| after.kind == Kind::Mark(","))
+            && token.kind == TokenKind::Integer
+            && cursor.peek_second().is_none_or(|after| after.kind == TokenKind::Mark(","))
             && cursor.text(token).starts_with(['0'])
             && let Ok(pattern) = integer_value(cursor.text(token))
         {
             let at = cursor.at(token);
             cursor.skip();
-            return Ok(Expression { steps: vec![(Step::Number(pattern as i64), at)], at });
+            return Ok(Expression { steps: vec![(EvaluationStep::Number(pattern as i64), at)], at });
         }
         self.expression(cursor)
     }
@@ -134,14 +134,14 @@ impl Assembler<'_> {
     fn infix_expression(
         &mut self,
         cursor: &mut Cursor,
-        steps: &mut Vec<(Step, At)>,
+        steps: &mut Vec<(EvaluationStep, At)>,
         least: u8,
         depth: usize,
     ) -> Parsed<()> {
         // Precedence climbing: `a - b * c - d` reads b * c at a higher level, then goes on from the left.
         self.prefixed(cursor, steps, depth)?;
         while let Some(token) = cursor.peek()
-            && let Kind::Mark(mark) = token.kind
+            && let TokenKind::Mark(mark) = token.kind
             && let Some((operator, level)) = infix(mark)
             && level >= least
         {
@@ -151,30 +151,30 @@ impl Assembler<'_> {
             match operator {
                 Infix::Binary(operator) => {
                     self.infix_expression(cursor, steps, level + 1, depth)?;
-                    steps.push((Step::Binary(operator), at));
+                    steps.push((EvaluationStep::Binary(operator), at));
                 }
                 Infix::BothTrue | Infix::OneTrue => {
                     // A place for the jump over the second operand, filled in when its length is known.
-                    steps.push((Step::Truth, at));
+                    steps.push((EvaluationStep::Truth, at));
                     self.infix_expression(cursor, steps, level + 1, depth)?;
-                    steps.push((Step::Truth, at));
+                    steps.push((EvaluationStep::Truth, at));
                     let end = steps.len();
                     let is_both = matches!(operator, Infix::BothTrue);
-                    steps[jump].0 = if is_both { Step::UnlessZero(end) } else { Step::IfZero(end) };
+                    steps[jump].0 = if is_both { EvaluationStep::UnlessZero(end) } else { EvaluationStep::IfZero(end) };
                 }
             }
         }
         Ok(())
     }
 
-    fn prefixed(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+    fn prefixed(&mut self, cursor: &mut Cursor, steps: &mut Vec<(EvaluationStep, At)>, depth: usize) -> Parsed<()> {
         let first = cursor.position;
-        while matches!(cursor.kind(), Some(Kind::Mark("-" | "+" | "~" | "!"))) {
+        while matches!(cursor.kind(), Some(TokenKind::Mark("-" | "+" | "~" | "!"))) {
             cursor.skip();
         }
         // A minus right before a literal belongs to it: -9223372036854775808 fits, and -0.5 rounds as a negative number.
         let mut prefixes = &cursor.tokens[first..cursor.position];
-        let is_negative = prefixes.last().is_some_and(|token| token.kind == Kind::Mark("-"));
+        let is_negative = prefixes.last().is_some_and(|token| token.kind == TokenKind::Mark("-"));
         if is_negative && let Some(literal) = self.negative_literal(cursor)? {
             steps.push(literal);
             prefixes = &prefixes[..prefixes.len() - 1];
@@ -183,9 +183,9 @@ impl Assembler<'_> {
         }
         for &prefix in prefixes.iter().rev() {
             let step = match prefix.kind {
-                Kind::Mark("-") => Step::Negate,
-                Kind::Mark("~") => Step::Complement,
-                Kind::Mark("!") => Step::Not,
+                TokenKind::Mark("-") => EvaluationStep::Negate,
+                TokenKind::Mark("~") => EvaluationStep::Complement,
+                TokenKind::Mark("!") => EvaluationStep::Not,
                 _ => continue,
             };
             steps.push((step, cursor.at(prefix)));
@@ -194,36 +194,41 @@ impl Assembler<'_> {
     }
 
     /// A literal whose rounding or range needs to know of the minus sign before it.
-    fn negative_literal(&mut self, cursor: &mut Cursor) -> Parsed<Option<(Step, At)>> {
+    fn negative_literal(&mut self, cursor: &mut Cursor) -> Parsed<Option<(EvaluationStep, At)>> {
         let Some(token) = cursor.peek() else { return Ok(None) };
         let first = cursor.position - 1;
         if let Some(step) = self.fixed_literal(cursor, token, true)? {
             return Ok(Some((step, cursor.since(first))));
         }
-        if token.kind == Kind::Integer && integer_value(cursor.text(token)) == Ok(1 << 63) {
+        if token.kind == TokenKind::Integer && integer_value(cursor.text(token)) == Ok(1 << 63) {
             cursor.skip();
-            return Ok(Some((Step::Number(i64::MIN), cursor.since(first))));
+            return Ok(Some((EvaluationStep::Number(i64::MIN), cursor.since(first))));
         }
         Ok(None)
     }
 
     /// `0.5:format`, without blanks.
-    fn fixed_literal(&mut self, cursor: &mut Cursor, token: Token, is_negative: bool) -> Parsed<Option<Step>> {
+    fn fixed_literal(
+        &mut self,
+        cursor: &mut Cursor,
+        token: Token,
+        is_negative: bool,
+    ) -> Parsed<Option<EvaluationStep>> {
         let tokens = &cursor.tokens[cursor.position..];
         // The three parts touch, so that no other colon is taken for this one.
         if let [number, colon, format, ..] = tokens
-            && matches!(number.kind, Kind::Integer | Kind::Decimal)
-            && colon.kind == Kind::Mark(":")
-            && format.kind == Kind::Name
+            && matches!(number.kind, TokenKind::Integer | TokenKind::Decimal)
+            && colon.kind == TokenKind::Mark(":")
+            && format.kind == TokenKind::Name
             && number.end == colon.start
             && colon.end == format.start
         {
             let decimal = decimal(cursor.text(token), cursor.at(token), is_negative)?;
             let name = self.names.intern(cursor.text(*format));
             cursor.position += 3;
-            return Ok(Some(Step::Fixed(decimal, name)));
+            return Ok(Some(EvaluationStep::Fixed(decimal, name)));
         }
-        if token.kind == Kind::Decimal {
+        if token.kind == TokenKind::Decimal {
             let text = cursor.text(token);
             return Err(Problem::new(
                 explain::FRACTION,
@@ -236,26 +241,26 @@ impl Assembler<'_> {
         Ok(None)
     }
 
-    fn primary(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+    fn primary(&mut self, cursor: &mut Cursor, steps: &mut Vec<(EvaluationStep, At)>, depth: usize) -> Parsed<()> {
         let Some(token) = cursor.peek() else { return Err(cursor.expected("a number")) };
         let at = cursor.at(token);
         let text = cursor.text(token);
         let first = cursor.position;
         let step = match token.kind {
-            Kind::Integer | Kind::Decimal => match self.fixed_literal(cursor, token, false)? {
+            TokenKind::Integer | TokenKind::Decimal => match self.fixed_literal(cursor, token, false)? {
                 Some(step) => {
                     steps.push((step, cursor.since(first)));
                     return Ok(());
                 }
-                None => Step::Number(integer(text, at)?),
+                None => EvaluationStep::Number(integer(text, at)?),
             },
-            Kind::Character => Step::Number(character_value(text).ok_or_else(|| {
+            TokenKind::Character => EvaluationStep::Number(character_value(text).ok_or_else(|| {
                 Problem::new(explain::TEXT, format!("{text} is not a character"), at, "no such escape")
                     .hint("escapes are \\n \\t \\r \\0 \\\\ \\' \\\" and \\x41")
             })?),
-            Kind::Local => Step::Symbol(self.numeric_label(text, at)?),
-            Kind::Mark(".") => Step::Number(self.location()),
-            Kind::Mark("(") => {
+            TokenKind::Local => EvaluationStep::Symbol(self.numeric_label(text, at)?),
+            TokenKind::Mark(".") => EvaluationStep::Number(self.location()),
+            TokenKind::Mark("(") => {
                 if depth >= PARENTHESES {
                     return Err(Problem::new(
                         explain::NESTING,
@@ -268,12 +273,12 @@ impl Assembler<'_> {
                 self.infix_expression(cursor, steps, 1, depth + 1)?;
                 return cursor.expect(")");
             }
-            Kind::Name
-                if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("(")) && is_function(text) =>
+            TokenKind::Name
+                if cursor.peek_second().is_some_and(|next| next.kind == TokenKind::Mark("(")) && is_function(text) =>
             {
                 return self.function(cursor, steps, depth);
             }
-            Kind::Name => {
+            TokenKind::Name => {
                 if let Some((file, number)) = self.register(text, at)? {
                     return Err(Problem::new(
                         explain::OPERAND_KIND,
@@ -282,10 +287,10 @@ impl Assembler<'_> {
                         format!("register {file}{number}"),
                     ));
                 }
-                Step::Symbol(self.names.intern(text))
+                EvaluationStep::Symbol(self.names.intern(text))
             }
-            Kind::Directive => Step::Symbol(self.names.intern(text)),
-            Kind::Mark("%") => {
+            TokenKind::Directive => EvaluationStep::Symbol(self.names.intern(text)),
+            TokenKind::Mark("%") => {
                 let mut problem = cursor.expected("a number");
                 problem.hint = foreign::percent(&cursor.line.text[token.start as usize..]);
                 return Err(problem);
@@ -297,7 +302,7 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    fn function(&mut self, cursor: &mut Cursor, steps: &mut Vec<(Step, At)>, depth: usize) -> Parsed<()> {
+    fn function(&mut self, cursor: &mut Cursor, steps: &mut Vec<(EvaluationStep, At)>, depth: usize) -> Parsed<()> {
         let first = cursor.position;
         let (text, _) = cursor.name("a function")?;
         let open = cursor.here();
@@ -315,7 +320,7 @@ impl Assembler<'_> {
                     }
                     self.infix_expression(cursor, steps, 1, depth + 1)?;
                 }
-                Step::Function(function)
+                EvaluationStep::Function(function)
             }
             _ => self.name_function(described.argument, cursor)?,
         };
@@ -324,22 +329,22 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    fn name_function(&mut self, argument: Parameters, cursor: &mut Cursor) -> Parsed<Step> {
+    fn name_function(&mut self, argument: Parameters, cursor: &mut Cursor) -> Parsed<EvaluationStep> {
         let (name, at) = match cursor.peek() {
-            Some(token) if token.kind == Kind::Directive => {
+            Some(token) if token.kind == TokenKind::Directive => {
                 cursor.skip();
                 (cursor.text(token), cursor.at(token))
             }
             _ => cursor.name("a name")?,
         };
         match argument {
-            Parameters::Size => Ok(Step::Size(self.names.intern(name))),
+            Parameters::Size => Ok(EvaluationStep::Size(self.names.intern(name))),
             Parameters::Field if !name.contains('.') => {
                 let message = "`offsetof` takes a field";
                 Err(Problem::new(explain::SYNTAX, message, at, "expected `structure.field`"))
             }
-            Parameters::Field => Ok(Step::Symbol(self.names.intern(name))),
-            _ => Ok(Step::Number(self.is_defined(name).into())),
+            Parameters::Field => Ok(EvaluationStep::Symbol(self.names.intern(name))),
+            _ => Ok(EvaluationStep::Number(self.is_defined(name).into())),
         }
     }
 }

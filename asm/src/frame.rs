@@ -7,8 +7,8 @@ use crate::assembler::Assembler;
 use crate::conditional::Condition;
 use crate::explain;
 use crate::limits::{EXPANDED_LINE, EXPANDED_OCTETS, EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
-use crate::line::{Line, Substitution};
-use crate::message::{At, Call, Problem, Via};
+use crate::line::{OriginLine, Substitution};
+use crate::message::{At, MacroCall, Problem, Via};
 use crate::symbol::{Name, SymbolValue};
 use crate::token::{continues_name, starts_comment, starts_name};
 
@@ -34,8 +34,8 @@ pub(crate) enum Origin {
 
 /// Text that is being read.
 #[derive(Debug)]
-pub(crate) struct Frame {
-    pub lines: Rc<[Line]>,
+pub(crate) struct OpenText {
+    pub lines: Rc<[OriginLine]>,
     pub next: usize,
     pub origin: Origin,
     pub substitution: Option<Rc<Substitution>>,
@@ -45,10 +45,10 @@ pub(crate) struct Frame {
     pub repeat: Option<Repeat>,
 }
 
-impl Frame {
+impl OpenText {
     /// A frame at its first line.
-    pub fn new(lines: Rc<[Line]>, origin: Origin) -> Frame {
-        Frame { lines, next: 0, origin, substitution: None, context: None, conditions: Vec::new(), repeat: None }
+    pub fn new(lines: Rc<[OriginLine]>, origin: Origin) -> OpenText {
+        OpenText { lines, next: 0, origin, substitution: None, context: None, conditions: Vec::new(), repeat: None }
     }
 }
 
@@ -91,14 +91,14 @@ fn without_comments(text: &str) -> (Cow<'_, str>, Option<usize>) {
 }
 
 /// The lines of a file, and the place of a comment that is not closed.
-pub(crate) fn file_lines(text: &str, source: u16) -> (Rc<[Line]>, Option<At>) {
+pub(crate) fn file_lines(text: &str, source: u16) -> (Rc<[OriginLine]>, Option<At>) {
     let (text, unclosed) = without_comments(text);
     let unclosed = unclosed.map(|at| At { source, context: 0, start: at as u32, end: at as u32 + 2 });
     let mut start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     let mut lines = Vec::new();
     for (number, line) in text[start..].split_inclusive('\n').enumerate() {
         let shown = line.trim_end_matches(['\n', '\r']);
-        lines.push(Line::of_file(shown, source, number as u32 + 1, start, 0));
+        lines.push(OriginLine::of_file(shown, source, number as u32 + 1, start, 0));
         start += line.len();
     }
     (lines.into(), unclosed)
@@ -132,11 +132,11 @@ impl Assembler<'_> {
             self.is_incomplete = true;
             self.messages.add(Problem::new(explain::UNCLOSED, "`*/` is missing", opened, "opened here"));
         }
-        self.enter(Frame::new(lines, Origin::File(index)), at);
+        self.enter(OpenText::new(lines, Origin::File(index)), at);
     }
 
     /// The next line to assemble.
-    pub(crate) fn fetch(&mut self) -> Option<Line> {
+    pub(crate) fn fetch(&mut self) -> Option<OriginLine> {
         loop {
             if let Some(line) = self.fetch_in_frame() {
                 return Some(line);
@@ -152,7 +152,7 @@ impl Assembler<'_> {
     }
 
     /// The next line of the innermost frame.
-    pub(crate) fn fetch_in_frame(&mut self) -> Option<Line> {
+    pub(crate) fn fetch_in_frame(&mut self) -> Option<OriginLine> {
         let is_nested = self.expansion_depth() > 1;
         let frame = self.frames.last_mut()?;
         let line = frame.lines.get(frame.next)?;
@@ -218,13 +218,13 @@ impl Assembler<'_> {
                     let (index, at) = (*index, self.names.get(name).and_then(|symbol| symbol.at));
                     self.names.set(name, SymbolValue::Variable(index, 2), at);
                     let via = Via::Pass(self.names.text(name).clone(), index.to_string().into());
-                    frame.context = Some(self.messages.enter(Call { at: *header, via }));
+                    frame.context = Some(self.messages.enter(MacroCall { at: *header, via }));
                 }
             }
             Some(Repeat::Texts { parameter, remaining, at: header }) => {
                 let Some(text) = remaining.pop() else { return false };
                 let via = Via::Pass(parameter.clone(), text.clone());
-                frame.context = Some(self.messages.enter(Call { at: *header, via }));
+                frame.context = Some(self.messages.enter(MacroCall { at: *header, via }));
                 let arguments = [(parameter.clone(), text)].into();
                 frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
             }
@@ -236,7 +236,7 @@ impl Assembler<'_> {
 
     /// Reads a block of the innermost frame up to its end, which is taken and left out. Blocks inside begin with words
     /// that begin like `openings`.
-    pub(crate) fn capture(&mut self, openings: &[&str], closing: &str, at: At) -> Option<Rc<[Line]>> {
+    pub(crate) fn capture(&mut self, openings: &[&str], closing: &str, at: At) -> Option<Rc<[OriginLine]>> {
         let mut depth = 0;
         let mut lines = Vec::new();
         while let Some(line) = self.fetch_in_frame() {
@@ -266,7 +266,7 @@ impl Assembler<'_> {
     }
 
     /// Enters a frame, unless there are too many inside each other.
-    pub(crate) fn enter(&mut self, frame: Frame, at: At) {
+    pub(crate) fn enter(&mut self, frame: OpenText, at: At) {
         let depth = self.expansion_depth();
         let (is_file, depth, most) = match frame.origin {
             Origin::File(_) => (true, self.frames.len() - depth, INCLUDE_DEPTH),

@@ -5,7 +5,7 @@ use crate::operator::{Checked, OVERFLOW};
 
 /// A function of one or two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Function {
+pub(crate) enum ExpressionFunction {
     Min,
     Max,
     Abs,
@@ -18,7 +18,7 @@ pub(crate) enum Function {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parameters {
     /// So many numbers.
-    Numbers(Function, usize),
+    Numbers(ExpressionFunction, usize),
     /// A structure or a field.
     Size,
     /// A field.
@@ -51,12 +51,12 @@ functions! {
     "sizeof" "sizeof(structure)" Parameters::Size, "Octets of a structure, or of a field and all its elements.";
     "offsetof" "offsetof(structure.field)" Parameters::Field, "Octets before a field: the same as `structure.field`.";
     "defined" "defined(name)" Parameters::Defined, "1 when the name is defined above, else 0.";
-    "min" "min(a, b)" Parameters::Numbers(Function::Min, 2), "The smaller number.";
-    "max" "max(a, b)" Parameters::Numbers(Function::Max, 2), "The larger number.";
-    "abs" "abs(a)" Parameters::Numbers(Function::Abs, 1), "The absolute value.";
-    "bits" "bits(a)" Parameters::Numbers(Function::Bits, 1), "The number of bits that `a` needs, which is not negative; 0 for 0.";
-    "low" "low(a)" Parameters::Numbers(Function::Low, 1), "The low 16 bits of a number of 32 bits, with their sign: what `movi` takes.";
-    "high" "high(a)" Parameters::Numbers(Function::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
+    "min" "min(a, b)" Parameters::Numbers(ExpressionFunction::Min, 2), "The smaller number.";
+    "max" "max(a, b)" Parameters::Numbers(ExpressionFunction::Max, 2), "The larger number.";
+    "abs" "abs(a)" Parameters::Numbers(ExpressionFunction::Abs, 1), "The absolute value.";
+    "bits" "bits(a)" Parameters::Numbers(ExpressionFunction::Bits, 1), "The number of bits that `a` needs, which is not negative; 0 for 0.";
+    "low" "low(a)" Parameters::Numbers(ExpressionFunction::Low, 1), "The low 16 bits of a number of 32 bits, with their sign: what `movi` takes.";
+    "high" "high(a)" Parameters::Numbers(ExpressionFunction::High, 1), "The high 16 bits of a number of 32 bits, without sign: what `movhi` takes.";
 }
 
 /// The text is a function's name.
@@ -64,7 +64,7 @@ pub(crate) fn is_function(text: &str) -> bool {
     FUNCTIONS.iter().any(|function| function.name == text)
 }
 
-impl Function {
+impl ExpressionFunction {
     /// The function's value; `b` is 0 where it takes one number.
     pub fn apply(self, a: i64, b: i64) -> Checked {
         let word = |half: i64| {
@@ -72,13 +72,13 @@ impl Function {
             if fits { Ok(half) } else { Err((explain::RANGE, "the number does not fit 32 bits")) }
         };
         match self {
-            Function::Min => Ok(a.min(b)),
-            Function::Max => Ok(a.max(b)),
-            Function::Abs => a.checked_abs().ok_or(OVERFLOW),
-            Function::Bits if a < 0 => Err((explain::RANGE, "`bits` takes a number that is not negative")),
-            Function::Bits => Ok(i64::from(64 - a.leading_zeros())),
-            Function::Low => word(i64::from(a as i16)),
-            Function::High => word(a >> 16 & 0xffff),
+            ExpressionFunction::Min => Ok(a.min(b)),
+            ExpressionFunction::Max => Ok(a.max(b)),
+            ExpressionFunction::Abs => a.checked_abs().ok_or(OVERFLOW),
+            ExpressionFunction::Bits if a < 0 => Err((explain::RANGE, "`bits` takes a number that is not negative")),
+            ExpressionFunction::Bits => Ok(i64::from(64 - a.leading_zeros())),
+            ExpressionFunction::Low => word(i64::from(a as i16)),
+            ExpressionFunction::High => word(a >> 16 & 0xffff),
         }
     }
 }

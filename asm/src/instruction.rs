@@ -5,11 +5,11 @@ use isa::table::Op;
 
 use crate::assembler::{Assembler, Fixup};
 use crate::cursor::Cursor;
-use crate::evaluation::Failure;
+use crate::evaluation::EvaluationFailure;
 use crate::explain;
 use crate::expression::Expression;
 use crate::message::{Among, At, Problem};
-use crate::operand::{Operand, Written, file_name};
+use crate::operand::{ParsedOperand, Written, file_name};
 use crate::symbol::SymbolValue;
 
 /// An operand as a row takes it.
@@ -123,7 +123,7 @@ impl Assembler<'_> {
     }
 
     /// Assembles one instruction of a row.
-    pub(crate) fn row_instruction(&mut self, op: Op, operands: &[Operand], at: At, cursor: &Cursor) {
+    pub(crate) fn row_instruction(&mut self, op: Op, operands: &[ParsedOperand], at: At, cursor: &Cursor) {
         let isa = self.isa;
         let definition = isa.definition(op);
         let Some(mut arguments) = self.arguments(definition, operands, at) else {
@@ -145,7 +145,7 @@ impl Assembler<'_> {
                 let mut is_later = false;
                 for failure in failures {
                     match failure {
-                        Failure::Later(..) => is_later = true,
+                        EvaluationFailure::Later(..) => is_later = true,
                         other => self.report_failure(other),
                     }
                 }
@@ -165,7 +165,7 @@ impl Assembler<'_> {
     }
 
     /// Holds written operands against the row; `None` when what is wrong was reported.
-    fn arguments(&mut self, definition: &InstructionDef, operands: &[Operand], at: At) -> Option<Vec<Argument>> {
+    fn arguments(&mut self, definition: &InstructionDef, operands: &[ParsedOperand], at: At) -> Option<Vec<Argument>> {
         let mut found = Vec::with_capacity(definition.operands.len());
         let mut rest = operands.iter();
         let mut place = 0;
@@ -181,7 +181,7 @@ impl Assembler<'_> {
                         found.push(Argument { value: Value::Known((*number).into()), at: *register_at });
                         found.push(Argument { value: Value::Expression(offset.clone()), at: offset.at });
                     } else {
-                        let register = Operand::made(Written::Register((*file, *number)), *register_at);
+                        let register = ParsedOperand::made(Written::Register((*file, *number)), *register_at);
                         let problem = self.wrong_kind(definition, place, &register);
                         self.messages.add(problem);
                         is_right = false;
@@ -215,7 +215,7 @@ impl Assembler<'_> {
         is_right.then_some(found)
     }
 
-    fn wrong_kind(&self, definition: &InstructionDef, place: usize, operand: &Operand) -> Box<Problem> {
+    fn wrong_kind(&self, definition: &InstructionDef, place: usize, operand: &ParsedOperand) -> Box<Problem> {
         let wanted = definition.operands[place];
         let message = format!(
             "operand `{}` of `{}` is {}, not {}",
@@ -247,7 +247,7 @@ impl Assembler<'_> {
     }
 
     /// Encodes an instruction as far as its names are known.
-    pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<Failure>> {
+    pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<EvaluationFailure>> {
         let isa = self.isa;
         let definition = isa.definition(op);
         let mut numbers = Vec::with_capacity(arguments.len());
@@ -265,7 +265,7 @@ impl Assembler<'_> {
             match value {
                 Err(failure) => failures.push(failure),
                 Ok(number) if number < least || number > most => {
-                    failures.push(Failure::Wrong(out_of_range(
+                    failures.push(EvaluationFailure::Wrong(out_of_range(
                         definition,
                         *operand,
                         argument.at,
@@ -282,26 +282,31 @@ impl Assembler<'_> {
         Ok(isa.encode(op, &numbers).expect("count and ranges were checked"))
     }
 
-    pub(crate) fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, Failure> {
+    pub(crate) fn distance(&self, expression: &Expression, target: i64, pc: usize) -> Result<i64, EvaluationFailure> {
         if let Some(name) = expression.symbol()
             && let Some(symbol) = self.names.get(name)
             && matches!(symbol.value, SymbolValue::Buffer(_))
         {
             let text = self.names.text(name);
             let message = format!("`{text}` is an address in the buffer, not in the code");
-            return Err(Failure::Wrong(
+            return Err(EvaluationFailure::Wrong(
                 Problem::new(explain::SECTION, message, expression.at, "cannot be branched to")
                     .also(symbol.at, "defined here"),
             ));
         }
         let overflow = || {
-            Failure::Wrong(Problem::new(explain::OVERFLOW, "the distance does not fit 64 bits", expression.at, "here"))
+            EvaluationFailure::Wrong(Problem::new(
+                explain::OVERFLOW,
+                "the distance does not fit 64 bits",
+                expression.at,
+                "here",
+            ))
         };
         target.checked_sub(pc as i64).ok_or_else(overflow)
     }
 }
 
-fn wrong_count(definition: &InstructionDef, operands: &[Operand], at: At) -> Box<Problem> {
+fn wrong_count(definition: &InstructionDef, operands: &[ParsedOperand], at: At) -> Box<Problem> {
     let place = operands.last().map_or(at, |last| at.to(last.at));
     let count = |number: usize| match number {
         0 => "no operands".to_string(),

@@ -9,7 +9,7 @@ use crate::token::{continues_name, starts_comment, starts_name};
 
 /// A stretch of a substituted line and where in the file it comes from.
 #[derive(Clone, Copy, Debug)]
-struct Segment {
+struct OriginSegment {
     end: u32,
     from: u32,
     to: u32,
@@ -18,10 +18,10 @@ struct Segment {
 
 /// A line with its origin.
 #[derive(Clone, Debug)]
-pub(crate) struct Line {
+pub(crate) struct OriginLine {
     /// The text, without its end of line.
     pub text: Rc<str>,
-    segments: Option<Rc<[Segment]>>,
+    segments: Option<Rc<[OriginSegment]>>,
     /// Index of the file.
     pub source: u16,
     /// Line of the file, from 1.
@@ -31,10 +31,10 @@ pub(crate) struct Line {
     pub context: u32,
 }
 
-impl Line {
+impl OriginLine {
     /// Line `number` of a file, starting at octet `start`.
-    pub fn of_file(text: &str, source: u16, number: u32, start: usize, context: u32) -> Line {
-        Line { text: text.into(), segments: None, source, number, start: start as u32, context }
+    pub fn of_file(text: &str, source: u16, number: u32, start: usize, context: u32) -> OriginLine {
+        OriginLine { text: text.into(), segments: None, source, number, start: start as u32, context }
     }
 
     /// The place in the file of octets of this line.
@@ -69,10 +69,10 @@ impl Line {
     }
 
     /// The line with arguments put in.
-    pub fn substituted(&self, substitution: &Substitution, context: u32) -> Line {
+    pub fn substituted(&self, substitution: &Substitution, context: u32) -> OriginLine {
         let text = &self.text;
         if substitution.locals.is_empty() && !text.contains('\\') {
-            return Line { context, ..self.clone() };
+            return OriginLine { context, ..self.clone() };
         }
         // Copy the line and note for each piece where it comes from: `add \a` with a = s12 is "add " from the file and "s12" for `\a`.
         let mut new = String::with_capacity(text.len() + 16);
@@ -113,7 +113,7 @@ impl Line {
                 self.copy(copied..at, &mut new, &mut segments);
                 new.push_str(&replacement);
                 let origin = self.at(at, at + length);
-                segments.push(Segment {
+                segments.push(OriginSegment {
                     end: new.len() as u32,
                     from: origin.start,
                     to: origin.end,
@@ -124,10 +124,10 @@ impl Line {
             at += length;
         }
         self.copy(copied..text.len(), &mut new, &mut segments);
-        Line { text: new.into(), segments: Some(segments.into()), context, ..*self }
+        OriginLine { text: new.into(), segments: Some(segments.into()), context, ..*self }
     }
 
-    fn copy(&self, range: std::ops::Range<usize>, new: &mut String, segments: &mut Vec<Segment>) {
+    fn copy(&self, range: std::ops::Range<usize>, new: &mut String, segments: &mut Vec<OriginSegment>) {
         if range.is_empty() {
             return;
         }
@@ -136,7 +136,12 @@ impl Line {
         new.push_str(&self.text[range.clone()]);
         let Some(own) = &self.segments else {
             let from = self.start + range.start as u32;
-            segments.push(Segment { end: new.len() as u32, from, to: from + range.len() as u32, is_verbatim: true });
+            segments.push(OriginSegment {
+                end: new.len() as u32,
+                from,
+                to: from + range.len() as u32,
+                is_verbatim: true,
+            });
             return;
         };
         let mut before = 0;
@@ -146,9 +151,9 @@ impl Line {
                 let end_in_new = base + end - range.start as u32;
                 let cut = if segment.is_verbatim {
                     let from = segment.from + start - before;
-                    Segment { end: end_in_new, from, to: from + end - start, is_verbatim: true }
+                    OriginSegment { end: end_in_new, from, to: from + end - start, is_verbatim: true }
                 } else {
-                    Segment { end: end_in_new, ..*segment }
+                    OriginSegment { end: end_in_new, ..*segment }
                 };
                 segments.push(cut);
             }
@@ -205,7 +210,7 @@ mod tests {
     fn arguments_numbers_and_local_names_are_put_in() {
         let mut with = substitution(&[("a", "s12"), ("text", "hi")]);
         with.locals.insert("loop".into(), "loop$7".into());
-        let line = Line::of_file("loop: add \\a, \\a\\().x, loops \"\\text\\n loop\" ; \\a", 0, 1, 100, 0);
+        let line = OriginLine::of_file("loop: add \\a, \\a\\().x, loops \"\\text\\n loop\" ; \\a", 0, 1, 100, 0);
         let new = line.substituted(&with, 3);
         assert_eq!(&*new.text, "loop$7: add s12, s12.x, loops \"hi\\n loop\" ; \\a");
         assert_eq!(new.context, 3);
@@ -213,7 +218,7 @@ mod tests {
 
     #[test]
     fn places_lead_back_to_the_file() {
-        let line = Line::of_file("add \\a, \\b!", 0, 1, 100, 0);
+        let line = OriginLine::of_file("add \\a, \\b!", 0, 1, 100, 0);
         let once = line.substituted(&substitution(&[("a", "long_name")]), 1);
         let twice = once.substituted(&substitution(&[("b", "x")]), 2);
         assert_eq!(&*twice.text, "add long_name, x!");

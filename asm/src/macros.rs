@@ -5,12 +5,12 @@ use std::rc::Rc;
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
-use crate::frame::{Frame, Origin, Repeat, leading_directive};
+use crate::frame::{OpenText, Origin, Repeat, leading_directive};
 use crate::limits::{LINES, PARAMETERS};
-use crate::line::{Line, Substitution};
-use crate::message::{At, Call, Parsed, Problem, Via};
+use crate::line::{OriginLine, Substitution};
+use crate::message::{At, MacroCall, Parsed, Problem, Via};
 use crate::symbol::SymbolValue;
-use crate::token::{Kind, Token, tokens};
+use crate::token::{Token, TokenKind, tokens};
 
 /// A parameter of a macro.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub(crate) struct Parameter {
 pub(crate) struct Macro {
     pub name: Rc<str>,
     parameters: Vec<Parameter>,
-    lines: Rc<[Line]>,
+    lines: Rc<[OriginLine]>,
     /// Names that every expansion has for itself.
     locals: Vec<Rc<str>>,
     pub at: At,
@@ -45,15 +45,15 @@ fn text_of<'t>(cursor: &Cursor<'t>, from: usize, to: usize) -> &'t str {
 fn argument_of(cursor: &Cursor, from: usize, to: usize) -> Rc<str> {
     let text = text_of(cursor, from, to);
     match cursor.tokens.get(from..to) {
-        Some([only]) if only.kind == Kind::Text => text[1..text.len() - 1].replace("\\\"", "\"").into(),
+        Some([only]) if only.kind == TokenKind::Text => text[1..text.len() - 1].replace("\\\"", "\"").into(),
         _ => text.into(),
     }
 }
 
 /// A blank between two tokens separates arguments: it stands between two operands, which no expression has side by side.
 fn is_separated(before: Token, after: Token) -> bool {
-    let is_word = |kind| !matches!(kind, Kind::Mark(_));
-    before.end < after.start && is_word(after.kind) && (is_word(before.kind) || before.kind == Kind::Mark(")"))
+    let is_word = |kind| !matches!(kind, TokenKind::Mark(_));
+    before.end < after.start && is_word(after.kind) && (is_word(before.kind) || before.kind == TokenKind::Mark(")"))
 }
 
 /// Splits the rest of a line at the commas, and the blanks between operands, outside of parentheses: token ranges.
@@ -69,9 +69,9 @@ fn split(cursor: &Cursor) -> Vec<(usize, usize)> {
         }
         match token.kind {
             // Commas of a call in parentheses belong to the argument.
-            Kind::Mark("(") => depth += 1,
-            Kind::Mark(")") => depth = depth.saturating_sub(1),
-            Kind::Mark(",") if depth == 0 => {
+            TokenKind::Mark("(") => depth += 1,
+            TokenKind::Mark(")") => depth = depth.saturating_sub(1),
+            TokenKind::Mark(",") if depth == 0 => {
                 parts.push((start, place));
                 start = place + 1;
             }
@@ -180,7 +180,7 @@ impl Assembler<'_> {
                 cursor.position = end;
             }
             parameters.push(parameter);
-            if !cursor.accept(",") && !matches!(cursor.kind(), None | Some(Kind::Name)) {
+            if !cursor.accept(",") && !matches!(cursor.kind(), None | Some(TokenKind::Name)) {
                 return Err(cursor.expected("a comma"));
             }
         }
@@ -188,7 +188,7 @@ impl Assembler<'_> {
     }
 
     /// The names on the `.local` lines of a macro, nested definitions left out.
-    fn local_names(&mut self, lines: &[Line]) -> Vec<Rc<str>> {
+    fn local_names(&mut self, lines: &[OriginLine]) -> Vec<Rc<str>> {
         let mut names = Vec::new();
         let mut depth = 0usize;
         for line in lines {
@@ -198,7 +198,7 @@ impl Assembler<'_> {
                 Some(".local") if depth == 0 => {
                     let (found, _) = tokens(&line.text);
                     let cursor = Cursor { line, tokens: &found, position: 0 };
-                    names.extend(found.iter().filter(|t| t.kind == Kind::Name).map(|&t| Rc::from(cursor.text(t))));
+                    names.extend(found.iter().filter(|t| t.kind == TokenKind::Name).map(|&t| Rc::from(cursor.text(t))));
                 }
                 _ => {}
             }
@@ -216,8 +216,8 @@ impl Assembler<'_> {
                     self.octets_expanded += substitution.octets();
                 }
                 let via = Via::Macro(definition.name.clone());
-                let context = self.messages.enter(Call { at: cursor.line.at_all(), via });
-                let mut frame = Frame::new(definition.lines.clone(), Origin::Macro);
+                let context = self.messages.enter(MacroCall { at: cursor.line.at_all(), via });
+                let mut frame = OpenText::new(definition.lines.clone(), Origin::Macro);
                 frame.substitution = Some(Rc::new(substitution));
                 frame.context = Some(context);
                 self.enter(frame, at);
@@ -238,7 +238,7 @@ impl Assembler<'_> {
                 break;
             }
             let named = match cursor.tokens.get(start..end) {
-                Some([name, equals, ..]) if name.kind == Kind::Name && equals.kind == Kind::Mark("=") => {
+                Some([name, equals, ..]) if name.kind == TokenKind::Name && equals.kind == TokenKind::Mark("=") => {
                     let text = cursor.text(*name);
                     let slot = parameters.iter().position(|parameter| *parameter.name == *text);
                     Some(slot.ok_or_else(|| no_parameter(definition, text, cursor.at(*name)))?)
@@ -319,10 +319,10 @@ impl Assembler<'_> {
         if let Some((text, counter_at)) = &counter {
             self.set_variable(text, *counter_at, 0)?;
         }
-        let mut frame = Frame::new(lines, Origin::Repetition);
+        let mut frame = OpenText::new(lines, Origin::Repetition);
         let counter = counter.map(|(text, _)| {
             let via = Via::Pass(text.clone(), "0".into());
-            frame.context = Some(self.messages.enter(Call { at, via }));
+            frame.context = Some(self.messages.enter(MacroCall { at, via }));
             self.names.intern(&text)
         });
         frame.repeat = Some(Repeat::Count { remaining: count - 1, counter, index: 0, at });
@@ -360,9 +360,9 @@ impl Assembler<'_> {
             arguments(cursor).into_iter().rev().collect()
         };
         let Some(first) = texts.pop() else { return Ok(()) };
-        let mut frame = Frame::new(lines, Origin::Repetition);
+        let mut frame = OpenText::new(lines, Origin::Repetition);
         let via = Via::Pass(parameter.clone(), first.clone());
-        frame.context = Some(self.messages.enter(Call { at, via }));
+        frame.context = Some(self.messages.enter(MacroCall { at, via }));
         let arguments = [(parameter.clone(), first)].into();
         frame.substitution = Some(Rc::new(Substitution { arguments, ..Substitution::default() }));
         frame.repeat = Some(Repeat::Texts { parameter, remaining: texts, at });

@@ -32,7 +32,7 @@ impl At {
 
 /// A macro call, or a pass of a repetition.
 #[derive(Clone, Debug)]
-pub(crate) struct Call {
+pub(crate) struct MacroCall {
     /// Place of the call; its context is the call around it.
     pub at: At,
     /// The macro or repetition that is called.
@@ -126,12 +126,12 @@ pub(crate) struct Messages {
     /// Set while a statement whose text was refused is still carried out.
     pub is_muted: bool,
     /// Macro calls, by [`At::context`].
-    pub calls: Vec<Call>,
+    pub calls: Vec<MacroCall>,
 }
 
 impl Messages {
     /// The context of what a call leads to.
-    pub fn enter(&mut self, call: Call) -> u32 {
+    pub fn enter(&mut self, call: MacroCall) -> u32 {
         self.calls.push(call);
         self.calls.len() as u32
     }
@@ -191,8 +191,8 @@ impl Messages {
 const SHOWN_CALLS: usize = 3;
 
 /// The calls through which a place was reached, innermost first, each line of text once, long chains cut.
-fn shown_calls(context: u32, calls: &[Call]) -> Vec<&Call> {
-    let mut chain: Vec<&Call> = Vec::new();
+fn shown_calls(context: u32, calls: &[MacroCall]) -> Vec<&MacroCall> {
+    let mut chain: Vec<&MacroCall> = Vec::new();
     let mut next = context;
     while let Some(call) = (next as usize).checked_sub(1).and_then(|at| calls.get(at)) {
         if chain.iter().all(|other| (other.at.source, other.at.start) != (call.at.source, call.at.start)) {
@@ -210,7 +210,7 @@ fn shown_calls(context: u32, calls: &[Call]) -> Vec<&Call> {
 fn diagnostic<'a>(
     problem: Problem,
     sources: &[Arc<Source>],
-    calls: &[Call],
+    calls: &[MacroCall],
     similar: &mut impl FnMut(&str, Among) -> Option<&'a str>,
 ) -> Diagnostic {
     let place = |at: At| Place::new(&sources[at.source as usize], at.start as usize..at.end as usize);

@@ -160,15 +160,19 @@ fn damaged_or(body: &[u8], check: &[u8], error: ObjectError) -> ObjectError {
     }
 }
 
-type Piece<'a, T> = IResult<&'a [u8], T>;
+type ObjectPiece<'a, T> = IResult<&'a [u8], T>;
 
-fn text(input: &[u8]) -> Piece<'_, Result<String, &'static str>> {
+fn text(input: &[u8]) -> ObjectPiece<'_, Result<String, &'static str>> {
     let (rest, octets) = length_data(le_u32).parse(input)?;
     Ok((rest, String::from_utf8(octets.to_vec()).map_err(|_| "a text is not UTF-8")))
 }
 
 /// A list of `count` items; memory grows with the file, not with the count.
-fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Piece<'a, T>) -> Piece<'a, Vec<T>> {
+fn list<'a, T>(
+    mut input: &'a [u8],
+    count: usize,
+    item: impl Fn(&'a [u8]) -> ObjectPiece<'a, T>,
+) -> ObjectPiece<'a, Vec<T>> {
     let mut items = Vec::with_capacity(count.min(input.len()));
     for _ in 0..count {
         let (rest, found) = item(input)?;
@@ -178,7 +182,7 @@ fn list<'a, T>(mut input: &'a [u8], count: usize, item: impl Fn(&'a [u8]) -> Pie
     Ok((input, items))
 }
 
-fn parts(input: &[u8]) -> Piece<'_, Result<Program, &'static str>> {
+fn parts(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
     let (input, (reserved, entry, word_count)) = (le_u16, le_u32, le_u32).parse(input)?;
     // Sizes come from the file, so octets are taken before anything is allocated for them.
     let count = word_count as usize;

@@ -3,9 +3,9 @@
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
-use crate::expression::{Expression, Step};
+use crate::expression::{EvaluationStep, Expression};
 use crate::message::{Among, At, Parsed, Problem};
-use crate::token::Kind;
+use crate::token::TokenKind;
 
 /// A register: its file's letter and its number.
 pub(crate) type Register = (char, u8);
@@ -23,22 +23,22 @@ pub(crate) enum Written {
 
 /// An operand with its place and its text.
 #[derive(Clone, Debug)]
-pub(crate) struct Operand {
+pub(crate) struct ParsedOperand {
     pub written: Written,
     pub at: At,
     /// Set where the operand is one of the names of components, whatever else that name stands for.
     pub component: Option<i64>,
 }
 
-impl Operand {
+impl ParsedOperand {
     /// An operand that is not in the text.
-    pub fn made(written: Written, at: At) -> Operand {
-        Operand { written, at, component: None }
+    pub fn made(written: Written, at: At) -> ParsedOperand {
+        ParsedOperand { written, at, component: None }
     }
 
     /// A number as an operand.
-    pub fn number(value: i64, at: At) -> Operand {
-        Operand::made(Written::Number(Expression { steps: vec![(Step::Number(value), at)], at }), at)
+    pub fn number(value: i64, at: At) -> ParsedOperand {
+        ParsedOperand::made(Written::Number(Expression { steps: vec![(EvaluationStep::Number(value), at)], at }), at)
     }
 
     /// The operand's description, for messages.
@@ -91,7 +91,7 @@ impl Assembler<'_> {
     }
 
     /// Reads the operands of an instruction.
-    pub(crate) fn operands(&mut self, cursor: &mut Cursor) -> Parsed<Vec<Operand>> {
+    pub(crate) fn operands(&mut self, cursor: &mut Cursor) -> Parsed<Vec<ParsedOperand>> {
         let mut operands = Vec::with_capacity(4);
         if cursor.is_at_end() {
             return Ok(operands);
@@ -107,7 +107,7 @@ impl Assembler<'_> {
         }
     }
 
-    fn operand(&mut self, cursor: &mut Cursor) -> Parsed<Operand> {
+    fn operand(&mut self, cursor: &mut Cursor) -> Parsed<ParsedOperand> {
         let first = cursor.position;
         let component = cursor.peek().and_then(|token| match cursor.text(token) {
             "x" => Some(0),
@@ -117,7 +117,7 @@ impl Assembler<'_> {
         });
         // A register; one called `x` may still be meant as a component.
         if let Some((register, _)) = self.register_here(cursor)? {
-            return Ok(Operand { written: Written::Register(register), at: cursor.since(first), component });
+            return Ok(ParsedOperand { written: Written::Register(register), at: cursor.since(first), component });
         }
         // `(s2)` is `0(s2)`; any other parenthesis belongs to an expression.
         if cursor.is_mark("(") {
@@ -126,8 +126,8 @@ impl Assembler<'_> {
             if let Some((register, at)) = self.register_here(&mut ahead)? {
                 ahead.expect(")")?;
                 *cursor = ahead;
-                let zero = Expression { steps: vec![(Step::Number(0), at)], at };
-                return Ok(Operand {
+                let zero = Expression { steps: vec![(EvaluationStep::Number(0), at)], at };
+                return Ok(ParsedOperand {
                     written: Written::Memory(zero, register, at),
                     at: cursor.since(first),
                     component: None,
@@ -139,21 +139,27 @@ impl Assembler<'_> {
             let Some((register, at)) = self.register_here(cursor)? else {
                 let problem = cursor.expected("a register");
                 return Err(match cursor.peek() {
-                    Some(token) if token.kind == Kind::Name => problem.suggest(cursor.text(token), Among::Registers),
+                    Some(token) if token.kind == TokenKind::Name => {
+                        problem.suggest(cursor.text(token), Among::Registers)
+                    }
                     _ => problem,
                 });
             };
             cursor.expect(")")?;
             let at_all = cursor.since(first);
-            return Ok(Operand { written: Written::Memory(expression, register, at), at: at_all, component: None });
+            return Ok(ParsedOperand {
+                written: Written::Memory(expression, register, at),
+                at: at_all,
+                component: None,
+            });
         }
         // `x` alone may be a component; `x + 1` is a number.
         let component = component.filter(|_| expression.symbol().is_some());
-        Ok(Operand { written: Written::Number(expression), at: cursor.since(first), component })
+        Ok(ParsedOperand { written: Written::Number(expression), at: cursor.since(first), component })
     }
 
     fn register_here(&self, cursor: &mut Cursor) -> Parsed<Option<(Register, At)>> {
-        let Some(token) = cursor.peek().filter(|token| token.kind == Kind::Name) else { return Ok(None) };
+        let Some(token) = cursor.peek().filter(|token| token.kind == TokenKind::Name) else { return Ok(None) };
         let at = cursor.at(token);
         let register = self.register(cursor.text(token), at)?;
         cursor.position += usize::from(register.is_some());

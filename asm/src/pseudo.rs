@@ -5,15 +5,15 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
 use crate::expression::Expression;
-use crate::function::Function;
+use crate::function::ExpressionFunction;
 use crate::instruction::describe;
 use crate::message::{At, Problem};
-use crate::operand::{Operand, Written};
+use crate::operand::{ParsedOperand, Written};
 use isa::definition::Kind;
 
 /// The kind of operand that a pseudo-instruction takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum PseudoPart {
     /// A register or label, as rows take it.
     Kind(Kind),
     /// A number of 32 bits, signed or unsigned.
@@ -35,7 +35,7 @@ pub enum When {
 
 /// One expansion of a pseudo-instruction.
 #[derive(Clone, Copy, Debug)]
-pub struct Form {
+pub struct Expansion {
     /// The condition under which it is chosen.
     pub when: When,
     /// The instructions; letters stand for the operands.
@@ -48,31 +48,31 @@ pub struct Pseudo {
     /// Mnemonic.
     pub name: &'static str,
     /// Operands in the order of the text.
-    pub operands: &'static [(char, Part)],
+    pub operands: &'static [(char, PseudoPart)],
     /// Expansions; the first whose condition holds is taken.
-    pub forms: &'static [Form],
+    pub forms: &'static [Expansion],
     /// The effect, in a sentence.
     pub doc: &'static str,
 }
 
-const S: Part = Part::Kind(Kind::S);
-const V: Part = Part::Kind(Kind::V);
-const W: Part = Part::Kind(Kind::W);
-const LABEL: Part = Part::Kind(Kind::Rel);
+const S: PseudoPart = PseudoPart::Kind(Kind::S);
+const V: PseudoPart = PseudoPart::Kind(Kind::V);
+const W: PseudoPart = PseudoPart::Kind(Kind::W);
+const LABEL: PseudoPart = PseudoPart::Kind(Kind::Rel);
 
 macro_rules! always {
-    ($($line:literal),+) => { &[Form { when: When::Otherwise, lines: &[$($line),+] }] };
+    ($($line:literal),+) => { &[Expansion { when: When::Otherwise, lines: &[$($line),+] }] };
 }
 
-const CONSTANT: &[Form] = &[
-    Form { when: When::IsShort('i'), lines: &["movi d, i"] },
-    Form { when: When::Otherwise, lines: &["movi d, low(i)", "movhi d, high(i)"] },
+const CONSTANT: &[Expansion] = &[
+    Expansion { when: When::IsShort('i'), lines: &["movi d, i"] },
+    Expansion { when: When::Otherwise, lines: &["movi d, low(i)", "movhi d, high(i)"] },
 ];
 
-const VECTOR: &[Form] = &[
-    Form { when: When::AreZero, lines: &["vsplat d, s0"] },
-    Form { when: When::AreEqual, lines: &["li e, x", "vsplat d, e"] },
-    Form {
+const VECTOR: &[Expansion] = &[
+    Expansion { when: When::AreZero, lines: &["vsplat d, s0"] },
+    Expansion { when: When::AreEqual, lines: &["li e, x", "vsplat d, e"] },
+    Expansion {
         when: When::Otherwise,
         lines: &["li e, x", "vput d, e, 0", "li e, y", "vput d, e, 1", "li e, z", "vput d, e, 2"],
     },
@@ -88,9 +88,9 @@ macro_rules! pseudos {
 
 pseudos! {
     "nop" () always!["mov s0, s0"], "Does nothing, at no cost where copies are free.";
-    "li" ('d': S, 'i': Part::Number) CONSTANT,
+    "li" ('d': S, 'i': PseudoPart::Number) CONSTANT,
         "Constant `d = i`, of 32 bits: one word when `i` is known here and fits 16 bits with its sign, else two.";
-    "la" ('d': S, 'i': Part::Number) CONSTANT, "Address `d = i`: as `li`.";
+    "la" ('d': S, 'i': PseudoPart::Number) CONSTANT, "Address `d = i`: as `li`.";
     "beqz" ('a': S, 'i': LABEL) always!["beq a, s0, i"], "Branches when `a` is 0.";
     "bnez" ('a': S, 'i': LABEL) always!["bne a, s0, i"], "Branches when `a` is not 0.";
     "bltz" ('a': S, 'i': LABEL) always!["blt a, s0, i"], "Branches when `a` is negative.";
@@ -105,7 +105,7 @@ pseudos! {
     "j" ('i': LABEL) always!["jump i"], "Jumps.";
     "szero" ('d': S) always!["mov d, s0"], "Zero in a scalar register.";
     "vzero" ('d': V) always!["vsplat d, s0"], "Zero in all components.";
-    "vset" ('d': V, 'x': Part::Number, 'y': Part::Number, 'z': Part::Number, 'e': S) VECTOR,
+    "vset" ('d': V, 'x': PseudoPart::Number, 'y': PseudoPart::Number, 'z': PseudoPart::Number, 'e': S) VECTOR,
         "Three constants in the components of `d`, through the scalar register `e`: one word for three zeros, two or three for equal numbers, else six to nine.";
 }
 
@@ -122,16 +122,16 @@ impl Pseudo {
     }
 }
 
-fn describe_part(part: Part) -> &'static str {
+fn describe_part(part: PseudoPart) -> &'static str {
     match part {
-        Part::Kind(kind) => describe(kind),
-        Part::Number => "a number of 32 bits",
+        PseudoPart::Kind(kind) => describe(kind),
+        PseudoPart::Number => "a number of 32 bits",
     }
 }
 
 impl Assembler<'_> {
     /// Assembles a pseudo-instruction.
-    pub(crate) fn pseudo_instruction(&mut self, pseudo: &Pseudo, operands: &[Operand], at: At, cursor: &Cursor) {
+    pub(crate) fn pseudo_instruction(&mut self, pseudo: &Pseudo, operands: &[ParsedOperand], at: At, cursor: &Cursor) {
         if !self.fits(pseudo, operands, at) {
             self.emit(0, cursor.line);
             return;
@@ -142,7 +142,7 @@ impl Assembler<'_> {
             Written::Number(expression) => self.evaluate(expression).ok(),
             _ => None,
         };
-        let holds = |form: &&Form| match form.when {
+        let holds = |form: &&Expansion| match form.when {
             When::Otherwise => true,
             When::IsShort(letter) => match (known(letter), &operands[place(letter).unwrap_or(0)].written) {
                 (Some(value), _) => i16::try_from(value).is_ok(),
@@ -158,7 +158,7 @@ impl Assembler<'_> {
         for line in form.lines {
             let (name, rest) = line.split_once(' ').unwrap_or((line, ""));
             let parts = rest.split(", ").filter(|part| !part.is_empty());
-            let filled: Vec<Operand> = parts.map(|part| fill(part, pseudo, operands, at)).collect();
+            let filled: Vec<ParsedOperand> = parts.map(|part| fill(part, pseudo, operands, at)).collect();
             match (self.operations.get(name).copied(), find(name)) {
                 (Some(op), _) => self.row_instruction(op, &filled, at, cursor),
                 (None, Some(inner)) => self.pseudo_instruction(inner, &filled, at, cursor),
@@ -167,7 +167,7 @@ impl Assembler<'_> {
         }
     }
 
-    fn fits(&mut self, pseudo: &Pseudo, operands: &[Operand], at: At) -> bool {
+    fn fits(&mut self, pseudo: &Pseudo, operands: &[ParsedOperand], at: At) -> bool {
         if operands.len() != pseudo.operands.len() {
             let place = operands.last().map_or(at, |last| at.to(last.at));
             let count = pseudo.operands.len();
@@ -189,8 +189,8 @@ impl Assembler<'_> {
         let mut is_right = true;
         for (operand, &(letter, part)) in operands.iter().zip(pseudo.operands) {
             let file = match part {
-                Part::Kind(kind) => kind.register_file(),
-                Part::Number => None,
+                PseudoPart::Kind(kind) => kind.register_file(),
+                PseudoPart::Number => None,
             };
             let fits = match &operand.written {
                 Written::Register((written, _)) => file == Some(*written),
@@ -214,7 +214,7 @@ impl Assembler<'_> {
     }
 }
 
-fn fill(part: &str, pseudo: &Pseudo, operands: &[Operand], at: At) -> Operand {
+fn fill(part: &str, pseudo: &Pseudo, operands: &[ParsedOperand], at: At) -> ParsedOperand {
     let operand = |letter: &str| {
         pseudo
             .operands
@@ -226,17 +226,17 @@ fn fill(part: &str, pseudo: &Pseudo, operands: &[Operand], at: At) -> Operand {
         return operand.clone();
     }
     // Halves of a number of 32 bits, for `movi` and `movhi`.
-    for (prefix, function) in [("low(", Function::Low), ("high(", Function::High)] {
+    for (prefix, function) in [("low(", ExpressionFunction::Low), ("high(", ExpressionFunction::High)] {
         if let Some(letter) = part.strip_prefix(prefix)
-            && let Some(Operand { written: Written::Number(expression), at, .. }) =
+            && let Some(ParsedOperand { written: Written::Number(expression), at, .. }) =
                 operand(letter.trim_end_matches(')'))
         {
             let half: Expression = expression.under(function);
-            return Operand::made(Written::Number(half), *at);
+            return ParsedOperand::made(Written::Number(half), *at);
         }
     }
     if let Some(register) = isa::parse_register(part) {
-        return Operand::made(Written::Register(register), at);
+        return ParsedOperand::made(Written::Register(register), at);
     }
-    Operand::number(part.parse().expect("a test expands every form"), at)
+    ParsedOperand::number(part.parse().expect("a test expands every form"), at)
 }

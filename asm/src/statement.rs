@@ -7,15 +7,15 @@ use crate::cursor::Cursor;
 use crate::explain;
 use crate::frame::leading_directive;
 use crate::limits::{EXPANDED_TOKEN, EXPANDED_TOKENS};
-use crate::line::Line;
+use crate::line::OriginLine;
 use crate::listing::Record;
 use crate::message::{At, Parsed, Problem};
 use crate::symbol::SymbolValue;
-use crate::token::{Kind, tokens};
+use crate::token::{TokenKind, tokens};
 
 impl Assembler<'_> {
     /// Assembles a line.
-    pub(crate) fn line(&mut self, line: &Line) {
+    pub(crate) fn line(&mut self, line: &OriginLine) {
         let place = self.records.len();
         self.record(line);
         self.named = None;
@@ -37,7 +37,7 @@ impl Assembler<'_> {
     }
 
     /// Notes a line for the listing, without anything made.
-    pub(crate) fn record(&mut self, line: &Line) {
+    pub(crate) fn record(&mut self, line: &OriginLine) {
         let here = self.location() as u32;
         let depth = self.expansion_depth();
         self.records.push(Record {
@@ -51,7 +51,7 @@ impl Assembler<'_> {
         });
     }
 
-    fn read_line(&mut self, line: &Line) {
+    fn read_line(&mut self, line: &OriginLine) {
         if self.is_skipping() {
             let word = leading_directive(&line.text);
             let matters = word.is_some_and(|word| word.starts_with(".if") || word.starts_with(".e"));
@@ -84,8 +84,8 @@ impl Assembler<'_> {
         let is_skipping = self.is_skipping();
         // Labels: any number of them before the statement.
         while let (Some(first), Some(second)) = (cursor.peek(), cursor.peek_second()) {
-            let is_name = matches!(first.kind, Kind::Name | Kind::Directive | Kind::Integer);
-            if !is_name || second.kind != Kind::Mark(":") {
+            let is_name = matches!(first.kind, TokenKind::Name | TokenKind::Directive | TokenKind::Integer);
+            if !is_name || second.kind != TokenKind::Mark(":") {
                 break;
             }
             cursor.skip();
@@ -104,17 +104,17 @@ impl Assembler<'_> {
             }
         }
         match first.kind {
-            Kind::Directive => {
+            TokenKind::Directive => {
                 cursor.skip();
                 self.directive(text, at, cursor)
             }
-            Kind::Name if cursor.peek_second().is_some_and(|next| next.kind == Kind::Mark("=")) => {
+            TokenKind::Name if cursor.peek_second().is_some_and(|next| next.kind == TokenKind::Mark("=")) => {
                 self.assign("=", cursor)
             }
-            Kind::Name if !self.macros.contains_key(text) && !self.takes_instructions() => {
+            TokenKind::Name if !self.macros.contains_key(text) && !self.takes_instructions() => {
                 Err(self.no_instruction_here(text, at))
             }
-            Kind::Name => {
+            TokenKind::Name => {
                 cursor.skip();
                 self.instruction(text, at, cursor);
                 Ok(())
@@ -123,13 +123,13 @@ impl Assembler<'_> {
         }
     }
 
-    fn label(&mut self, kind: Kind, text: &str, at: At) {
+    fn label(&mut self, kind: TokenKind, text: &str, at: At) {
         if let Some(open) = &self.structure {
             let message = format!("the label `{text}` stands in a structure");
             self.messages.add(
                 Problem::new(explain::SECTION, message, at, "no place for a label").also(Some(open.at), "opened here"),
             );
-        } else if kind == Kind::Integer && !text.bytes().all(|c| c.is_ascii_digit()) {
+        } else if kind == TokenKind::Integer && !text.bytes().all(|c| c.is_ascii_digit()) {
             let message = format!("`{text}` cannot be a label");
             self.messages.add(Problem::new(explain::SYNTAX, message, at, "a name, or a decimal number"));
         } else {

@@ -10,7 +10,7 @@ use crate::symbol::SymbolValue;
 
 /// The structure that is being described.
 #[derive(Clone, Debug)]
-pub(crate) struct Structure {
+pub(crate) struct OpenStructure {
     name: String,
     size: i64,
     pub at: At,
@@ -33,7 +33,7 @@ impl Assembler<'_> {
                 .also(Some(at), "the next one starts here"));
         }
         let (name, name_at) = *header.as_ref().unwrap_or(&("", at));
-        self.structure = Some(Structure { name: name.into(), size: 0, at: name_at });
+        self.structure = Some(OpenStructure { name: name.into(), size: 0, at: name_at });
         header?;
         let interned = self.names.intern(name);
         if self.names.size(interned).is_some() {

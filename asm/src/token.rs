@@ -12,7 +12,7 @@ use crate::foreign;
 
 /// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum TokenKind {
     /// `name` or `structure.field`.
     Name,
     /// `.name`.
@@ -34,7 +34,7 @@ pub(crate) enum Kind {
 /// A token and its octets in the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub start: u32,
     pub end: u32,
 }
@@ -69,57 +69,58 @@ fn word(input: &str) -> IResult<&str, &str> {
     recognize((take_while_m_n(1, 1, starts_name), take_while(continues_name))).parse(input)
 }
 
-fn name(input: &str) -> IResult<&str, Kind> {
-    value(Kind::Name, (word, many0_count((char('.'), word)))).parse(input)
+fn name(input: &str) -> IResult<&str, TokenKind> {
+    value(TokenKind::Name, (word, many0_count((char('.'), word)))).parse(input)
 }
 
-fn directive(input: &str) -> IResult<&str, Kind> {
-    value(Kind::Directive, (char('.'), word)).parse(input)
+fn directive(input: &str) -> IResult<&str, TokenKind> {
+    value(TokenKind::Directive, (char('.'), word)).parse(input)
 }
 
 fn digits(input: &str) -> IResult<&str, &str> {
     take_while1(|c: char| c.is_ascii_digit() || c == '_').parse(input)
 }
 
-fn decimal(input: &str) -> IResult<&str, Kind> {
+fn decimal(input: &str) -> IResult<&str, TokenKind> {
     let exponent = |input| recognize((one_of("eE"), opt(one_of("+-")), digits)).parse(input);
     let fraction = |input| recognize((char('.'), digits)).parse(input);
     let (rest, _) = digits(input)?;
     let (rest, _) = alt((recognize((fraction, opt(exponent))), exponent)).parse(rest)?;
-    Ok((rest, Kind::Decimal))
+    Ok((rest, TokenKind::Decimal))
 }
 
-fn integer(input: &str) -> IResult<&str, Kind> {
+fn integer(input: &str) -> IResult<&str, TokenKind> {
     let (rest, text) = take_while1(continues_name).parse(input)?;
     let last = text.as_bytes()[text.len() - 1];
     let is_local = matches!(last, b'b' | b'f') && text[..text.len() - 1].bytes().all(|c| c.is_ascii_digit());
-    Ok((rest, if is_local && text.len() > 1 { Kind::Local } else { Kind::Integer }))
+    Ok((rest, if is_local && text.len() > 1 { TokenKind::Local } else { TokenKind::Integer }))
 }
 
-fn number(input: &str) -> IResult<&str, Kind> {
+fn number(input: &str) -> IResult<&str, TokenKind> {
     let (_, _) = one_of("0123456789").parse(input)?;
     alt((decimal, integer)).parse(input)
 }
 
-fn text(input: &str) -> IResult<&str, Kind> {
+fn text(input: &str) -> IResult<&str, TokenKind> {
     let piece = alt((recognize((char('\\'), anychar)), recognize(none_of("\"\\"))));
-    value(Kind::Text, (char('"'), many0_count(piece), char('"'))).parse(input)
+    value(TokenKind::Text, (char('"'), many0_count(piece), char('"'))).parse(input)
 }
 
-fn character(input: &str) -> IResult<&str, Kind> {
+fn character(input: &str) -> IResult<&str, TokenKind> {
     let hex = recognize((tag("\\x"), take_while_m_n(2, 2, |c: char| c.is_ascii_hexdigit())));
     let octal = recognize((char('\\'), take_while_m_n(1, 3, |c: char| c.is_digit(8))));
     let escape = recognize((char('\\'), anychar));
-    value(Kind::Character, (char('\''), alt((hex, octal, escape, recognize(none_of("'\\")))), char('\''))).parse(input)
+    value(TokenKind::Character, (char('\''), alt((hex, octal, escape, recognize(none_of("'\\")))), char('\'')))
+        .parse(input)
 }
 
-fn mark(input: &str) -> IResult<&str, Kind> {
+fn mark(input: &str) -> IResult<&str, TokenKind> {
     for mark in MARKS {
         if let Some(rest) = input.strip_prefix(mark) {
-            return Ok((rest, Kind::Mark(mark)));
+            return Ok((rest, TokenKind::Mark(mark)));
         }
     }
-    map(char('.'), |_| Kind::Mark(".")).parse(input)
+    map(char('.'), |_| TokenKind::Mark(".")).parse(input)
 }
 
 /// A comment starts here.
@@ -272,13 +273,13 @@ pub(crate) fn integer_value(text: &str) -> Result<u64, String> {
 mod tests {
     use super::*;
 
-    fn kinds(line: &str) -> Vec<Kind> {
+    fn kinds(line: &str) -> Vec<TokenKind> {
         tokens(line).0.iter().map(|token| token.kind).collect()
     }
 
     #[test]
     fn a_line_splits_into_tokens_up_to_its_comment() {
-        use Kind::*;
+        use TokenKind::*;
         assert_eq!(
             kinds("1: lw s1, node.left(s2) ; text"),
             [Integer, Mark(":"), Name, Name, Mark(","), Name, Mark("("), Name, Mark(")")]

@@ -6,5 +6,5 @@ mod operation;
 mod tests;
 mod vector;
 
-pub use operation::{Format, Number, Operation, Outcome, operate};
-pub use vector::{HEADER, Vector, parse};
+pub use operation::{Format, Number, Operation, OperationOutcome, operate};
+pub use vector::{HEADER, TestVector, parse};

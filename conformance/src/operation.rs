@@ -97,7 +97,7 @@ impl Operation {
 
 /// The result of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outcome {
+pub struct OperationOutcome {
     /// In units of the result's last place.
     pub raw: i128,
     /// Bits below the last place were lost.
@@ -122,7 +122,7 @@ pub fn operate(
     format: Format,
     quantization: Quantization,
     overflow: Overflow,
-) -> Outcome {
+) -> OperationOutcome {
     // A quotient by 0 has no value to quantize: the end of the range with the sign of a.
     let [a, b, c] = std::array::from_fn(|k| operands.get(k).copied());
     let a = a.expect("every operation has an operand");
@@ -132,7 +132,7 @@ pub fn operate(
             _ => Overflow::Sat,
         };
         let raw = if a.raw == 0 { 0 } else { fit(&(a.raw.signum() << 65), format, saturated).0 };
-        return Outcome { raw, is_quantized: false, has_overflowed: true };
+        return OperationOutcome { raw, is_quantized: false, has_overflowed: true };
     }
     // Where every step fits 128 bits, they do; the formulas are the same.
     let places = [a.format.last_place(), format.last_place()];
@@ -147,12 +147,12 @@ pub fn operate(
 }
 
 /// Integers that the formulas are computed with: as long as need be, or 128 bits.
-trait Exact: Integer + Signed + Clone + From<i128> + Shl<u32, Output = Self> + ToPrimitive {}
+trait ExactInteger: Integer + Signed + Clone + From<i128> + Shl<u32, Output = Self> + ToPrimitive {}
 
-impl<I: Integer + Signed + Clone + From<i128> + Shl<u32, Output = I> + ToPrimitive> Exact for I {}
+impl<I: Integer + Signed + Clone + From<i128> + Shl<u32, Output = I> + ToPrimitive> ExactInteger for I {}
 
 /// The result in units of the format's last place.
-fn exact<I: Exact>(
+fn exact<I: ExactInteger>(
     operation: Operation,
     a: Number,
     b: Option<Number>,
@@ -191,19 +191,24 @@ fn exact<I: Exact>(
 }
 
 /// The sum of two numbers with the weights of their last places.
-fn sum<I: Exact>((a, at): (I, i32), (b, bt): (I, i32)) -> (I, i32) {
+fn sum<I: ExactInteger>((a, at): (I, i32), (b, bt): (I, i32)) -> (I, i32) {
     let least = at.min(bt);
     ((a << (at - least) as u32) + (b << (bt - least) as u32), least)
 }
 
-fn finish<I: Exact>(value: &Fraction<I>, format: Format, quantization: Quantization, overflow: Overflow) -> Outcome {
+fn finish<I: ExactInteger>(
+    value: &Fraction<I>,
+    format: Format,
+    quantization: Quantization,
+    overflow: Overflow,
+) -> OperationOutcome {
     let is_quantized = !value.numerator.is_multiple_of(&value.denominator);
     let (raw, has_overflowed) = fit(&round(value, quantization), format, overflow);
-    Outcome { raw, is_quantized, has_overflowed }
+    OperationOutcome { raw, is_quantized, has_overflowed }
 }
 
 /// The integer that a mode makes of a number.
-fn round<I: Exact>(value: &Fraction<I>, mode: Quantization) -> I {
+fn round<I: ExactInteger>(value: &Fraction<I>, mode: Quantization) -> I {
     let two = I::one() + I::one();
     let floor = |numerator: &I| numerator.div_floor(&value.denominator);
     // The floor of x + 1/2, and the ceiling of x - 1/2.
@@ -229,7 +234,7 @@ fn round<I: Exact>(value: &Fraction<I>, mode: Quantization) -> I {
 }
 
 /// The number that a mode makes of one that may not fit, and whether it did not.
-fn fit<I: Exact>(value: &I, format: Format, mode: Overflow) -> (i128, bool) {
+fn fit<I: ExactInteger>(value: &I, format: Format, mode: Overflow) -> (i128, bool) {
     let (lowest, largest) = format.range();
     let least = if mode == Overflow::SatSym && format.is_signed { -largest } else { lowest };
     let word = format.word;
@@ -245,7 +250,7 @@ fn fit<I: Exact>(value: &I, format: Format, mode: Overflow) -> (i128, bool) {
 }
 
 /// The result for a number below or above the range, whose nearest number is `end`.
-fn overflowed<I: Exact>(value: &I, is_below: bool, format: Format, mode: Overflow, end: i128) -> i128 {
+fn overflowed<I: ExactInteger>(value: &I, is_below: bool, format: Format, mode: Overflow, end: i128) -> i128 {
     let word = format.word;
     // The low bits as a number without a sign, and a single bit.
     let low = |value: &I, bits: u32| value.mod_floor(&(I::one() << bits)).to_i128().expect("64 bits at most");

@@ -16,7 +16,7 @@ fn overflows(most: u32) -> impl Iterator<Item = Overflow> {
     [Overflow::Sat, Overflow::SatZero, Overflow::SatSym].into_iter().chain(wraps)
 }
 
-fn converted(value: i128, shift: u32, word: u32, quantization: Quantization, overflow: Overflow) -> Outcome {
+fn converted(value: i128, shift: u32, word: u32, quantization: Quantization, overflow: Overflow) -> OperationOutcome {
     let number = Number { format: signed(64, 64 - shift as i32), raw: value };
     operate(Operation::Cvt, &[number], signed(word, word as i32), quantization, overflow)
 }
@@ -58,8 +58,10 @@ fn the_machine_rounds_as_the_model_says() {
 
 #[test]
 fn the_machines_flags_are_the_models() {
-    let flags =
-        |outcome: &Outcome| Flags { is_quantized: outcome.is_quantized, has_overflowed: outcome.has_overflowed };
+    let flags = |outcome: &OperationOutcome| Flags {
+        is_quantized: outcome.is_quantized,
+        has_overflowed: outcome.has_overflowed,
+    };
     for (&quantization, overflow) in
         Quantization::ALL.iter().flat_map(|mode| overflows(0).map(move |over| (mode, over)))
     {
@@ -183,7 +185,7 @@ proptest! {
     }
 }
 
-fn parsed(lines: &str) -> (Vec<Vector>, String) {
+fn parsed(lines: &str) -> (Vec<TestVector>, String) {
     let (vectors, report) = parse(&Source::new("vectors.csv", format!("{HEADER}\n{lines}")));
     (vectors, report.render(false))
 }

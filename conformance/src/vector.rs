@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::operation::{Format, Number, Operation, Outcome, operate};
+use super::operation::{Format, Number, Operation, OperationOutcome, operate};
 use isa::number::{Overflow, Quantization};
 use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 
@@ -21,7 +21,7 @@ const MOST_ERRORS: usize = 20;
 
 /// An operation and the result that somebody expects.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Vector {
+pub struct TestVector {
     /// The vector's line in the file, from 1.
     pub line: usize,
     /// The operation.
@@ -42,14 +42,14 @@ pub struct Vector {
     pub has_overflowed: Option<bool>,
 }
 
-impl Vector {
+impl TestVector {
     /// The model's result of the operation.
-    pub fn outcome(&self) -> Outcome {
+    pub fn outcome(&self) -> OperationOutcome {
         operate(self.operation, &self.operands, self.format, self.quantization, self.overflow)
     }
 
     /// An outcome is the one that is expected.
-    pub fn expects(&self, outcome: &Outcome) -> bool {
+    pub fn expects(&self, outcome: &OperationOutcome) -> bool {
         self.raw == outcome.raw
             && self.is_quantized.is_none_or(|flag| flag == outcome.is_quantized)
             && self.has_overflowed.is_none_or(|flag| flag == outcome.has_overflowed)
@@ -57,14 +57,14 @@ impl Vector {
 }
 
 /// The vectors of a file, and what is wrong with the lines that are none.
-pub fn parse(source: &Arc<Source>) -> (Vec<Vector>, Report) {
+pub fn parse(source: &Arc<Source>) -> (Vec<TestVector>, Report) {
     let (mut vectors, mut report) = (Vec::new(), Report::default());
     let mut wrong = 0usize;
     let mut start = 0;
     let mut is_headed = false;
     for (line, text) in (1..).zip(source.text.split_inclusive('\n')) {
         let content = text.trim_end_matches(['\n', '\r']);
-        let place = Line { source, start, text: content };
+        let place = VectorLine { source, start, text: content };
         start += text.len();
         // Blank lines may stand anywhere; the first other line names the columns.
         let is_first = !is_headed;
@@ -104,19 +104,19 @@ fn first_line() -> String {
 }
 
 /// A line and where it begins.
-struct Line<'a> {
+struct VectorLine<'a> {
     source: &'a Arc<Source>,
     start: usize,
     text: &'a str,
 }
 
-impl Line<'_> {
+impl VectorLine<'_> {
     fn place(&self, span: Range<usize>) -> Place {
         Place::new(self.source, self.start + span.start..self.start + span.end)
     }
 }
 
-fn header(line: &Line) -> Result<(), Box<Diagnostic>> {
+fn header(line: &VectorLine) -> Result<(), Box<Diagnostic>> {
     let text = line.text.trim_start_matches('\u{feff}');
     if text.split(',').map(str::trim).eq(HEADER.split(',')) {
         return Ok(());
@@ -127,14 +127,14 @@ fn header(line: &Line) -> Result<(), Box<Diagnostic>> {
 
 /// One field of a line.
 #[derive(Clone, Copy)]
-struct Field<'a> {
-    line: &'a Line<'a>,
+struct VectorField<'a> {
+    line: &'a VectorLine<'a>,
     name: &'static str,
     text: &'a str,
     at: usize,
 }
 
-impl Field<'_> {
+impl VectorField<'_> {
     fn error(&self, message: String, label: impl Into<String>) -> Box<Diagnostic> {
         let place = self.line.place(self.at..self.at + self.text.len());
         Box::new(Diagnostic::error(message).at(place, label))
@@ -176,7 +176,7 @@ impl Field<'_> {
     }
 }
 
-fn vector(line: &Line, number: usize) -> Result<Vector, Box<Diagnostic>> {
+fn vector(line: &VectorLine, number: usize) -> Result<TestVector, Box<Diagnostic>> {
     let fields = fields(line)?;
     let operation = fields[0].word("operation", &Operation::ALL.map(Operation::name), |name| {
         Operation::ALL.into_iter().find(|operation| operation.name() == name)
@@ -203,7 +203,7 @@ fn vector(line: &Line, number: usize) -> Result<Vector, Box<Diagnostic>> {
     if matches!(overflow, Overflow::WrapSm(_)) && !format.is_signed {
         return Err(fields[17].error("numbers without a sign have no WRAP_SM".into(), ""));
     }
-    Ok(Vector {
+    Ok(TestVector {
         line: number,
         operation,
         operands,
@@ -216,7 +216,7 @@ fn vector(line: &Line, number: usize) -> Result<Vector, Box<Diagnostic>> {
     })
 }
 
-fn format(fields: &[Field]) -> Result<Format, Box<Diagnostic>> {
+fn format(fields: &[VectorField]) -> Result<Format, Box<Diagnostic>> {
     let is_signed = fields[0].word("kind of number", &["s", "u"], |text| match text {
         "s" => Some(true),
         "u" => Some(false),
@@ -225,7 +225,7 @@ fn format(fields: &[Field]) -> Result<Format, Box<Diagnostic>> {
     Ok(Format { is_signed, word: fields[1].number((1, 64))? as u32, integer: fields[2].number((-64, 128))? as i32 })
 }
 
-fn fields<'a>(line: &'a Line) -> Result<Vec<Field<'a>>, Box<Diagnostic>> {
+fn fields<'a>(line: &'a VectorLine) -> Result<Vec<VectorField<'a>>, Box<Diagnostic>> {
     let mut at = 0;
     let mut names = HEADER.split(',');
     let mut fields = Vec::with_capacity(COLUMNS);
@@ -237,7 +237,7 @@ fn fields<'a>(line: &'a Line) -> Result<Vec<Field<'a>>, Box<Diagnostic>> {
         };
         let trimmed = text.trim();
         let before = text.len() - text.trim_start().len();
-        fields.push(Field { line, name, text: trimmed, at: at + before });
+        fields.push(VectorField { line, name, text: trimmed, at: at + before });
         at += text.len() + 1;
     }
     if fields.len() == COLUMNS {

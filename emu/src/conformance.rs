@@ -51,7 +51,7 @@ pub struct Agreement {
 
 /// Operands on which meaning and body differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mismatch {
+pub struct InstructionMismatch {
     /// The instruction as assembly text.
     pub instruction: String,
     /// Operands before the instruction: name and value.
@@ -60,7 +60,7 @@ pub struct Mismatch {
     pub differences: Vec<(String, String, String)>,
 }
 
-impl fmt::Display for Mismatch {
+impl fmt::Display for InstructionMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "`{}` does not do what its body does", self.instruction)?;
         for (name, value) in &self.operands {
@@ -73,9 +73,9 @@ impl fmt::Display for Mismatch {
     }
 }
 
-impl std::error::Error for Mismatch {}
+impl std::error::Error for InstructionMismatch {}
 
-impl Mismatch {
+impl InstructionMismatch {
     /// The message for a person.
     pub fn diagnostic(&self) -> Diagnostic {
         Diagnostic::error(self.to_string().trim_end())
@@ -90,15 +90,15 @@ impl Mismatch {
 ///
 /// # Panics
 /// The instruction has no body or no meaning.
-pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mismatch>> {
+pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<InstructionMismatch>> {
     let op = isa.find(name).filter(|&op| isa.body(op).is_some() && isa.semantics(op).is_some());
     let op = op.expect("the instruction has a meaning in Rust and a body beside it");
     let mut by_body = isa.clone();
     by_body.set_semantics(op, None);
-    let mut random = Random(SplitMix64::new(trial.seed));
+    let mut random = OperandRandom(SplitMix64::new(trial.seed));
     let mut agreement = Agreement::default();
     for _ in 0..trial.cases {
-        let case = Case::new(isa, op, trial, &mut random);
+        let case = InstructionCase::new(isa, op, trial, &mut random);
         let [body, meaning] = [&by_body, isa].map(|isa| case.run(isa, trial));
         let differences = match (&body.trap, &meaning.trap) {
             (Some(_), Some(_)) => {
@@ -117,7 +117,7 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
         };
         if !differences.is_empty() {
             let instruction = case.instruction(isa);
-            return Err(Box::new(Mismatch { instruction, operands: case.operands(isa, op), differences }));
+            return Err(Box::new(InstructionMismatch { instruction, operands: case.operands(isa, op), differences }));
         }
         agreement.ended += 1;
     }
@@ -125,9 +125,9 @@ pub fn check(isa: &Isa, name: &str, trial: &Trial) -> Result<Agreement, Box<Mism
 }
 
 /// Numbers of operands.
-struct Random(SplitMix64);
+struct OperandRandom(SplitMix64);
 
-impl Random {
+impl OperandRandom {
     fn next(&mut self) -> u64 {
         self.0.bits()
     }
@@ -150,14 +150,14 @@ impl Random {
 }
 
 /// An instruction with what it finds.
-struct Case {
+struct InstructionCase {
     program: Program,
     registers: Registers,
     memory: Memory,
 }
 
-impl Case {
-    fn new(isa: &Isa, op: Op, trial: &Trial, random: &mut Random) -> Case {
+impl InstructionCase {
+    fn new(isa: &Isa, op: Op, trial: &Trial, random: &mut OperandRandom) -> InstructionCase {
         let word = trial.config.arithmetic.word;
         let row = isa.definition(op);
         let fields: Vec<i64> = (row.operands.iter())
@@ -189,9 +189,9 @@ impl Case {
                 registers.set_scalar(*operand.1 as u8, random.below(OCTETS as u64 - 64) as i32);
             }
         }
-        let octets = |random: &mut Random| (0..OCTETS).map(|_| random.next() as u8).collect::<Vec<u8>>();
+        let octets = |random: &mut OperandRandom| (0..OCTETS).map(|_| random.next() as u8).collect::<Vec<u8>>();
         let program = Program { words: vec![tested, halt, halt], buffer: octets(random), ..Program::default() };
-        Case { program, registers, memory: Memory::new(octets(random)) }
+        InstructionCase { program, registers, memory: Memory::new(octets(random)) }
     }
 
     fn run(&self, isa: &Isa, trial: &Trial) -> OneCoreRun {
@@ -215,9 +215,9 @@ impl Case {
     }
 
     /// The registers of an operand.
-    fn places(&self, isa: &Isa, letter: u8, kind: Kind) -> Vec<Place> {
+    fn places(&self, isa: &Isa, letter: u8, kind: Kind) -> Vec<OperandPlace> {
         let first = isa.decode(self.program.words[0]).map_or(0, |found| found.fields.get(letter) as u8);
-        (0..kind.registers()).map(|at| Place { letter, kind, number: first + at }).collect()
+        (0..kind.registers()).map(|at| OperandPlace { letter, kind, number: first + at }).collect()
     }
 
     fn differences(
@@ -267,13 +267,13 @@ fn exit(isa: &Isa, row: &InstructionDef, program: &Program, run: &OneCoreRun) ->
 }
 
 /// A register of an operand.
-struct Place {
+struct OperandPlace {
     letter: u8,
     kind: Kind,
     number: u8,
 }
 
-impl Place {
+impl OperandPlace {
     fn name(&self) -> String {
         format!("`{}` ({})", self.letter as char, register_name(self.kind, self.number))
     }

@@ -3,7 +3,7 @@
 use crate::code::octets::Memory;
 use crate::engine::Task;
 use crate::machine::schedule;
-use crate::machine::{Config, Failure, RunOutcome, Setup, check, on_arithmetic};
+use crate::machine::{Config, RunFailure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::RunObserver;
 use crate::replay;
 use crate::semantics::Watch;
@@ -17,7 +17,7 @@ use crate::semantics::Watch;
 ///
 /// # Errors
 /// A machine out of its ranges, a program whose initial buffer does not fit, or a trap.
-pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, Failure> {
+pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, RunFailure> {
     check(setup)?;
     let results = run_alike(std::slice::from_ref(setup), &memory, progress);
     results.into_iter().next().expect("a machine has a result")
@@ -27,7 +27,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
 ///
 /// # Errors
 /// As [`run`].
-pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, Failure> {
+pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, RunFailure> {
     check(setup)?;
     on_arithmetic(setup, StepTask { setup, memory, progress })
 }
@@ -40,9 +40,9 @@ pub fn run_all(
     machines: &[Config],
     memory: &Memory,
     progress: &mut dyn FnMut(u64),
-) -> Vec<Result<RunOutcome, Failure>> {
+) -> Vec<Result<RunOutcome, RunFailure>> {
     let setups: Vec<Setup> = machines.iter().map(|config| Setup { config, ..setup.clone() }).collect();
-    let mut results: Vec<Option<Result<RunOutcome, Failure>>> = setups.iter().map(|_| None).collect();
+    let mut results: Vec<Option<Result<RunOutcome, RunFailure>>> = setups.iter().map(|_| None).collect();
     for first in 0..setups.len() {
         if results[first].is_some() {
             continue;
@@ -72,7 +72,7 @@ fn at_once(memory: &Memory) -> usize {
 }
 
 /// Runs machines that compute alike.
-fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<RunOutcome, Failure>> {
+fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<RunOutcome, RunFailure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     on_arithmetic(first, RunTask { setups, memory, progress })
 }
@@ -84,7 +84,7 @@ struct StepTask<'a> {
 }
 
 impl Task for StepTask<'_> {
-    type Result = Result<RunOutcome, Failure>;
+    type Result = Result<RunOutcome, RunFailure>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         schedule::run::<T, O>(self.setup, self.memory, arithmetic, self.progress)
@@ -98,7 +98,7 @@ struct RunTask<'a> {
 }
 
 impl Task for RunTask<'_> {
-    type Result = Vec<Result<RunOutcome, Failure>>;
+    type Result = Vec<Result<RunOutcome, RunFailure>>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)

@@ -11,7 +11,7 @@ pub const LETTERS: &[u8] = b"dexyabcij";
 
 /// Place of an operand in the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Field {
+pub struct PatternField {
     /// The operand's letter.
     pub letter: u8,
     /// Lowest bit of the field.
@@ -27,7 +27,7 @@ pub struct BitPattern {
     pub value: u32,
     /// Which bits are fixed, those drawn `-` included.
     pub mask: u32,
-    fields: [Field; MAX_FIELDS],
+    fields: [PatternField; MAX_FIELDS],
     count: u8,
 }
 
@@ -67,7 +67,7 @@ impl BitPattern {
         // From the top bit down. `vlt`, for example, is "010000 ddddd aaaaa bbbbb ------ 10100": value 0x4000_0014, mask 0xfc00_07ff, and the
         // fields d at 21, a at 16, b at 11, of 5 bits each.
         let text = text.as_bytes();
-        let empty = Field { letter: 0, shift: 0, width: 0 };
+        let empty = PatternField { letter: 0, shift: 0, width: 0 };
         let mut pattern = BitPattern { value: 0, mask: 0, fields: [empty; MAX_FIELDS], count: 0 };
         let mut bits = 0;
         let mut at = 0;
@@ -111,7 +111,7 @@ impl BitPattern {
                         if pattern.count as usize == MAX_FIELDS {
                             return Err(PatternError::TooManyFields);
                         }
-                        pattern.fields[pattern.count as usize] = Field { letter: c, shift, width: 1 };
+                        pattern.fields[pattern.count as usize] = PatternField { letter: c, shift, width: 1 };
                         pattern.count += 1;
                     }
                 }
@@ -123,7 +123,7 @@ impl BitPattern {
     }
 
     /// The field of an operand.
-    pub const fn field(&self, letter: u8) -> Option<Field> {
+    pub const fn field(&self, letter: u8) -> Option<PatternField> {
         let mut at = 0;
         while at < self.count as usize {
             if self.fields[at].letter == letter {
@@ -135,7 +135,7 @@ impl BitPattern {
     }
 
     /// All fields, from the top bit down.
-    pub fn fields(&self) -> &[Field] {
+    pub fn fields(&self) -> &[PatternField] {
         &self.fields[..self.count as usize]
     }
 

@@ -8,7 +8,7 @@ use crate::build::SceneFeatures;
 
 /// Processors that run a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Place {
+enum RunsOn {
     Core,
     Main,
     Both,
@@ -44,8 +44,8 @@ macro_rules! functions {
                 match self { $(Function::$variant => $name,)* }
             }
 
-            const fn place(self) -> Place {
-                match self { $(Function::$variant => Place::$place,)* }
+            const fn place(self) -> RunsOn {
+                match self { $(Function::$variant => RunsOn::$place,)* }
             }
 
             const fn need(self) -> Need {
@@ -115,9 +115,9 @@ impl Function {
         let interpolates = features.agreement.is_some();
         Function::ALL.iter().copied().filter(move |function| {
             let is_here = match function.place() {
-                Place::Both => true,
-                Place::Core => !is_main,
-                Place::Main => is_main,
+                RunsOn::Both => true,
+                RunsOn::Core => !is_main,
+                RunsOn::Main => is_main,
             };
             is_here
                 && match function.need() {

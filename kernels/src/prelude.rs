@@ -41,7 +41,7 @@ pub(crate) fn structure(text: &mut String, structure: &Structure) {
 
 /// Memory of a program for the far sides of its walks through the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Walk {
+pub enum WalkMemory {
     /// Not at all: each walk starts at the root.
     Restart,
     /// Nodes with boxes, the last one by axis.
@@ -51,7 +51,7 @@ pub enum Walk {
 }
 
 /// The prelude of a core's program, or of the main processor's.
-pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Walk, is_main: bool) -> String {
+pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: WalkMemory, is_main: bool) -> String {
     let mut text = String::from("; Written by the loader for one scene and one machine.\n");
     for (name, bits) in written_formats(&image.formats).entries() {
         let _ = writeln!(text, ".format {name}, {bits}");
@@ -67,9 +67,9 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
     text.push_str(STRUCTURES);
     text.push_str(".buffer\n");
     text.push_str(match walk {
-        Walk::Restart => "NODE: .space 2 * sizeof(node)\n",
-        Walk::Boxes => BOXES,
-        Walk::Planes => PLANES,
+        WalkMemory::Restart => "NODE: .space 2 * sizeof(node)\n",
+        WalkMemory::Boxes => BOXES,
+        WalkMemory::Planes => PLANES,
     });
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
@@ -164,7 +164,7 @@ NODE: .space 2 * sizeof(node)
 ";
 
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
-fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: Walk) {
+fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: WalkMemory) {
     text.push_str(
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
@@ -176,7 +176,7 @@ fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: 
         text.push_str("SHADE_FACING: .space 8\n");
     }
     // The profile that walks from the root brings nodes of its own.
-    if features.has_tree() && walk != Walk::Restart {
+    if features.has_tree() && walk != WalkMemory::Restart {
         text.push_str("NODES: .space (BOUNCES + 1) * sizeof(raynode)\n");
     }
     let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));

@@ -83,7 +83,7 @@ const BOUNCES: u32 = 5;
 
 /// The values that are tried of each setting. The first one of each list is the base.
 #[derive(Clone, Debug)]
-pub struct Choice {
+pub struct Choices {
     /// Sets of kernels.
     pub profiles: Vec<KernelSet>,
     /// Bits of a word.
@@ -100,7 +100,7 @@ pub struct Choice {
     pub interpolate: Vec<Option<f64>>,
 }
 
-impl Choice {
+impl Choices {
     /// Every profile in every word (that of the report in its own layout), and for each further value of another setting the base profile in
     /// every word; `None` without a value of some setting.
     pub fn variants(&self) -> Option<Vec<Variant>> {
@@ -145,7 +145,7 @@ pub struct MeasuredVariant {
     /// Difference up to which corners agree, so that a pixel between them is interpolated; null when every pixel has its ray.
     pub interpolate: Option<f64>,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: crate::result::Formats,
+    pub formats: crate::result::FormatTable,
     /// The picture against double precision with five bounces and no cut-off.
     pub error: PictureError,
     /// Structural similarity of both pictures as screens show them, 1 for equal ones.

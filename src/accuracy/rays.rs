@@ -6,7 +6,7 @@ use isa::number::{Modes, Vector};
 use kernels::build::SceneFeatures;
 use kernels::set::{Decisions, Formulas};
 use kernels::twin::planes::Packets;
-use kernels::twin::ray::{Ray, Search};
+use kernels::twin::ray::{TwinRay, TwinSearch};
 use kernels::twin::surface::normal;
 use kernels::twin::{Twin, report};
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ pub struct RayErrors {
 }
 
 /// Outcome of a ray.
-struct Ended {
+struct RayOutcome {
     is_right: bool,
     /// Errors of t, u, v and of the normal, of a hit that both find; not a number where the kernels do not compute it.
     errors: Option<[f64; 4]>,
@@ -53,7 +53,7 @@ impl RayErrors {
         let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &kernels::KernelOptions::default());
         let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");
         // Trace all camera rays on the native twin, and decide each again exactly.
-        let ended: Vec<Ended> = (0..width * height)
+        let ended: Vec<RayOutcome> = (0..width * height)
             .into_par_iter()
             .map(|pixel| end(&twin, &twin.camera_ray(pixel % width, pixel / width)))
             .collect();
@@ -81,8 +81,8 @@ impl RayErrors {
     }
 }
 
-fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
-    let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+fn end(twin: &Twin<Modes>, ray: &TwinRay) -> RayOutcome {
+    let mut search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
     // A walk that does not end finds nothing and counts as wrong.
     let is_stuck = twin.camera_packet(ray).is_some_and(|first| twin.trace(ray, first, &mut search).is_err());
     let expected = nearest(twin, ray);
@@ -93,11 +93,11 @@ fn end(twin: &Twin<Modes>, ray: &Ray) -> Ended {
         }
         _ => None,
     };
-    Ended { is_right: !is_stuck && search.triangle == expected.map(|(_, index)| index), errors }
+    RayOutcome { is_right: !is_stuck && search.triangle == expected.map(|(_, index)| index), errors }
 }
 
 /// The nearest hit by exact decisions: t in units of its last place, and the triangle; of equally near ones the lowest index.
-fn nearest(twin: &Twin<Modes>, ray: &Ray) -> Option<(f64, u32)> {
+fn nearest(twin: &Twin<Modes>, ray: &TwinRay) -> Option<(f64, u32)> {
     let stage = &twin.stage;
     let ray = exact::Ray { origin: ray.origin, direction: ray.direction };
     // t is a quotient of integers; this makes it units in the last place.
@@ -113,7 +113,7 @@ fn nearest(twin: &Twin<Modes>, ray: &Ray) -> Option<(f64, u32)> {
 }
 
 /// Errors of u and v of a hit, each not a number where the kernels do not compute it.
-fn barycentric_errors(twin: &Twin<Modes>, ray: &Ray, index: u32) -> [f64; 2] {
+fn barycentric_errors(twin: &Twin<Modes>, ray: &TwinRay, index: u32) -> [f64; 2] {
     let vertices = &twin.stage.triangles[index as usize].vertices;
     let met = exact::triangle(&exact::Ray { origin: ray.origin, direction: ray.direction }, vertices);
     let bits = twin.constants.formats.barycentric;

@@ -96,7 +96,7 @@ fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure
     let one_core = OneCore { has_profile: true, ..OneCore::new(&config, isa, program) };
     let run = one_core::run(&one_core, Memory::new(memory))?;
     match run.trap {
-        Some(trap) => Err(emu::machine::Failure::from(trap).into()),
+        Some(trap) => Err(emu::machine::RunFailure::from(trap).into()),
         None => Ok(run.profile.unwrap_or_default()),
     }
 }

@@ -197,8 +197,8 @@ impl Annexes {
 }
 
 impl Erratum {
-    fn new(erratum: &'static printed::Erratum) -> Erratum {
-        let printed::Erratum { id, source, printed, correct, effect } = erratum;
+    fn new(erratum: &'static printed::PrintedErratum) -> Erratum {
+        let printed::PrintedErratum { id, source, printed, correct, effect } = erratum;
         Erratum { id, source, printed, correct, effect }
     }
 }

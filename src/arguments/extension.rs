@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use asm::extension::{self, Loaded};
+use asm::extension::{self, LoadedInstruction};
 use clap::Args;
 use isa::Isa;
 use messages::{Report, Source};
@@ -36,7 +36,7 @@ impl ExtensionArguments {
 ///
 /// # Errors
 /// A file that cannot be read, or what is wrong in it.
-pub fn extend(isa: &mut Isa, path: &Path) -> Result<Vec<Loaded>, Report> {
+pub fn extend(isa: &mut Isa, path: &Path) -> Result<Vec<LoadedInstruction>, Report> {
     let source = extension::source(&path.display().to_string(), files::read(path)?)?;
     extension::load(isa, &source, &included)
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use emu::code::Code;
 use emu::engine::EngineKind;
-use emu::machine::{Options, Setup};
+use emu::machine::{RunOptions, Setup};
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::SceneFeatures;
@@ -24,7 +24,7 @@ pub use chart::svg;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::load::Load;
-use crate::result::Formats;
+use crate::result::FormatTable;
 
 /// A way to compute a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -87,7 +87,7 @@ pub struct BenchResult {
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: Formats,
+    pub formats: FormatTable,
     /// Host's nanoseconds a pixel, the median of the runs.
     pub nanoseconds: f64,
     /// Least of the runs.
@@ -108,7 +108,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
     let (load, mut image) = Load::picture(job)?;
     image.bytes = load.memory.octets().into_owned();
     // Prepare everything that is not measured: programs, the reference's hierarchy, counts of instructions and rays.
-    let setup = |engine| load.setup(&job.machine, Options { engine, ..Options::default() });
+    let setup = |engine| load.setup(&job.machine, RunOptions { engine, ..RunOptions::default() });
     let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &job.kernels);
     let modes = job.machine.arithmetic.modes();
     let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
@@ -137,7 +137,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 Runner::Native => timed(|| count(&setup(EngineKind::Native)).map(drop))?,
                 Runner::NativeClocks => clocked(&setup(EngineKind::Native))?,
                 Runner::NativeAll => {
-                    let options = Options { engine: EngineKind::Native, has_profile: true, ..Options::default() };
+                    let options = RunOptions { engine: EngineKind::Native, has_profile: true, ..RunOptions::default() };
                     clocked(&load.setup(&job.machine, options))?
                 }
                 Runner::Fast => timed(|| count(&setup(EngineKind::Fast)).map(drop))?,
@@ -188,11 +188,11 @@ fn twin(
     job: &Job,
     modes: Modes,
 ) -> Result<(), Failure> {
-    let failed = |failure: kernels::twin::Failure| Failure::from(Diagnostic::error(failure.to_string()));
+    let failed = |failure: kernels::twin::TwinFailure| Failure::from(Diagnostic::error(failure.to_string()));
     let profile = job.kernels.profile;
     if modes == Modes::default() {
         let twin = Twin::new(image, features, profile, isa::number::Nearest32);
-        twin.ok_or(kernels::twin::Failure::NoScene).and_then(|twin| twin.render(crop)).map(drop).map_err(failed)
+        twin.ok_or(kernels::twin::TwinFailure::NoScene).and_then(|twin| twin.render(crop)).map(drop).map_err(failed)
     } else {
         kernels::twin::render(image, features, crop, profile, modes).map(drop).map_err(failed)
     }

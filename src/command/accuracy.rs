@@ -13,7 +13,7 @@ use scenes::model::View;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::accuracy::{self, Choice, MeasuredVariant};
+use crate::accuracy::{self, Choices, MeasuredVariant};
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
 use crate::job::SHIFT;
@@ -65,7 +65,7 @@ pub struct AccuracyArguments {
     cutoffs: Vec<f64>,
     /// Differences of a component up to which the corners around a pixel agree, so that it is interpolated, in [0, 1]; or `none`.
     #[arg(long, value_name = "D,..", value_delimiter = ',', value_parser = difference, default_value = "none,0.01")]
-    interpolate: Vec<Agreement>,
+    interpolate: Vec<CornerAgreement>,
     /// Table as comma-separated values.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -82,12 +82,12 @@ pub struct AccuracyArguments {
 
 /// Difference up to which corners agree; none when every pixel has its ray.
 #[derive(Clone, Copy, Debug)]
-struct Agreement(Option<f64>);
+struct CornerAgreement(Option<f64>);
 
-fn difference(text: &str) -> Result<Agreement, String> {
+fn difference(text: &str) -> Result<CornerAgreement, String> {
     match text {
-        "none" => Ok(Agreement(None)),
-        _ => weight(text).map(|difference| Agreement(Some(difference))),
+        "none" => Ok(CornerAgreement(None)),
+        _ => weight(text).map(|difference| CornerAgreement(Some(difference))),
     }
 }
 
@@ -113,7 +113,7 @@ fn weight(text: &str) -> Result<f64, String> {
 
 /// Variants of pictures with their clocks and errors.
 #[derive(Serialize, JsonSchema)]
-pub(super) struct Results {
+pub(super) struct AccuracyResults {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
@@ -145,7 +145,7 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
     for target in [&arguments.csv, &arguments.svg].into_iter().flatten() {
         files::check_target(target)?;
     }
-    let choice = Choice {
+    let choice = Choices {
         profiles: arguments.profiles.clone(),
         words: arguments.words.clone(),
         roundings: arguments.roundings.clone(),
@@ -183,7 +183,7 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
     files.extend(arguments.svg.as_ref().map(|path| (path, accuracy::svg(&measured))));
     files::write_all(&files)?;
     let (width, height) = arguments.size;
-    let results = Results { schema: SCHEMA, width, height, shift: SHIFT, variants: measured, refused };
+    let results = AccuracyResults { schema: SCHEMA, width, height, shift: SHIFT, variants: measured, refused };
     terminal.print(&if arguments.json { result::json(&results) } else { text(&results) })?;
     Ok(Exit::Done)
 }
@@ -192,7 +192,7 @@ fn decibels(psnr: Option<f64>) -> String {
     psnr.map_or_else(|| "-".into(), |psnr| format!("{psnr:.1}"))
 }
 
-fn text(results: &Results) -> String {
+fn text(results: &AccuracyResults) -> String {
     // Scenes in the order in which they were measured, a table each.
     let mut scenes: Vec<&str> = results.variants.iter().map(|one| one.scene.as_str()).collect();
     scenes.dedup();

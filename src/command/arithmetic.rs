@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use conformance::{Outcome, Vector};
+use conformance::{OperationOutcome, TestVector};
 use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -13,7 +13,7 @@ use crate::numeral::{count, grouped};
 use crate::terminal::Terminal;
 use crate::{files, result};
 
-/// Version of [`Checked`].
+/// Version of [`CheckedFile`].
 pub(super) const SCHEMA: &str = "lancer-arithmetic-1";
 
 /// Most mismatches that are listed unless the user says otherwise.
@@ -91,7 +91,7 @@ struct Mismatch {
 
 /// Outcome of a file of vectors.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub(super) struct Checked {
+pub(super) struct CheckedFile {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     schema: &'static str,
@@ -121,7 +121,7 @@ fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Resul
     }
     let outcomes = vectors.iter().map(|vector| (vector, vector.outcome()));
     let wrong: Vec<_> = outcomes.filter(|(vector, outcome)| !vector.expects(outcome)).collect();
-    let checked = Checked {
+    let checked = CheckedFile {
         schema: SCHEMA,
         file: source.name.clone(),
         vectors: vectors.len(),
@@ -140,7 +140,7 @@ fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Resul
     }
 }
 
-fn mismatch(vector: &Vector, outcome: &Outcome) -> Mismatch {
+fn mismatch(vector: &TestVector, outcome: &OperationOutcome) -> Mismatch {
     Mismatch {
         line: vector.line,
         operation: vector.operation.name(),
@@ -157,7 +157,7 @@ fn mismatch(vector: &Vector, outcome: &Outcome) -> Mismatch {
     }
 }
 
-fn text(checked: &Checked) -> String {
+fn text(checked: &CheckedFile) -> String {
     let mut text = String::new();
     for Mismatch { line, operation, expected, found } in &checked.listed {
         let (expected, found) = (claim(expected), claim(found));

@@ -11,7 +11,7 @@ use crate::arguments::Size;
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::files::map::LEAST_ERROR;
-use crate::files::picture::Format;
+use crate::files::picture::PictureFormat;
 use crate::job::{Job, SHIFT};
 use crate::result::Render;
 use crate::terminal::Terminal;
@@ -52,7 +52,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     // Write the picture and its maps.
     let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));
     let mut files = maps(&drawing, Some(&paths[1]), Some(&paths[2]));
-    files.push((&paths[0], Format::Png.encode(&drawing.picture)));
+    files.push((&paths[0], PictureFormat::Png.encode(&drawing.picture)));
     files::write_all(&files)?;
     let [picture, heat, error] = paths.map(|path| path.display().to_string());
     let pictures = format!(

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::arguments::ExtensionArguments;
 use crate::failure::{Exit, Failure};
 use crate::files;
-use crate::files::program::{Loaded, ProgramFile, load_any};
+use crate::files::program::{LoadedFile, ProgramFile, load_any};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -35,8 +35,8 @@ pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal)
     files::check_spared(arguments.output.as_deref(), [&arguments.file]).map_err(Failure::usage)?;
     let isa = arguments.extensions.isa()?;
     let program = match load_any(&arguments.file)? {
-        Loaded::Program(program) => program,
-        Loaded::Other(octets) => ProgramFile::Binary.decode(&arguments.file, octets)?,
+        LoadedFile::Program(program) => program,
+        LoadedFile::Other(octets) => ProgramFile::Binary.decode(&arguments.file, octets)?,
     };
     let text = asm::disassemble_program(&program, &isa);
     match &arguments.output {

@@ -19,7 +19,7 @@ Examples:
 
 /// Forms of the manual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Form {
+enum ManualForm {
     /// The instruction set and the assembler, as Markdown.
     Markdown,
     /// The same as one HTML page.
@@ -34,7 +34,7 @@ enum Form {
 pub struct ManualArguments {
     /// What to write.
     #[arg(long = "as", value_name = "FORM", value_enum, default_value = "markdown")]
-    form: Form,
+    form: ManualForm,
     #[command(flatten)]
     extensions: ExtensionArguments,
     /// File to write instead of standard output.
@@ -46,9 +46,9 @@ pub struct ManualArguments {
 pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let isa = arguments.extensions.isa()?;
     let octets = match arguments.form {
-        Form::Markdown => manual::markdown(&isa).into_bytes(),
-        Form::Html => manual::html(&isa).into_bytes(),
-        Form::Man => man_page().into_bytes(),
+        ManualForm::Markdown => manual::markdown(&isa).into_bytes(),
+        ManualForm::Html => manual::html(&isa).into_bytes(),
+        ManualForm::Man => man_page().into_bytes(),
     };
     match &arguments.output {
         Some(path) => files::write(path, &octets)?,

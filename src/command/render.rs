@@ -8,7 +8,7 @@ use clap::Args;
 use crate::arguments::JobArguments;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::{Exit, Failure};
-use crate::files::picture::Format;
+use crate::files::picture::PictureFormat;
 use crate::files::{self, map};
 use crate::job::{Job, result_name};
 use crate::result::{Host, Render, loss_table};
@@ -59,7 +59,7 @@ pub struct RenderArguments {
 
 fn picture(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
-    Format::of(&path).map(|_| path)
+    PictureFormat::of(&path).map(|_| path)
 }
 
 /// Draws, writes and prints.
@@ -118,8 +118,8 @@ pub(super) fn maps<'p>(drawing: &Drawing, heat: Option<&'p Path>, error: Option<
     heat.into_iter().chain(error).collect()
 }
 
-fn format(path: &Path) -> Format {
-    Format::of(path).expect("the parser lets only such names pass")
+fn format(path: &Path) -> PictureFormat {
+    PictureFormat::of(path).expect("the parser lets only such names pass")
 }
 
 fn text(result: &Render, drawing: &Drawing) -> String {

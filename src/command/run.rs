@@ -15,7 +15,7 @@ use super::run_arguments::{Dump, RegisterValue, memory_file, memory_size};
 use super::run_result::RunResult;
 use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
-use crate::files::program::Loaded;
+use crate::files::program::LoadedFile;
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -120,8 +120,8 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
 fn program(arguments: &RunArguments, isa: &Isa, terminal: &Terminal) -> Result<Program, Failure> {
     let RunArguments { file, source, .. } = arguments;
     let program = match files::program::load_any(file)? {
-        Loaded::Program(program) => program,
-        Loaded::Other(octets) => {
+        LoadedFile::Program(program) => program,
+        LoadedFile::Other(octets) => {
             return assemble::assembled(&files::source_of(file, octets)?, source, isa, terminal);
         }
     };

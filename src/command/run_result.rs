@@ -15,7 +15,7 @@ use serde::{Serialize, Serializer};
 use super::run_arguments::Dump;
 use crate::failure::Failure;
 use crate::numeral::{count, grouped};
-use crate::result::{ByClass, Loss, Region, hexadecimal, loss_table, regions};
+use crate::result::{ByClass, Loss, RegionCounts, hexadecimal, loss_table, regions};
 use crate::summary;
 use crate::table::{row, table};
 
@@ -47,9 +47,9 @@ pub struct RunResult {
     /// Registers at the end: those that are not zero, or all when they were asked for.
     pub registers: RegisterValues,
     /// Functions.
-    pub functions: Vec<Region>,
+    pub functions: Vec<RegionCounts>,
     /// Regions inside functions.
-    pub regions: Vec<Region>,
+    pub regions: Vec<RegionCounts>,
     /// Instructions of whose results some lost bits or did not fit; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flags: Option<Vec<Loss>>,

@@ -7,8 +7,8 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
-use super::accuracy::{self, Results};
-use super::arithmetic::{self, Checked};
+use super::accuracy::{self, AccuracyResults};
+use super::arithmetic::{self, CheckedFile};
 use super::bench::{self, Benches};
 use super::run_result::{self, RunResult};
 use super::stress::{self, Catalogue};
@@ -53,7 +53,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: schema_of::<Profiles> },
     Known { name: skips::SCHEMA, command: "lancer skips --json", make: schema_of::<SkipsResult> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
-    Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<Results> },
+    Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<AccuracyResults> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
     Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<ExtensionResult> },
     Known {
@@ -62,7 +62,7 @@ const SCHEMAS: &[Known] = &[
         make: schema_of::<extension::SuggestionResult>,
     },
     Known { name: bench::SCHEMA, command: "lancer bench --json", make: schema_of::<Benches> },
-    Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<Checked> },
+    Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<CheckedFile> },
 ];
 
 fn schema_of<T: JsonSchema>() -> Schema {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::failure::{Exit, Failure};
 use crate::numeral::grouped;
-use crate::stress::{self, CASES, Case, CatalogueSize, Tally};
+use crate::stress::{self, CASES, Case, CatalogueSize, TrialTally};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, result};
@@ -79,23 +79,23 @@ fn size() -> impl TypedValueParser<Value = CatalogueSize> {
 /// Progress of a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct State {
+struct RunProgress {
     schema: String,
     size: CatalogueSize,
-    cases: BTreeMap<String, Done>,
+    cases: BTreeMap<String, CaseProgress>,
 }
 
 /// Progress of a case: its first trials are done.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Done {
+struct CaseProgress {
     seed: u64,
-    tally: Tally,
+    tally: TrialTally,
 }
 
 /// Outcome of a case.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-struct Verdict {
+struct CaseVerdict {
     /// Name of the case.
     name: &'static str,
     /// Description of the trials.
@@ -138,7 +138,7 @@ pub(super) struct Catalogue {
     /// True where all values are allowed.
     passes: bool,
     /// The cases in the order of the catalogue, or of the command line.
-    cases: Vec<Verdict>,
+    cases: Vec<CaseVerdict>,
 }
 
 /// Tries the cases.
@@ -156,7 +156,7 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
     let file = arguments.resume.as_deref();
     let mut state = match file.filter(|path| path.exists()) {
         Some(path) => read(path, size)?,
-        None => State { schema: STATE.to_owned(), size, cases: BTreeMap::new() },
+        None => RunProgress { schema: STATE.to_owned(), size, cases: BTreeMap::new() },
     };
     if let Some(path) = file {
         files::check_target(path)?;
@@ -182,12 +182,12 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
 fn try_case(
     case: &Case,
     size: CatalogueSize,
-    state: &mut State,
+    state: &mut RunProgress,
     file: Option<&Path>,
     terminal: &Terminal,
-) -> Result<Tally, Failure> {
+) -> Result<TrialTally, Failure> {
     let trials = case.trials(size);
-    let done = Done { seed: case.seed, tally: Tally::default() };
+    let done = CaseProgress { seed: case.seed, tally: TrialTally::default() };
     let mut done = state.cases.remove(case.name).unwrap_or(done);
     let bar = terminal.progress(case.name, trials);
     bar.set_position(done.tally.trials);
@@ -208,13 +208,13 @@ fn try_case(
 }
 
 /// The state that a former run has left.
-fn read(path: &Path, size: CatalogueSize) -> Result<State, Report> {
+fn read(path: &Path, size: CatalogueSize) -> Result<RunProgress, Report> {
     let shown = path.display();
     let source = files::source(path)?;
-    let state: State = serde_json::from_str(&source.text)
+    let state: RunProgress = serde_json::from_str(&source.text)
         .map_err(|error| Diagnostic::error(format!("{shown} is no state of `lancer stress`: {error}")))?;
     // A state of other seeds or sizes would be added to trials that are not the same.
-    let fits = |(name, done): (&String, &Done)| {
+    let fits = |(name, done): (&String, &CaseProgress)| {
         stress::find(name).is_ok_and(|case| case.seed == done.seed && done.tally.trials <= case.trials(size))
     };
     if state.schema == STATE && state.size == size && state.cases.iter().all(fits) {
@@ -224,8 +224,8 @@ fn read(path: &Path, size: CatalogueSize) -> Result<State, Report> {
     Err(message.hint("choose the size that it was made with, or another file").into())
 }
 
-fn verdict(case: &'static Case, tally: Tally) -> Verdict {
-    Verdict {
+fn verdict(case: &'static Case, tally: TrialTally) -> CaseVerdict {
+    CaseVerdict {
         name: case.name,
         about: case.about,
         quantity: case.quantity,
@@ -247,8 +247,8 @@ fn number(value: f64) -> String {
     }
 }
 
-fn text(verdict: &Verdict) -> String {
-    let Verdict { name, quantity, trials, seed, failures, value, threshold, passes, example, .. } = verdict;
+fn text(verdict: &CaseVerdict) -> String {
+    let CaseVerdict { name, quantity, trials, seed, failures, value, threshold, passes, example, .. } = verdict;
     let word = if *passes { "ok" } else { "FAIL" };
     let mut text = format!("{word:<4} {name:<17} {:>11} trials, seed {seed:>2}: {}", grouped(*trials), number(*value));
     text += &format!(" {quantity}, at most {} allowed\n", number(*threshold));

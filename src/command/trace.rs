@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use emu::machine::trace::Window;
-use emu::machine::{Config, Options, RunOutcome};
+use emu::machine::{Config, RunOptions, RunOutcome};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
 
@@ -16,7 +16,7 @@ use crate::load::{ANNEX, Load};
 use crate::numeral::{grouped, percent};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
-use crate::trace::{Scene, perfetto, wave};
+use crate::trace::{TracedScene, perfetto, wave};
 use crate::{files, machine as machines};
 
 const EXAMPLES: &str = "\
@@ -97,7 +97,7 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
         let message = format!("the frame is over after {} clocks", grouped(frame.clocks.0));
         return Err(Failure::usage(Diagnostic::error(message).hint("choose earlier clocks")));
     }
-    let scene = Scene::new(&name, &load, config.clock_hz, &frame);
+    let scene = TracedScene::new(&name, &load, config.clock_hz, &frame);
     let scene = scene.ok_or_else(|| Diagnostic::error("the machine has watched nothing"))?;
     let [fst, perfetto_target] = &targets;
     let mut files = Vec::new();
@@ -133,7 +133,8 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
 fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<RunOutcome, Failure> {
     let crop = load.build.crop;
     let bar = terminal.progress("pixels", u64::from(crop.width) * u64::from(crop.height));
-    let setup = load.setup(config, Options { has_items: true, window, engine: load.engine, ..Options::default() });
+    let setup =
+        load.setup(config, RunOptions { has_items: true, window, engine: load.engine, ..RunOptions::default() });
     let frame = emu::run(&setup, load.memory.clone(), &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     Ok(frame?)
@@ -164,7 +165,7 @@ fn pixel(
     Ok(Window { start: item.start, end })
 }
 
-fn text<'a>(scene: &Scene, frame: &RunOutcome, paths: impl Iterator<Item = &'a Path>) -> String {
+fn text<'a>(scene: &TracedScene, frame: &RunOutcome, paths: impl Iterator<Item = &'a Path>) -> String {
     let window = scene.trace.window;
     let end = window.end.min(frame.clocks);
     let length = (end - window.start).0;

@@ -17,7 +17,7 @@ const COLOURS: [RGBColor; 6] = [
 ];
 const GREY: RGBColor = RGBColor(110, 110, 110);
 
-type Outcome = Result<(), Box<dyn std::error::Error>>;
+type ChartResult = Result<(), Box<dyn std::error::Error>>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// The chart as an SVG file.
@@ -31,7 +31,7 @@ pub fn svg(scaling: &CoresResult) -> Result<String, Report> {
     Ok(text)
 }
 
-fn draw(scaling: &CoresResult, root: Area) -> Outcome {
+fn draw(scaling: &CoresResult, root: Area) -> ChartResult {
     root.fill(&WHITE)?;
     let (above, below) = root.split_vertically(SIZE.1 * 2 / 3);
     speed_up(scaling, &above)?;
@@ -46,7 +46,7 @@ fn most_cores(scaling: &CoresResult) -> f64 {
 }
 
 /// Measured speed-ups as lines with dots, the closed form dashed, the queueing estimate dotted, knees as vertical lines.
-fn speed_up(scaling: &CoresResult, area: &Area) -> Outcome {
+fn speed_up(scaling: &CoresResult, area: &Area) -> ChartResult {
     // Scale the axes to all machines, with room for the legend above.
     let widest = most_cores(scaling) + 0.5;
     let points = scaling.machines.iter().flat_map(|curve| &curve.points);
@@ -110,7 +110,7 @@ fn name(curve: &Curve) -> String {
     format!("{}, {} (dashed: without waiting, dotted: queueing)", curve.machine, curve.arbiter)
 }
 
-fn utilisation(scaling: &CoresResult, area: &Area) -> Outcome {
+fn utilisation(scaling: &CoresResult, area: &Area) -> ChartResult {
     let mut chart = ChartBuilder::on(area)
         .caption("bus busy, per cent of the frame", ("sans-serif", 16))
         .margin(12)

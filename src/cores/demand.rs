@@ -5,18 +5,18 @@ use serde::Serialize;
 
 /// Demand of a pixel with nobody else on the bus, in clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Demand {
+pub struct PixelDemand {
     /// Clocks of computing; C.
     pub computing: f64,
     /// Clocks of the bus, the main processor's transfers included; M.
     pub transfer: f64,
 }
 
-impl Demand {
+impl PixelDemand {
     /// The report's, as it is printed. Report 6.1.
-    pub fn report() -> Demand {
+    pub fn report() -> PixelDemand {
         let printed = |id| kernels::annex::printed(id).expect("6.1 prints it");
-        Demand { computing: printed("pixel_operations"), transfer: printed("memory_clocks") }
+        PixelDemand { computing: printed("pixel_operations"), transfer: printed("memory_clocks") }
     }
 
     /// C / M: the report's number of cores, which takes it that a core computes while its own transfer goes on. `None`
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn the_reports_figures() {
-        let demand = Demand::report();
+        let demand = PixelDemand::report();
         assert_eq!(format!("{:.2} {:.2}", demand.quotient().unwrap(), demand.saturation().unwrap()), "4.09 5.09");
         // 252,600 clocks with one core, 0.6315 ms at 100 MHz with four.
         assert_eq!([demand.bound(1), demand.bound(4), demand.bound(6)], [252_600.0, 63_150.0, 49_600.0]);
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn a_queue_makes_it_longer_and_vanishes_at_both_ends() {
-        let demand = Demand::report();
+        let demand = PixelDemand::report();
         assert_eq!(demand.queueing(1), demand.bound(1));
         for cores in 2..20 {
             assert!(demand.queueing(cores) > demand.bound(cores), "{cores}");
@@ -74,12 +74,12 @@ mod tests {
         }
         assert!((demand.queueing(40) / demand.transfer - 1.0).abs() < 1e-9);
         // Two cores with C = M = 1: X = N / (C + R), R = M (1 + Q), Q(1) = 1/2, so R = 1.5 and X = 2 / 2.5.
-        assert_eq!(Demand { computing: 1.0, transfer: 1.0 }.queueing(2), 1.25);
+        assert_eq!(PixelDemand { computing: 1.0, transfer: 1.0 }.queueing(2), 1.25);
     }
 
     #[test]
     fn without_transfers_nothing_fills_the_bus() {
-        let demand = Demand { computing: 10.0, transfer: 0.0 };
+        let demand = PixelDemand { computing: 10.0, transfer: 0.0 };
         assert_eq!((demand.quotient(), demand.saturation()), (None, None));
         assert_eq!((demand.bound(5), demand.queueing(5)), (2.0, 2.0));
     }

@@ -7,19 +7,19 @@ mod demand;
 #[cfg(feature = "cli")]
 mod text;
 
-use emu::machine::{self, Config, Options, RunOutcome};
+use emu::machine::{self, Config, RunOptions, RunOutcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(feature = "cli")]
 pub use chart::svg;
-pub use demand::Demand;
+pub use demand::PixelDemand;
 #[cfg(feature = "cli")]
 pub use text::{csv, text};
 
 use crate::failure::Failure;
 use crate::load::Load;
-use crate::result::Formats;
+use crate::result::FormatTable;
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
@@ -48,11 +48,11 @@ pub struct Curve {
     /// Name of its arbiter.
     pub arbiter: String,
     /// Bits of a word and fraction bits of each quantity; null for `annex`, whose pixels only take time.
-    pub formats: Option<Formats>,
+    pub formats: Option<FormatTable>,
     /// Clock rate in hertz.
     pub clock_hz: u64,
     /// Demand of a pixel with one core: of the core, and of the bus, messages and the main processor's share included.
-    pub demand: Demand,
+    pub demand: PixelDemand,
     /// C / M.
     pub quotient: Option<f64>,
     /// (C + M) / M.
@@ -131,19 +131,19 @@ pub fn measure(
     let with = |config: &Config| cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>();
     let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
     let Some(first) = configs.first() else { return Err(no_machine()) };
-    let setup = load.setup(first, Options { engine: load.engine, ..Options::default() });
+    let setup = load.setup(first, RunOptions { engine: load.engine, ..RunOptions::default() });
     let frames = emu::run_all(&setup, &configs, &load.memory, progress);
     let frames = frames.into_iter().collect::<Result<Vec<RunOutcome>, _>>()?;
     // Frames come back in the order of the configurations: machine by machine, fewest cores first.
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
         let points: Vec<(u32, &RunOutcome)> = cores.iter().copied().zip(frames).collect();
-        Curve { formats: load.formats.as_ref().map(Formats::from), ..curve(name, config, &points) }
+        Curve { formats: load.formats.as_ref().map(FormatTable::from), ..curve(name, config, &points) }
     });
     Ok(CoresResult {
         schema: SCHEMA,
         scene: scene.to_owned(),
         pixels: frames[0].item_count,
-        report_quotient: Demand::report().quotient().unwrap_or_default(),
+        report_quotient: PixelDemand::report().quotient().unwrap_or_default(),
         machines: curves.collect(),
     })
 }
@@ -161,8 +161,10 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     let (_, alone) = frames[0];
     let pixels = alone.item_count.max(1) as f64;
     // Computing and transfers of a pixel, as one core shows them.
-    let demand =
-        Demand { computing: alone.processors[0].busy.0 as f64 / pixels, transfer: alone.bus.busy.0 as f64 / pixels };
+    let demand = PixelDemand {
+        computing: alone.processors[0].busy.0 as f64 / pixels,
+        transfer: alone.bus.busy.0 as f64 / pixels,
+    };
     let mut points: Vec<Point> =
         frames.iter().map(|&(cores, frame)| point(cores, frame, alone, &demand, config.clock_hz)).collect();
     let saturation = saturation(&points);
@@ -182,7 +184,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     }
 }
 
-fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &Demand, clock_hz: u64) -> Point {
+fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDemand, clock_hz: u64) -> Point {
     let (workers, main) = frame.processors.split_at(cores as usize);
     let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
     let whole = frame.clocks.0 * u64::from(cores);

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::Job;
-use crate::result::{ByClass, Formats, Render};
+use crate::result::{ByClass, FormatTable, Render};
 
 /// Version of [`ExtensionResult`].
 pub const SCHEMA: &str = "lancer-extension-1";
@@ -30,7 +30,7 @@ pub struct VariantResult {
     /// Words of the cores' program and the main processor's.
     pub words: u64,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: Formats,
+    pub formats: FormatTable,
     /// Difference from double precision.
     pub error: Option<PictureError>,
     /// SHA-256 of the picture.
@@ -94,7 +94,7 @@ fn length(word: u32, isa: &Isa) -> u64 {
     let Some(instruction) = isa.decode(word) else { return 1 };
     match isa.body(instruction.op) {
         Some(body) if isa.is_expanded(instruction.op) => {
-            body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Execute { .. })).count() as u64
+            body.steps.iter().filter(|step| matches!(step.act, isa::extension::BodyAct::Execute { .. })).count() as u64
         }
         _ => 1,
     }

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use asm::extension::Loaded;
-use isa::extension::{Act, Body, Summary};
+use asm::extension::LoadedInstruction;
+use isa::extension::{Body, BodyAct, Summary};
 use isa::{Class, Counts, Isa};
 use messages::Diagnostic;
 
 /// Likely mistakes in an instruction that was loaded, and what should be known before one is built.
-pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
+pub fn findings(isa: &Isa, loaded: &LoadedInstruction) -> Vec<Diagnostic> {
     let row = isa.definition(loaded.op);
     let warning = |message: String, label: &str| Diagnostic::warning(message).at(loaded.row.clone(), label);
     let mut found = Vec::new();
@@ -40,7 +40,7 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
     }
     if let Some(step) = summary.reached.iter().position(|is_reached| !is_reached) {
         // A fused outcome that the assembler added is no line of the user's.
-        if matches!(body.steps[step].act, Act::Execute { .. }) {
+        if matches!(body.steps[step].act, BodyAct::Execute { .. }) {
             found.push(at(step, format!("a line of the body of `{}` is never reached", row.name), "not reached"));
         }
     }
@@ -61,7 +61,7 @@ pub fn findings(isa: &Isa, loaded: &Loaded) -> Vec<Diagnostic> {
 }
 
 /// Exits that declare less than the body spends at least.
-fn cheap(isa: &Isa, loaded: &Loaded, summary: &Summary, body: &Body) -> Vec<Diagnostic> {
+fn cheap(isa: &Isa, loaded: &LoadedInstruction, summary: &Summary, body: &Body) -> Vec<Diagnostic> {
     let row = isa.definition(loaded.op);
     if row.outcomes.iter().any(|outcome| outcome.is_body) {
         return Vec::new();
@@ -94,10 +94,10 @@ fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     while let Some(step) = open.pop() {
         let before = spent[step].expect("what is open has been reached");
         let cost = match body.steps[step].act {
-            Act::Execute { instruction, .. } => {
+            BodyAct::Execute { instruction, .. } => {
                 isa.definition(instruction.op).outcomes.iter().map(|outcome| outcome.cost).reduce(lower)
             }
-            Act::End { .. } => None,
+            BodyAct::End { .. } => None,
         };
         let after = before + cost.unwrap_or(Counts::ZERO);
         for next in body.successors(step, isa) {
@@ -110,7 +110,7 @@ fn least(isa: &Isa, summary: &Summary, body: &Body) -> BTreeMap<usize, Counts> {
     }
     let mut least: BTreeMap<usize, Counts> = BTreeMap::new();
     for (step, is_reached) in summary.reached.iter().enumerate() {
-        let (Act::End { outcome, .. }, true, Some(spent)) = (body.steps[step].act, *is_reached, spent[step]) else {
+        let (BodyAct::End { outcome, .. }, true, Some(spent)) = (body.steps[step].act, *is_reached, spent[step]) else {
             continue;
         };
         let entry = least.entry(outcome.into()).or_insert(spent);

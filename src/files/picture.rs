@@ -20,7 +20,7 @@ pub struct Pixels {
 
 /// A picture file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum PictureFormat {
     /// Portable network graphics.
     Png,
     /// Binary portable pixel map, `P6`.
@@ -29,17 +29,17 @@ pub enum Format {
     Pfm,
 }
 
-impl Format {
+impl PictureFormat {
     /// The format that a file's name asks for.
     ///
     /// # Errors
     /// Another extension, or none.
-    pub fn of(path: &Path) -> Result<Format, String> {
+    pub fn of(path: &Path) -> Result<PictureFormat, String> {
         let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
-            Some("png") => Ok(Format::Png),
-            Some("ppm") => Ok(Format::Ppm),
-            Some("pfm") => Ok(Format::Pfm),
+            Some("png") => Ok(PictureFormat::Png),
+            Some("ppm") => Ok(PictureFormat::Ppm),
+            Some("pfm") => Ok(PictureFormat::Pfm),
             _ => Err(format!("`{}` ends in none of .png, .ppm, .pfm", path.display())),
         }
     }
@@ -47,9 +47,9 @@ impl Format {
     /// The octets of a file in this format.
     pub fn encode(self, picture: &Picture) -> Vec<u8> {
         match self {
-            Format::Png => png(&displayed(picture)),
-            Format::Ppm => ppm(&displayed(picture)),
-            Format::Pfm => pfm(picture),
+            PictureFormat::Png => png(&displayed(picture)),
+            PictureFormat::Ppm => ppm(&displayed(picture)),
+            PictureFormat::Pfm => pfm(picture),
         }
     }
 
@@ -59,9 +59,9 @@ impl Format {
     /// What is wrong in the file, in one line, and a PFM, whose components are no octets.
     pub fn decode(self, octets: &[u8]) -> Result<Pixels, String> {
         let format = match self {
-            Format::Png => ImageFormat::Png,
-            Format::Ppm => ImageFormat::Pnm,
-            Format::Pfm => return Err("a PFM holds light, not the octets that a screen shows".into()),
+            PictureFormat::Png => ImageFormat::Png,
+            PictureFormat::Ppm => ImageFormat::Pnm,
+            PictureFormat::Pfm => return Err("a PFM holds light, not the octets that a screen shows".into()),
         };
         let image = ImageReader::with_format(Cursor::new(octets), format).decode();
         let image = image.map_err(|error| error.to_string())?.into_rgb8();
@@ -72,9 +72,9 @@ impl Format {
     /// The octets of a file that holds these pixels as they are, and in PFM as fractions of 255.
     pub fn encode_pixels(self, pixels: &Pixels) -> Vec<u8> {
         match self {
-            Format::Png => png(pixels),
-            Format::Ppm => ppm(pixels),
-            Format::Pfm => pfm(&Picture {
+            PictureFormat::Png => png(pixels),
+            PictureFormat::Ppm => ppm(pixels),
+            PictureFormat::Pfm => pfm(&Picture {
                 size: pixels.size,
                 pixels: pixels.colours.iter().map(|colour| colour.map(|x| f64::from(x) / 255.0)).collect(),
             }),
@@ -142,13 +142,13 @@ mod tests {
 
     #[test]
     fn names_choose_the_format() {
-        assert_eq!(Format::of(Path::new("a/b.PNG")), Ok(Format::Png));
+        assert_eq!(PictureFormat::of(Path::new("a/b.PNG")), Ok(PictureFormat::Png));
         assert_eq!(
-            (Format::of(Path::new("b.ppm")), Format::of(Path::new("b.pfm"))),
-            (Ok(Format::Ppm), Ok(Format::Pfm))
+            (PictureFormat::of(Path::new("b.ppm")), PictureFormat::of(Path::new("b.pfm"))),
+            (Ok(PictureFormat::Ppm), Ok(PictureFormat::Pfm))
         );
         for name in ["b", "b.jpg", "png", ".png"] {
-            assert!(Format::of(Path::new(name)).is_err(), "{name}");
+            assert!(PictureFormat::of(Path::new(name)).is_err(), "{name}");
         }
     }
 
@@ -162,13 +162,13 @@ mod tests {
     #[test]
     fn every_format_has_its_header_and_its_rows() {
         let expected = Pixels { size: (1, 2), colours: vec![[0, 188, 255], [0, 137, 255]] };
-        let png = Format::Png.encode(&picture());
-        assert_eq!(Format::Png.decode(&png), Ok(expected.clone()));
+        let png = PictureFormat::Png.encode(&picture());
+        assert_eq!(PictureFormat::Png.decode(&png), Ok(expected.clone()));
         assert!(png.windows(4).any(|name| name == b"sRGB"));
-        assert_eq!(Format::Ppm.decode(&Format::Ppm.encode(&picture())), Ok(expected));
-        assert!(Format::Png.decode(&png[..40]).is_err() && Format::Pfm.decode(&png).is_err());
-        assert_eq!(Format::Ppm.encode(&picture()), b"P6\n1 2\n255\n\x00\xbc\xff\x00\x89\xff");
-        let pfm = Format::Pfm.encode(&picture());
+        assert_eq!(PictureFormat::Ppm.decode(&PictureFormat::Ppm.encode(&picture())), Ok(expected));
+        assert!(PictureFormat::Png.decode(&png[..40]).is_err() && PictureFormat::Pfm.decode(&png).is_err());
+        assert_eq!(PictureFormat::Ppm.encode(&picture()), b"P6\n1 2\n255\n\x00\xbc\xff\x00\x89\xff");
+        let pfm = PictureFormat::Pfm.encode(&picture());
         let rows: Vec<f32> =
             pfm[pfm.len() - 24..].chunks_exact(4).map(|x| f32::from_le_bytes(x.try_into().unwrap())).collect();
         assert!(pfm.starts_with(b"PF\n1 2\n-1.0\n"));

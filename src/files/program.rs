@@ -91,7 +91,7 @@ impl ProgramFile {
 }
 
 /// A file that may be a program or something else.
-pub enum Loaded {
+pub enum LoadedFile {
     /// The program of a file that is named or begins like one.
     Program(Program),
     /// The octets of any other, such as a source.
@@ -102,14 +102,14 @@ pub enum Loaded {
 ///
 /// # Errors
 /// See [`ProgramFile::load`].
-pub fn load_any(path: &Path) -> Result<Loaded, Report> {
+pub fn load_any(path: &Path) -> Result<LoadedFile, Report> {
     if let Ok(format) = ProgramFile::of(path) {
-        return format.load(path).map(Loaded::Program);
+        return format.load(path).map(LoadedFile::Program);
     }
     let octets = read(path)?;
     match octets.starts_with(object::MAGIC) {
-        true => ProgramFile::Object.decode(path, octets).map(Loaded::Program),
-        false => Ok(Loaded::Other(octets)),
+        true => ProgramFile::Object.decode(path, octets).map(LoadedFile::Program),
+        false => Ok(LoadedFile::Other(octets)),
     }
 }
 

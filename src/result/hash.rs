@@ -3,7 +3,7 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::{BusResult, ByClass, Main, ProcessorResult, Region, Render, hexadecimal};
+use super::{BusResult, ByClass, Main, ProcessorResult, RegionCounts, Render, hexadecimal};
 
 /// SHA-256 over width and height (unsigned, 32 bits, little-endian) and the three raw words of each pixel (signed, 32
 /// bits, little-endian), row 0 first; in hexadecimal.
@@ -29,8 +29,8 @@ pub fn run_hash(result: &Render) -> String {
         octets: u64,
         clocks: u64,
         cores: &'a [ProcessorResult],
-        functions: &'a [Region],
-        regions: &'a [Region],
+        functions: &'a [RegionCounts],
+        regions: &'a [RegionCounts],
         main: &'a Main,
         bus: &'a BusResult,
     }

@@ -89,7 +89,7 @@ pub struct Render {
     /// Triangles of the scene.
     pub triangles: usize,
     /// Rays by kind.
-    pub rays: Rays,
+    pub rays: RaysByKind,
     /// Pixels that were interpolated and have no camera ray.
     pub interpolated: u64,
     /// Instructions of all cores.
@@ -118,15 +118,15 @@ pub struct Render {
     /// Clocks of each core: computing, waiting, idle.
     pub cores: Vec<ProcessorResult>,
     /// Functions of the cores' program.
-    pub functions: Vec<Region>,
+    pub functions: Vec<RegionCounts>,
     /// Regions inside functions of the cores' program; their exclusive counts are not in the function's.
-    pub regions: Vec<Region>,
+    pub regions: Vec<RegionCounts>,
     /// The main processor.
     pub main: Main,
     /// The bus.
     pub bus: BusResult,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: Formats,
+    pub formats: FormatTable,
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flags: Option<Vec<Loss>>,
@@ -143,7 +143,7 @@ pub struct Render {
 
 /// Rays by kind, counted from calls of the kernels' functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct Rays {
+pub struct RaysByKind {
     /// One a pixel that is not interpolated.
     pub camera: u64,
     /// Reflected ones, total reflection included.
@@ -175,7 +175,7 @@ pub struct ProcessorResult {
 
 /// A function or region.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Region {
+pub struct RegionCounts {
     /// Name of the region.
     pub name: String,
     /// Number of calls, or of entries.
@@ -201,7 +201,7 @@ pub struct Main {
     /// Share of the frame in which it was not idle.
     pub load: f64,
     /// Functions of its program.
-    pub functions: Vec<Region>,
+    pub functions: Vec<RegionCounts>,
 }
 
 /// The bus.
@@ -224,7 +224,7 @@ pub struct BusResult {
     /// Longest wait from a request to its grant, in clocks.
     pub longest_wait: u64,
     /// Octets by kind of data; `messages` are the messages.
-    pub kinds: Kinds,
+    pub kinds: KindOctets,
     /// The cores' caches together.
     pub cache: CacheResult,
 }
@@ -244,9 +244,9 @@ pub struct CacheResult {
 
 /// Octets by kind of data, in the order of the addresses.
 #[derive(Clone, Debug, JsonSchema)]
-pub struct Kinds(#[schemars(with = "BTreeMap<String, u64>")] pub Vec<(String, u64)>);
+pub struct KindOctets(#[schemars(with = "BTreeMap<String, u64>")] pub Vec<(String, u64)>);
 
-impl Serialize for Kinds {
+impl Serialize for KindOctets {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, octets)| (name, octets)))
     }
@@ -254,15 +254,15 @@ impl Serialize for Kinds {
 
 /// Bits of a word and fraction bits of the quantities.
 #[derive(Clone, Debug, JsonSchema)]
-pub struct Formats(#[schemars(with = "BTreeMap<String, i32>")] pub Vec<(&'static str, i32)>);
+pub struct FormatTable(#[schemars(with = "BTreeMap<String, i32>")] pub Vec<(&'static str, i32)>);
 
-impl From<&cadrage::Formats> for Formats {
-    fn from(formats: &cadrage::Formats) -> Formats {
-        Formats(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect())
+impl From<&cadrage::Formats> for FormatTable {
+    fn from(formats: &cadrage::Formats) -> FormatTable {
+        FormatTable(std::iter::once(("word", formats.word as i32)).chain(formats.entries()).collect())
     }
 }
 
-impl Serialize for Formats {
+impl Serialize for FormatTable {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().copied())
     }
@@ -317,7 +317,7 @@ impl Render {
             triangles: job.scene.triangles.len(),
             // Pixels and rays: camera rays are the pixels that were not interpolated.
             interpolated: drawing.interpolated(),
-            rays: Rays::new(drawing.words.len() as u64 - drawing.interpolated(), frame.profile.as_ref()),
+            rays: RaysByKind::new(drawing.words.len() as u64 - drawing.interpolated(), frame.profile.as_ref()),
             instructions: cores.iter().map(|core| core.instructions).sum(),
             counts: ByClass(counts),
             octets: cores.iter().map(|core| core.octets.0).sum(),
@@ -350,7 +350,7 @@ impl Render {
                 transfers: frame.bus.transfers,
                 bursts: frame.bus.bursts,
                 longest_wait: frame.bus.longest_wait.0,
-                kinds: Kinds(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
+                kinds: KindOctets(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
                 cache: CacheResult {
                     hits: frame.cache.hits,
                     misses: frame.cache.misses,
@@ -383,9 +383,9 @@ pub fn json(result: &impl Serialize) -> String {
     text
 }
 
-impl Rays {
+impl RaysByKind {
     /// The rays of a picture of `pixels` pixels. Each secondary and each shadow ray calls `own_packet` once.
-    fn new(pixels: u64, profile: Option<&Profile>) -> Rays {
+    fn new(pixels: u64, profile: Option<&Profile>) -> RaysByKind {
         let calls = |function: Function| {
             let regions = profile.map_or(&[][..], |profile| &profile.regions);
             let named = |region: &&RegionProfile| region.is_function && region.name == function.name();
@@ -394,7 +394,7 @@ impl Rays {
         // Each ray but a camera ray starts in its own packet; those that are neither reflected nor refracted are shadow rays.
         let (reflected, refracted) = (calls(Function::Reflect), calls(Function::Refract));
         let shadow = calls(Function::OwnPacket).saturating_sub(reflected + refracted);
-        Rays { camera: pixels, reflected, refracted, shadow }
+        RaysByKind { camera: pixels, reflected, refracted, shadow }
     }
 }
 
@@ -416,11 +416,11 @@ impl ProcessorResult {
 }
 
 /// The functions of a profile, or the regions that are none, in the order of the program.
-pub fn regions(profile: Option<&Profile>, is_function: bool) -> Vec<Region> {
+pub fn regions(profile: Option<&Profile>, is_function: bool) -> Vec<RegionCounts> {
     let regions = profile.map_or(&[][..], |profile| &profile.regions);
     let chosen = regions.iter().filter(|region| region.is_function == is_function);
     chosen
-        .map(|region| Region {
+        .map(|region| RegionCounts {
             name: region.name.clone(),
             calls: region.calls,
             instructions: region.instructions,

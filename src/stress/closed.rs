@@ -9,7 +9,7 @@ use kernels::KernelSet;
 
 use super::mesh::closed;
 use super::random::Random;
-use super::tally::{Tally, tally};
+use super::tally::{TrialTally, tally};
 use super::target::{Target, through};
 
 /// Of so many rays one is searched for in all triangles too.
@@ -19,7 +19,7 @@ static TARGETS: LazyLock<Vec<Target>> =
     LazyLock::new(|| closed().iter().map(|mesh| Target::new(mesh, KernelSet::Ray)).collect());
 
 /// Checks a ray for each trial, the meshes in turn.
-fn check(seed: u64, trials: Range<u64>, aim: impl Fn(&Target, &mut Random) -> Ray + Sync) -> Tally {
+fn check(seed: u64, trials: Range<u64>, aim: impl Fn(&Target, &mut Random) -> Ray + Sync) -> TrialTally {
     tally(trials, |trial| {
         let target = &TARGETS[(trial % TARGETS.len() as u64) as usize];
         let ray = aim(target, &mut Random::new(seed, trial));
@@ -28,7 +28,7 @@ fn check(seed: u64, trials: Range<u64>, aim: impl Fn(&Target, &mut Random) -> Ra
 }
 
 /// At vertices, at middles of edges and of triangles; in or across planes of the tree, now and then along an axis.
-pub fn closed_meshes(seed: u64, trials: Range<u64>) -> Tally {
+pub fn closed_meshes(seed: u64, trials: Range<u64>) -> TrialTally {
     check(seed, trials, |target, random| {
         let mut towards = point(target, random);
         let mut origin = start(random);
@@ -45,7 +45,7 @@ pub fn closed_meshes(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// In one or two planes that divide the tree, through edges and corners of its boxes.
-pub fn split_planes(seed: u64, trials: Range<u64>) -> Tally {
+pub fn split_planes(seed: u64, trials: Range<u64>) -> TrialTally {
     check(seed, trials, |target, random| {
         let mut towards = point(target, random);
         let mut origin = start(random);
@@ -64,7 +64,7 @@ pub fn split_planes(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// Along one axis, or at right angles to one, through vertices.
-pub fn zero_directions(seed: u64, trials: Range<u64>) -> Tally {
+pub fn zero_directions(seed: u64, trials: Range<u64>) -> TrialTally {
     check(seed, trials, |target, random| {
         let towards = point(target, random);
         let mut origin = start(random);

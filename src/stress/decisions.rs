@@ -7,11 +7,11 @@ use emu::semantics::RayRoom;
 use isa::number::ray::Ray;
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
-use kernels::twin::stage::Node;
+use kernels::twin::stage::StageNode;
 
-use super::mesh::{Corners, Mesh, cube, sphere};
+use super::mesh::{ClosedMesh, TriangleCorners, cube, sphere};
 use super::random::Random;
-use super::tally::{Tally, tally};
+use super::tally::{TrialTally, tally};
 use super::target::{Target, nearest_integer, through};
 
 /// Fraction bits of t when the machine is asked: 1 is where the ray was aimed.
@@ -28,7 +28,7 @@ fn dot(a: Exact, b: Exact) -> i128 {
 }
 
 /// The model: the volumes of the pyramids that the direction and the edges span, as the origin sees them. t as a fraction.
-fn model(ray: &Ray, corners: &Corners) -> Option<(i128, i128)> {
+fn model(ray: &Ray, corners: &TriangleCorners) -> Option<(i128, i128)> {
     // Move the origin to 0: coordinates then have 32 bits, products of three of them 96.
     let [a, b, c]: [Exact; 3] = corners.map(|v| std::array::from_fn(|k| i128::from(v[k]) - i128::from(ray.origin[k])));
     let direction = ray.direction.map(i128::from);
@@ -46,7 +46,7 @@ fn model(ray: &Ray, corners: &Corners) -> Option<(i128, i128)> {
 }
 
 /// True where the machine's row decides as the model does and rounds t as it should.
-fn check(ray: &Ray, corners: &Corners) -> Result<f64, String> {
+fn check(ray: &Ray, corners: &TriangleCorners) -> Result<f64, String> {
     let (t, _, _) = Nearest32.rtri([ray.origin, ray.direction], *corners, SHIFT as i32);
     let expected = model(ray, corners).map_or(i32::MAX, |(along, whole)| nearest_integer(along, whole, SHIFT));
     if t == expected { Ok(0.0) } else { Err(format!("{ray:?}, {corners:?}: t = {t}, exactly {expected}")) }
@@ -61,12 +61,12 @@ fn moved(point: Vector, by: Vector) -> Vector {
 }
 
 /// Rays that run within a few units of a triangle's plane.
-pub fn grazing(seed: u64, trials: Range<u64>) -> Tally {
+pub fn grazing(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let size = 1 << (4 + random.below(21));
         let place = random.point(1 << 28);
-        let corners: Corners = std::array::from_fn(|_| moved(place, random.point(size)));
+        let corners: TriangleCorners = std::array::from_fn(|_| moved(place, random.point(size)));
         let [a, b, c] = corners;
         let towards = between(between(a, b, random.unit()), c, random.unit());
         // The plane's points are rounded to the grid: the ray is off by a unit or so, and by as much more as it is moved.
@@ -78,7 +78,7 @@ pub fn grazing(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// Triangles up to a hundred million times as long as wide, met at their long sides.
-pub fn slivers(seed: u64, trials: Range<u64>) -> Tally {
+pub fn slivers(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let (a, b) = (random.point(1 << 28), random.point(1 << 28));
@@ -98,11 +98,11 @@ static SHEETS: LazyLock<Target> = LazyLock::new(|| {
     let corner = |x: i32, y: i32, random: &mut Random| [x, y, random.coordinate(24)];
     let triangles =
         (0..96).map(|_| [corner(-far, -far, &mut random), corner(far, -far, &mut random), corner(0, far, &mut random)]);
-    Target::new(&Mesh { name: "sheets", triangles: triangles.collect() }, KernelSet::Ray)
+    Target::new(&ClosedMesh { name: "sheets", triangles: triangles.collect() }, KernelSet::Ray)
 });
 
 /// Nearest hits whose distances differ by a few units in the last place, or round to the same one.
-pub fn near_equal(seed: u64, trials: Range<u64>) -> Tally {
+pub fn near_equal(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let towards = random.point(1 << 28);
@@ -121,10 +121,10 @@ static DUPLICATES: LazyLock<Vec<Target>> = LazyLock::new(|| {
             let mut random = Random::new(6, 0);
             let mut triangles = [once.clone(), once.clone(), once].concat();
             shuffle(&mut triangles, &mut random);
-            let mut target = Target::new(&Mesh { name, triangles }, KernelSet::Ray);
+            let mut target = Target::new(&ClosedMesh { name, triangles }, KernelSet::Ray);
             let stage = &mut target.twin.stage;
             for node in &stage.nodes {
-                if let Node::Leaf(references) = node {
+                if let StageNode::Leaf(references) = node {
                     shuffle(&mut stage.references[references.start as usize..references.end as usize], &mut random);
                 }
             }
@@ -147,7 +147,7 @@ fn aim(target: &Target, random: &mut Random) -> Ray {
 }
 
 /// The lowest index of coplanar duplicates, whatever the order in a packet.
-pub fn duplicates(seed: u64, trials: Range<u64>) -> Tally {
+pub fn duplicates(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let target = &DUPLICATES[trial as usize % DUPLICATES.len()];
         target.check_nearest(&aim(target, &mut Random::new(seed, trial))).map(|()| 0.0)
@@ -162,11 +162,11 @@ static DEGENERATE: LazyLock<Target> = LazyLock::new(|| {
         let middle = std::array::from_fn(|k| (a[k] + b[k]) / 2);
         triangles.extend([[a, a, a], [a, b, middle], [a, b, c], [b, b, c]]);
     }
-    Target::new(&Mesh { name: "sphere", triangles }, KernelSet::Ray)
+    Target::new(&ClosedMesh { name: "sphere", triangles }, KernelSet::Ray)
 });
 
 /// Triangles without area are never hit, and do not disturb the others.
-pub fn degenerate(seed: u64, trials: Range<u64>) -> Tally {
+pub fn degenerate(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let ray = aim(&DEGENERATE, &mut Random::new(seed, trial));
         DEGENERATE.check_closed(&ray, true)?;
@@ -181,11 +181,11 @@ pub fn degenerate(seed: u64, trials: Range<u64>) -> Tally {
 static FULL: LazyLock<Target> = LazyLock::new(|| {
     let ends = |x: i32| x - x.signum() * i32::from(x.abs() == 1 << 28);
     let triangles = cube(3).into_iter().map(|corners| corners.map(|corner| corner.map(ends))).collect();
-    Target::new(&Mesh { name: "box at the ends of the grid", triangles }, KernelSet::Ray)
+    Target::new(&ClosedMesh { name: "box at the ends of the grid", triangles }, KernelSet::Ray)
 });
 
 /// Rays from and to the ends of the grid: differences of the full word.
-pub fn bounds(seed: u64, trials: Range<u64>) -> Tally {
+pub fn bounds(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let end = (1 << 30) - 4;

@@ -4,28 +4,28 @@
 use isa::number::Vector;
 
 /// Three corners.
-pub type Corners = [Vector; 3];
+pub type TriangleCorners = [Vector; 3];
 
 /// Half the length of a mesh. Coordinates are multiples of 4, so that middles of edges and faces are exact.
 const SIZE: f64 = (1 << 28) as f64;
 
 /// A closed mesh.
-pub struct Mesh {
+pub struct ClosedMesh {
     /// Name of the mesh.
     pub name: &'static str,
     /// Triangles of the mesh.
-    pub triangles: Vec<Corners>,
+    pub triangles: Vec<TriangleCorners>,
 }
 
 /// The six meshes.
-pub fn closed() -> [Mesh; 6] {
+pub fn closed() -> [ClosedMesh; 6] {
     [
-        Mesh { name: "sphere", triangles: sphere(6, |_| 1.0) },
-        Mesh { name: "star", triangles: sphere(8, |corner| if corner % 3 == 0 { 1.0 } else { 0.35 }) },
-        Mesh { name: "torus", triangles: torus(16, 24) },
-        Mesh { name: "box", triangles: cube(4) },
-        Mesh { name: "spindle", triangles: spindle(40) },
-        Mesh { name: "plate", triangles: plate(40) },
+        ClosedMesh { name: "sphere", triangles: sphere(6, |_| 1.0) },
+        ClosedMesh { name: "star", triangles: sphere(8, |corner| if corner % 3 == 0 { 1.0 } else { 0.35 }) },
+        ClosedMesh { name: "torus", triangles: torus(16, 24) },
+        ClosedMesh { name: "box", triangles: cube(4) },
+        ClosedMesh { name: "spindle", triangles: spindle(40) },
+        ClosedMesh { name: "plate", triangles: plate(40) },
     ]
 }
 
@@ -34,7 +34,7 @@ fn on_grid(point: [f64; 3]) -> Vector {
 }
 
 /// An octahedron whose faces are divided and moved to a sphere, or to the radius that a corner's place on its face gives.
-pub fn sphere(divisions: i32, radius: impl Fn(i32) -> f64) -> Vec<Corners> {
+pub fn sphere(divisions: i32, radius: impl Fn(i32) -> f64) -> Vec<TriangleCorners> {
     let mut triangles = Vec::new();
     let corner = |sign: i32, axis: usize| std::array::from_fn(|k| if k == axis { f64::from(sign) } else { 0.0 });
     for octant in 0..8 {
@@ -66,7 +66,7 @@ pub fn sphere(divisions: i32, radius: impl Fn(i32) -> f64) -> Vec<Corners> {
 }
 
 /// A grid of quadrangles that is closed both ways.
-fn torus(rows: i32, columns: i32) -> Vec<Corners> {
+fn torus(rows: i32, columns: i32) -> Vec<TriangleCorners> {
     let turn = |k: i32, n: i32| (f64::from(k % n) / f64::from(n) * std::f64::consts::TAU).sin_cos();
     let point = |row: i32, column: i32| {
         let ((s, c), (t, d)) = (turn(row, rows), turn(column, columns));
@@ -81,7 +81,7 @@ fn torus(rows: i32, columns: i32) -> Vec<Corners> {
 }
 
 /// A box along the axes, each face a grid of squares: faces and edges lie in the planes that divide the tree.
-pub fn cube(divisions: i32) -> Vec<Corners> {
+pub fn cube(divisions: i32) -> Vec<TriangleCorners> {
     let mut triangles = Vec::new();
     let place = |k: i32| f64::from(2 * k - divisions) / f64::from(divisions);
     for (axis, side) in (0..3).flat_map(|axis| [(axis, -1), (axis, 1)]) {
@@ -100,7 +100,7 @@ pub fn cube(divisions: i32) -> Vec<Corners> {
 }
 
 /// A double cone, 100,000 times as long as wide: slivers around two tips.
-fn spindle(sides: i32) -> Vec<Corners> {
+fn spindle(sides: i32) -> Vec<TriangleCorners> {
     let rim = |k: i32| {
         let (s, c) = (f64::from(k % sides) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
         on_grid([1e-5 * c, 1e-5 * s, 0.0])
@@ -110,7 +110,7 @@ fn spindle(sides: i32) -> Vec<Corners> {
 }
 
 /// A tilted disc of a thickness of 8 units, 67 million times as wide, whose faces are fans of triangles.
-fn plate(sides: i32) -> Vec<Corners> {
+fn plate(sides: i32) -> Vec<TriangleCorners> {
     let rim = |k: i32, lift: i32| {
         let (s, c) = (f64::from(k % sides) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
         let [x, y, z] = on_grid([c, s, 0.3 * c + 0.2 * s]);

@@ -16,7 +16,7 @@ use std::ops::Range;
 use messages::{Diagnostic, did_you_mean};
 use serde::{Deserialize, Serialize};
 
-pub use tally::Tally;
+pub use tally::TrialTally;
 
 /// Number of trials by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,10 +43,10 @@ impl CatalogueSize {
 }
 
 /// Makes a range of trials.
-type Trials = fn(u64, Range<u64>) -> Tally;
+type Trials = fn(u64, Range<u64>) -> TrialTally;
 
 /// Number of trials, and who makes them.
-type Work = (u64, Trials);
+type TrialWork = (u64, Trials);
 
 /// One case.
 #[derive(Debug)]
@@ -63,12 +63,18 @@ pub struct Case {
     pub seed: u64,
     /// True where the value is the largest error of a trial, and not the number of trials that go wrong, of which none is allowed either way.
     is_error: bool,
-    quick: Work,
-    full: Work,
+    quick: TrialWork,
+    full: TrialWork,
 }
 
 impl Case {
-    const fn new(name: &'static str, about: &'static str, quantity: &'static str, quick: Work, full: Work) -> Case {
+    const fn new(
+        name: &'static str,
+        about: &'static str,
+        quantity: &'static str,
+        quick: TrialWork,
+        full: TrialWork,
+    ) -> Case {
         Case { name, about, quantity, threshold: 0.0, seed: 0, is_error: false, quick, full }
     }
 
@@ -81,7 +87,7 @@ impl Case {
         Case { seed, ..self }
     }
 
-    fn work(&self, size: CatalogueSize) -> Work {
+    fn work(&self, size: CatalogueSize) -> TrialWork {
         match size {
             CatalogueSize::Quick => self.quick,
             CatalogueSize::Full => self.full,
@@ -94,17 +100,17 @@ impl Case {
     }
 
     /// Makes some trials.
-    pub fn run(&self, size: CatalogueSize, trials: Range<u64>) -> Tally {
+    pub fn run(&self, size: CatalogueSize, trials: Range<u64>) -> TrialTally {
         self.work(size).1(self.seed, trials)
     }
 
     /// The value that is measured.
-    pub fn value(&self, tally: &Tally) -> f64 {
+    pub fn value(&self, tally: &TrialTally) -> f64 {
         if self.is_error { tally.worst } else { tally.failures as f64 }
     }
 
     /// True where the value is allowed.
-    pub fn passes(&self, tally: &Tally) -> bool {
+    pub fn passes(&self, tally: &TrialTally) -> bool {
         tally.failures == 0 && tally.worst <= self.threshold
     }
 }

@@ -6,7 +6,7 @@ use conformance::{Format, Number, Operation, operate};
 use isa::number::{Arithmetic, Modes, Nearest32, Overflow, Quantization};
 
 use super::random::Random;
-use super::tally::{Tally, tally};
+use super::tally::{TrialTally, tally};
 
 /// Bits of the operands of which all pairs are tried.
 const WORD: u32 = 12;
@@ -28,7 +28,7 @@ pub const OVERFLOWS: [Overflow; 9] = [
 ];
 
 /// Random pairs of operands, added, subtracted, multiplied and divided in every mode.
-pub fn arithmetic(seed: u64, trials: Range<u64>) -> Tally {
+pub fn arithmetic(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let any = |random: &mut Random| (random.next() >> (64 - WORD)) as i32 - (1 << (WORD - 1));
@@ -37,7 +37,7 @@ pub fn arithmetic(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// Trials of all pairs: a trial is a first operand.
-pub fn all_pairs(_: u64, trials: Range<u64>) -> Tally {
+pub fn all_pairs(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let ends = 1 << (WORD - 1);
         (-ends..ends).try_for_each(|b| check_pair(trial as i32 - ends, b)).map(|()| 0.0)
@@ -71,7 +71,7 @@ fn check_pair(a: i32, b: i32) -> Result<(), String> {
 }
 
 /// Roots of operands of 32 bits, next to squares and anywhere.
-pub fn roots(seed: u64, trials: Range<u64>) -> Tally {
+pub fn roots(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let root = random.next() >> 48;
@@ -81,7 +81,7 @@ pub fn roots(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// The roots of all operands of 32 bits; a trial is 2^16 of them.
-pub fn all_roots(_: u64, trials: Range<u64>) -> Tally {
+pub fn all_roots(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         (trial << 16..(trial + 1) << 16).try_for_each(|value| check_root(value).map(|_| ())).map(|()| 0.0)
     })

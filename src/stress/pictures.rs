@@ -13,7 +13,7 @@ use scenes::model::{Material, Picture, Scene, View};
 use scenes::reference;
 
 use super::random::Random;
-use super::tally::{Tally, tally, tally_in_turn};
+use super::tally::{TrialTally, tally, tally_in_turn};
 use crate::drawing::{self, Comparison};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
@@ -64,7 +64,7 @@ fn moved(scene: &Scene, change: impl Fn([f64; 3]) -> [f64; 3]) -> Scene {
 }
 
 /// A scene 2^-300 to 2^300 times as large: the same picture, bit for bit.
-pub fn scales(_: u64, trials: Range<u64>) -> Tally {
+pub fn scales(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (12, 9));
         let exponent = SCALES[(trial / MEASURED) as usize % SCALES.len()];
@@ -75,7 +75,7 @@ pub fn scales(_: u64, trials: Range<u64>) -> Tally {
 }
 
 /// A scene moved by whole steps of the grid: the same picture, bit for bit.
-pub fn translations(seed: u64, trials: Range<u64>) -> Tally {
+pub fn translations(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (16, 12));
         let view = shifted(&scene);
@@ -92,7 +92,7 @@ pub fn translations(seed: u64, trials: Range<u64>) -> Tally {
 }
 
 /// Pictures that the machine draws, in the emulator, against the native twins that the other cases rely on.
-pub fn kernels(_: u64, trials: Range<u64>) -> Tally {
+pub fn kernels(_: u64, trials: Range<u64>) -> TrialTally {
     tally_in_turn(trials, |trial| {
         let scene = coarse(trial % MEASURED, (16, 12));
         let mut job = Job::new(scene);
@@ -110,7 +110,7 @@ pub fn kernels(_: u64, trials: Range<u64>) -> Tally {
 }
 
 /// Five bounces: the largest difference of a component from double precision, in steps of 1/255.
-pub fn bounces(_: u64, trials: Range<u64>) -> Tally {
+pub fn bounces(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (40, 30));
         let view = shifted(&scene);
@@ -128,7 +128,7 @@ fn picture(image: &MemoryImage, pixels: &[Vector]) -> Picture {
 
 /// Lights so bright that colours leave their format: they end at the largest number, none wraps. The largest difference from double precision,
 /// clamped to that number, in steps of 1/255 of it.
-pub fn colours(_: u64, trials: Range<u64>) -> Tally {
+pub fn colours(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         // The terrain has neither mirrors nor glass, so that nothing is weighted after it has saturated.
         let mut scene = coarse(4, (40, 30));

@@ -10,14 +10,14 @@ use kernels::KernelSet;
 use kernels::twin::exact_triangle::exact_triangle;
 use kernels::twin::ray;
 use kernels::twin::refract::{Refraction, refracts};
-use kernels::twin::stage::Material;
+use kernels::twin::stage::StageMaterial;
 use kernels::twin::surface::{Surface, normal, sides};
 use kernels::twin::unit::unit;
 use kernels::twin::vector_arithmetic::VectorArithmetic;
 
-use super::mesh::{Mesh, sphere};
+use super::mesh::{ClosedMesh, sphere};
 use super::random::Random;
-use super::tally::{Tally, tally};
+use super::tally::{TrialTally, tally};
 use super::target::Target;
 
 /// A component of a direction, in the format that directions have in a word of 32 bits.
@@ -30,7 +30,7 @@ const ONE: f64 = (1u32 << Component::FRAC_NBITS) as f64;
 const SPAWNS: u64 = 1000;
 
 static BALL: LazyLock<Target> =
-    LazyLock::new(|| Target::new(&Mesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, KernelSet::Ray));
+    LazyLock::new(|| Target::new(&ClosedMesh { name: "sphere", triangles: sphere(2, |_| 1.0) }, KernelSet::Ray));
 
 fn rounded(direction: [f64; 3]) -> Vector {
     direction.map(|x| Component::from_num(x).to_bits())
@@ -45,7 +45,7 @@ static MODES: LazyLock<Vec<Modes>> = LazyLock::new(|| {
 
 /// Rays that start on a convex body, in each mode of rounding and overflow: those that leave it hit nothing, those that enter it hit it once
 /// more.
-pub fn self_intersection(seed: u64, trials: Range<u64>) -> Tally {
+pub fn self_intersection(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let twin = &BALL.twin;
         let mut random = Random::new(seed, trial / SPAWNS);
@@ -56,7 +56,7 @@ pub fn self_intersection(seed: u64, trials: Range<u64>) -> Tally {
         let first = Ray { origin, direction: away };
         let Some((_, index)) = BALL.nearest(&first)? else { return Ok(0.0) };
         let modes = MODES[(trial / SPAWNS) as usize % MODES.len()];
-        let (came, corners) = (ray::Ray::new(&modes, origin, away), BALL.corners(index));
+        let (came, corners) = (ray::TwinRay::new(&modes, origin, away), BALL.corners(index));
         let t = exact_triangle(&modes, &twin.constants, &came, corners);
         let (facing, _) = normal(&modes, twin.constants.formats.direction, away, corners);
         let (point, behind) = sides(&modes, &twin.constants, &came, t, facing, corners);
@@ -87,7 +87,7 @@ fn on_side(index: u32, came: &Ray, direction: Vector) -> i128 {
 ///
 /// Brought into the word, a vector is exact and at least 2^29 long. Its length is off by at most 1/2, so a component of the unit vector by at most 1,
 /// and its own rounding adds 1/2.
-pub fn normalising(seed: u64, trials: Range<u64>) -> Tally {
+pub fn normalising(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
         let length = (16.0 + 14.0 * random.unit()).exp2();
@@ -107,7 +107,7 @@ pub fn normalising(seed: u64, trials: Range<u64>) -> Tally {
 ///
 /// With eta up to 2.49, c^2 off by less than 3/2 (c and the square, rounded), and two products, of which the first has the two fraction bits less
 /// of an index of refraction, so that its half unit is 2: 3/2 eta^2 + 2 eta + 1/2 is the most, 14.8.
-pub fn critical_angle(seed: u64, trials: Range<u64>) -> Tally {
+pub fn critical_angle(seed: u64, trials: Range<u64>) -> TrialTally {
     let constants = &BALL.twin.constants;
     let index = constants.formats.index;
     tally(trials, |trial| {
@@ -132,7 +132,7 @@ pub fn critical_angle(seed: u64, trials: Range<u64>) -> Tally {
         let cosine = (1.0 - sine * sine).sqrt();
         let incident = rounded(std::array::from_fn(|k| sine * aside[k] / length - cosine * normal[k]));
         let facing = rounded(normal);
-        let material = Material {
+        let material = StageMaterial {
             colour: [0; 3],
             reflection: 0,
             intensity: 0,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Trials, those that went wrong, the largest error, and an example.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tally {
+pub struct TrialTally {
     /// Number of trials.
     pub trials: u64,
     /// Trials that went wrong.
@@ -18,14 +18,14 @@ pub struct Tally {
     pub example: Option<(u64, String)>,
 }
 
-impl Tally {
+impl TrialTally {
     /// Both together.
-    pub fn plus(self, other: Tally) -> Tally {
+    pub fn plus(self, other: TrialTally) -> TrialTally {
         let example = match (self.example, other.example) {
             (Some(one), Some(other)) => Some(if one.0 <= other.0 { one } else { other }),
             (one, other) => one.or(other),
         };
-        Tally {
+        TrialTally {
             trials: self.trials + other.trials,
             failures: self.failures + other.failures,
             worst: self.worst.max(other.worst),
@@ -36,18 +36,18 @@ impl Tally {
 
 /// Makes trials on all host threads. A trial gives its error, or says what is wrong; it depends on nothing but its number, so the result is
 /// the same on every host.
-pub fn tally(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String> + Sync) -> Tally {
-    trials.into_par_iter().map(|number| one(number, &trial)).reduce(Tally::default, Tally::plus)
+pub fn tally(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String> + Sync) -> TrialTally {
+    trials.into_par_iter().map(|number| one(number, &trial)).reduce(TrialTally::default, TrialTally::plus)
 }
 
 /// Trials one after the other, for those that use all host threads themselves and wait for them.
-pub fn tally_in_turn(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String>) -> Tally {
-    trials.map(|number| one(number, &trial)).fold(Tally::default(), Tally::plus)
+pub fn tally_in_turn(trials: Range<u64>, trial: impl Fn(u64) -> Result<f64, String>) -> TrialTally {
+    trials.map(|number| one(number, &trial)).fold(TrialTally::default(), TrialTally::plus)
 }
 
-fn one(number: u64, trial: impl Fn(u64) -> Result<f64, String>) -> Tally {
+fn one(number: u64, trial: impl Fn(u64) -> Result<f64, String>) -> TrialTally {
     match trial(number) {
-        Ok(worst) => Tally { trials: 1, failures: 0, worst, example: None },
-        Err(text) => Tally { trials: 1, failures: 1, worst: 0.0, example: Some((number, text)) },
+        Ok(worst) => TrialTally { trials: 1, failures: 0, worst, example: None },
+        Err(text) => TrialTally { trials: 1, failures: 1, worst: 0.0, example: Some((number, text)) },
     }
 }

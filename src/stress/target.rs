@@ -7,12 +7,12 @@ use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
 use kernels::build::SceneFeatures;
 use kernels::twin::planes::Packets;
-use kernels::twin::stage::Node;
+use kernels::twin::stage::StageNode;
 use kernels::twin::{Twin, ray};
 use scenes::image;
 use scenes::model::{Material, Scene, Triangle, View};
 
-use super::mesh::{Corners, Mesh};
+use super::mesh::{ClosedMesh, TriangleCorners};
 
 /// Sign of the determinant where a ray leaves a body whose triangles run anticlockwise, seen from outside.
 const OUTWARDS: i32 = -1;
@@ -32,7 +32,7 @@ pub type Crossing = (i128, i128, i32, u32);
 
 impl Target {
     /// The mesh as the loader puts it on the grid, with its tree.
-    pub fn new(mesh: &Mesh, profile: KernelSet) -> Target {
+    pub fn new(mesh: &ClosedMesh, profile: KernelSet) -> Target {
         let grey = Material { colour: [0.5; 3], reflection: 0.0, intensity: 1.0, index: 0.0 };
         let corner = |number: usize| 3 * number as u32;
         let scene = Scene {
@@ -51,7 +51,7 @@ impl Target {
         let twin = Twin::new(&image, &features, profile, Nearest32).expect("an image that was built can be read");
         let mut splits = [vec![], vec![], vec![]];
         for node in &twin.stage.nodes {
-            if let Node::Inner { axis, at, .. } = *node {
+            if let StageNode::Inner { axis, at, .. } = *node {
                 splits[axis].push(at);
             }
         }
@@ -59,7 +59,7 @@ impl Target {
     }
 
     /// The corners of a triangle, on the grid.
-    pub fn corners(&self, index: u32) -> &Corners {
+    pub fn corners(&self, index: u32) -> &TriangleCorners {
         &self.twin.stage.triangles[index as usize].vertices
     }
 
@@ -96,8 +96,8 @@ impl Target {
     /// Result of the kernels: the rounded t and the triangle.
     pub fn nearest(&self, ray: &Ray) -> Result<Option<(i32, u32)>, String> {
         let twin = &self.twin;
-        let ray = ray::Ray::new(&twin.arithmetic, ray.origin, ray.direction);
-        let mut search = ray::Search { t: twin.constants.never, triangle: None, takes_any: false };
+        let ray = ray::TwinRay::new(&twin.arithmetic, ray.origin, ray.direction);
+        let mut search = ray::TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
         if let Some(first) = twin.own_packet(&ray) {
             twin.trace(&ray, first, &mut search).map_err(|_| "the walk is stuck".to_owned())?;
         }
@@ -195,8 +195,8 @@ mod tests {
     use super::*;
 
     /// Rays at vertices that are found to be wrong, of 500.
-    fn wrong(triangles: Vec<Corners>) -> usize {
-        let target = Target::new(&Mesh { name: "sphere", triangles }, KernelSet::Ray);
+    fn wrong(triangles: Vec<TriangleCorners>) -> usize {
+        let target = Target::new(&ClosedMesh { name: "sphere", triangles }, KernelSet::Ray);
         let ray = |trial| {
             let mut random = Random::new(1, trial);
             through(random.point(1 << 30), target.corners(random.below(target.len()) as u32)[0])

@@ -14,7 +14,7 @@ pub use wave::wave;
 use crate::load::Load;
 
 /// A window of a trace, with what gives it names.
-pub struct Scene<'a> {
+pub struct TracedScene<'a> {
     /// Name of the scene.
     pub name: &'a str,
     /// Programs and memory.
@@ -27,10 +27,10 @@ pub struct Scene<'a> {
     pub items: &'a [Item],
 }
 
-impl<'a> Scene<'a> {
+impl<'a> TracedScene<'a> {
     /// The window of a frame; `None` for a frame without one.
-    pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a RunOutcome) -> Option<Scene<'a>> {
-        Some(Scene { name, load, clock_hz, trace: frame.trace.as_ref()?, items: &frame.items })
+    pub fn new(name: &'a str, load: &'a Load, clock_hz: u64, frame: &'a RunOutcome) -> Option<TracedScene<'a>> {
+        Some(TracedScene { name, load, clock_hz, trace: frame.trace.as_ref()?, items: &frame.items })
     }
 
     /// Number of cores.

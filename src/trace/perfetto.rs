@@ -5,10 +5,10 @@ use emu::machine::trace::Doing;
 use emu::quantity::Clocks;
 use serde_json::{Value, json};
 
-use super::{Scene, address};
+use super::{TracedScene, address};
 
 /// The file.
-pub fn perfetto(scene: &Scene) -> String {
+pub fn perfetto(scene: &TracedScene) -> String {
     let processors = scene.trace.processors.len();
     let bus = track(processors);
     let mut events = vec![metadata("process_name", track(0), &format!("lancer: {}", scene.name))];

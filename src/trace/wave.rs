@@ -11,7 +11,7 @@ use fst_writer::{
 };
 use messages::{Diagnostic, Report};
 
-use super::{Scene, address};
+use super::{TracedScene, address};
 
 type Octets = std::io::Cursor<Vec<u8>>;
 
@@ -25,11 +25,11 @@ const NONE: &[u8] = &[b'z'; NUMBER as usize];
 ///
 /// # Errors
 /// None that a user could make: it is written in memory.
-pub fn wave(scene: &Scene) -> Result<Vec<u8>, Report> {
+pub fn wave(scene: &TracedScene) -> Result<Vec<u8>, Report> {
     write(scene).map_err(|error| Diagnostic::error(format!("no wave can be written: {error}")).into())
 }
 
-fn write(scene: &Scene) -> fst_writer::Result<Vec<u8>> {
+fn write(scene: &TracedScene) -> fst_writer::Result<Vec<u8>> {
     let scale = Scale::new(scene.clock_hz);
     let info = FstInfo {
         // Viewers add this to every time; the times of the changes are those of the run already.
@@ -85,7 +85,7 @@ struct Lines {
     pixel: Option<FstSignalId>,
 }
 
-fn declare(scene: &Scene, header: &mut FstHeaderWriter<Octets>) -> fst_writer::Result<Signals> {
+fn declare(scene: &TracedScene, header: &mut FstHeaderWriter<Octets>) -> fst_writer::Result<Signals> {
     let signal = |header: &mut FstHeaderWriter<Octets>, name: &str, bits: u32| {
         header.var(name, FstSignalType::bit_vec(bits), FstVarType::Wire, FstVarDirection::Implicit, None)
     };
@@ -126,7 +126,7 @@ impl Changes {
 }
 
 fn play(
-    scene: &Scene,
+    scene: &TracedScene,
     scale: &Scale,
     signals: &Signals,
     mut body: FstBodyWriter<Octets>,

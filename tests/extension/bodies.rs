@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use emu::code::Code;
 use emu::engine::EngineKind;
-use emu::machine::{Options, Setup};
+use emu::machine::{RunOptions, Setup};
 use emu::registers::Registers;
 use isa::{Class, Isa, Kind};
 use proptest::prelude::*;
@@ -237,8 +237,14 @@ fn instructions_of_extensions_run_quickly() {
     );
     let (core, main) = (program("turn s1, s2\n turn s3, s1\n halt", &isa), program("halt", &isa));
     let config = emu::machine::Config::default();
-    let setup =
-        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options: Options::default() };
+    let setup = Setup {
+        config: &config,
+        isa: &isa,
+        core: &core,
+        main: &main,
+        kinds: Vec::new(),
+        options: RunOptions::default(),
+    };
     assert_eq!(setup.engine().kind, EngineKind::default(), "one step stands for each word");
 }
 

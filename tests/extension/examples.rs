@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use asm::extension::load;
 use emu::engine::EngineKind;
-use emu::machine::{Options, RunOutcome};
+use emu::machine::{RunOptions, RunOutcome};
 use kernels::{Function, KernelSet};
 use lancer::job::{Job, SHIFT};
 use lancer::load::Load;
@@ -82,13 +82,14 @@ fn all_ways_to_run_an_example_agree() {
         }
         let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{}: {failure:?}", folder.display()));
         let run = |engine, steps: bool| -> RunOutcome {
-            let options = Options { engine, is_eager: true, has_profile: true, has_items: true, ..Options::default() };
+            let options =
+                RunOptions { engine, is_eager: true, has_profile: true, has_items: true, ..RunOptions::default() };
             let setup = load.setup(&job.machine, options);
             let run = if steps { emu::step } else { emu::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
         assert_eq!(
-            load.setup(&job.machine, Options::default()).engine().kind,
+            load.setup(&job.machine, RunOptions::default()).engine().kind,
             EngineKind::default(),
             "{}",
             folder.display()

@@ -11,7 +11,7 @@ mod refusals;
 #[path = "../../examples/reciprocal/study.rs"]
 mod study;
 
-use asm::extension::{Loaded, load};
+use asm::extension::{LoadedInstruction, load};
 use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
@@ -21,7 +21,7 @@ use isa::{Isa, Program};
 use messages::Source;
 
 /// The table with the instructions of a file.
-pub fn isa_of(text: &str) -> (Isa, Vec<Loaded>) {
+pub fn isa_of(text: &str) -> (Isa, Vec<LoadedInstruction>) {
     let mut isa = Isa::base();
     let loaded = load(&mut isa, &Source::new("t.isa", text), &|_, _| Err("there are no files here".into()));
     let loaded = loaded.unwrap_or_else(|report| panic!("{report}"));

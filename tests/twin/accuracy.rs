@@ -8,7 +8,7 @@ use kernels::KernelSet;
 use kernels::constants::{Constants, side_fraction};
 use kernels::twin::descend::own_packet;
 use kernels::twin::first_packet::first_packet;
-use kernels::twin::ray::{Ray, Search};
+use kernels::twin::ray::{TwinRay, TwinSearch};
 use kernels::twin::triangle::triangle;
 use kernels::twin::{Twin, report};
 use scenes::cadrage::{Formats, Overrides};
@@ -145,7 +145,7 @@ impl Errors {
 const RAYS: usize = 50_000;
 
 /// A triangle test: of the vector profile, or the report's.
-type Test = fn(&Modes, &Constants, &Ray, &[Vector; 3]) -> i32;
+type Test = fn(&Modes, &Constants, &TwinRay, &[Vector; 3]) -> i32;
 
 /// Wrong decisions and errors of t over rays to places of triangles and to their edges.
 fn decisions(text: &mut String, name: &str, test: Test, constants: &Constants, bits: u32) {
@@ -156,7 +156,7 @@ fn decisions(text: &mut String, name: &str, test: Test, constants: &Constants, b
         for _ in 0..RAYS {
             let vertices = series.triangle(bits, 7);
             let (origin, direction) = series.ray(&vertices, bits, constants.formats.direction, is_at_edge);
-            let t = test(&modes, constants, &Ray::new(&modes, origin, direction), &vertices);
+            let t = test(&modes, constants, &TwinRay::new(&modes, origin, direction), &vertices);
             let exact = exact_hit(origin, direction, &vertices);
             hits += usize::from(exact.is_some());
             match exact {
@@ -232,7 +232,7 @@ fn closed_surfaces_are_crossed_evenly() {
                     continue;
                 }
                 let direction = rounded_unit(way.map(f64::from), constants.formats.direction);
-                let ray = Ray::new(&modes, origin, direction);
+                let ray = TwinRay::new(&modes, origin, direction);
                 let hits = body.iter().filter(|v| triangle(&modes, &constants, &ray, v) != constants.missed).count();
                 assert_eq!(
                     hits % 2,
@@ -282,11 +282,11 @@ fn searches_through_the_tree_miss_nothing() {
             let ray = match direction {
                 ([0, 0, 0], _) => {
                     let (origin, direction) = series.ray(&vertices, 14, 29, n % 4 == 1);
-                    Ray::new(&Nearest32, origin, direction)
+                    TwinRay::new(&Nearest32, origin, direction)
                 }
                 (step, back) => {
                     let origin = [0, 1, 2].map(|k| (origin[k] - i64::from(back * step[k])) as i32);
-                    Ray::new(&Nearest32, origin, rounded_unit(step.map(f64::from), 29))
+                    TwinRay::new(&Nearest32, origin, rounded_unit(step.map(f64::from), 29))
                 }
             };
             let bounds = &twin.stage.bounds;
@@ -296,7 +296,7 @@ fn searches_through_the_tree_miss_nothing() {
             } else {
                 first_packet(&Nearest32, &twin.stage, &ray)
             };
-            let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+            let mut search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
             if let Some(first) = first {
                 twin.trace(&ray, first, &mut search).expect("a ray that is not stuck");
             }

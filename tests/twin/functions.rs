@@ -3,7 +3,7 @@
 use isa::number::{Modes, Overflow, Quantization, Vector};
 use kernels::twin::descend::{descend, own_packet};
 use kernels::twin::exit_face::exit_face;
-use kernels::twin::ray::{ExitPlane, Packet, Ray, Search};
+use kernels::twin::ray::{ExitPlane, Packet, TwinRay, TwinSearch};
 use kernels::twin::report;
 use kernels::twin::unit::{sqrt, unit};
 use kernels::{Function, KernelSet};
@@ -210,8 +210,8 @@ pub(super) fn ray_and_box(bits: u32) -> impl Strategy<Value = Vec<i32>> {
 }
 
 /// The ray whose origin and direction start at a word of a case.
-pub(super) fn ray(modes: &Modes, case: &[i32], at: usize) -> Ray {
-    Ray::new(modes, vector(case, at), vector(case, at + 3))
+pub(super) fn ray(modes: &Modes, case: &[i32], at: usize) -> TwinRay {
+    TwinRay::new(modes, vector(case, at), vector(case, at + 3))
 }
 
 /// The box whose corners start at a word of a case.
@@ -303,7 +303,7 @@ fn descents() {
                 words(&[origin, direction], &[axis as i32, plane[axis], run, direction[axis].abs()])
             });
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
+                let ray = TwinRay::new(&modes, vector(case, 0), vector(case, 3));
                 let exit = ExitPlane { axis: case[6] as usize, plane: case[7], run: case[8], slope: case[9] };
                 packet_words(&subject, Some(descend(&modes, &twin.stage, &ray, &exit)))
             });
@@ -364,12 +364,13 @@ fn next_packets() {
             let walker = subject.twin();
             let cases = cases.prop_map(move |(origin, direction, t, near, any)| {
                 let Packet { bounds, .. } =
-                    walker.own_packet(&Ray::new(&modes, origin, direction)).expect("the ray starts in the scene");
+                    walker.own_packet(&TwinRay::new(&modes, origin, direction)).expect("the ray starts in the scene");
                 words(&[origin, direction, bounds.low, bounds.high], &[t, i32::from(near), i32::from(any)])
             });
             agree(&subject, &experiment, cases, |case| {
                 let packet = Packet { bounds: bounds(case, 6), references: 0..0 };
-                let search = Search { t: case[12], triangle: (case[13] == 1).then_some(0), takes_any: case[14] == 1 };
+                let search =
+                    TwinSearch { t: case[12], triangle: (case[13] == 1).then_some(0), takes_any: case[14] == 1 };
                 packet_words(&subject, twin.next_packet(&ray(&modes, case, 0), &packet, &search))
             });
         }
@@ -393,8 +394,8 @@ fn walks() {
             let twin = subject.twin();
             let cases = (point_of_tree(&subject), direction(modes.word - 2)).prop_map(|(o, d)| words(&[o, d], &[]));
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                let search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                let ray = TwinRay::new(&modes, vector(case, 0), vector(case, 3));
+                let search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
                 let mut packet = Some(own_packet(&modes, &twin.stage, &ray));
                 let (mut packets, mut sum) = (0, 0i32);
                 while let Some(here) = packet {

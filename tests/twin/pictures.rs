@@ -1,6 +1,6 @@
 //! Whole pictures: the frame that the machine draws and the twin's, word for word.
 
-use emu::machine::{Failure, Setup};
+use emu::machine::{RunFailure, Setup};
 use emu::octets::Memory;
 use emu::trap::Fault;
 use isa::Isa;
@@ -33,11 +33,11 @@ impl Subject {
             core: &build.cores,
             main: &build.main,
             kinds: Vec::new(),
-            options: emu::machine::Options::default(),
+            options: emu::machine::RunOptions::default(),
         };
         let frame = match emu::run(&setup, Memory::new(self.image.bytes.clone()), &mut |_| {}) {
             Ok(frame) => frame,
-            Err(Failure::Trap(trap)) if trap.kind == Fault::User(STUCK) => return None,
+            Err(RunFailure::Trap(trap)) if trap.kind == Fault::User(STUCK) => return None,
             Err(failure) => panic!("{failure}"),
         };
         let start = self.image.region(MemoryKind::Frame).start;
@@ -51,7 +51,7 @@ impl Subject {
     fn drawn_by_twin(&self, crop: Crop) -> Option<Vec<Vector>> {
         match twin::render(&self.image, &self.features, &crop, self.profile, self.modes) {
             Ok(pixels) => Some(pixels),
-            Err(twin::Failure::Stuck { .. }) => None,
+            Err(twin::TwinFailure::Stuck { .. }) => None,
             Err(failure) => panic!("{failure}"),
         }
     }

@@ -5,7 +5,7 @@ use std::iter::successors;
 use std::ops::Range;
 
 use kernels::twin::planes::Packets;
-use kernels::twin::ray::{Packet, Ray, Search};
+use kernels::twin::ray::{Packet, TwinRay, TwinSearch};
 use kernels::{Function, KernelSet};
 use proptest::prelude::*;
 use scenes::image::MemoryKind;
@@ -36,11 +36,11 @@ fn walks_of_the_ray_unit() {
             let cases = (point_of_tree(&subject), direction(modes.word - 2)).prop_map(|(o, d)| words(&[o, d], &[]));
             agree(&subject, &experiment, cases, |case| {
                 let (origin, direction) = (vector(case, 0), vector(case, 3));
-                let ray = Ray::new(&modes, origin, direction);
+                let ray = TwinRay::new(&modes, origin, direction);
                 let exact = isa::number::ray::Ray { origin, direction };
                 let packets = Packets::new(&twin.stage.nodes, &twin.stage.bounds, exact);
                 let packets: Vec<i32> = packets.map(address).collect();
-                let search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                let search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
                 let from_box_to_box = successors(twin.own_packet(&ray), |here| twin.next_packet(&ray, here, &search));
                 assert_eq!(packets, from_box_to_box.map(|packet| address(packet.references)).collect::<Vec<_>>());
                 let sum = packets.iter().fold(0i32, |sum, &address| sum.wrapping_mul(31).wrapping_add(address));
@@ -72,8 +72,8 @@ fn searches_of_aimed_rays() {
             let triangles = subject.image.region(MemoryKind::Triangles).start;
             let octets = subject.image.layout.triangle().octets();
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, vector(case, 0), vector(case, 3));
-                let mut search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                let ray = TwinRay::new(&modes, vector(case, 0), vector(case, 3));
+                let mut search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
                 if let Some(first) = twin.own_packet(&ray) {
                     twin.trace(&ray, first, &mut search).expect("a walk with planes ends");
                 }

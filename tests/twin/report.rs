@@ -5,7 +5,7 @@ use std::iter::successors;
 use isa::number::Modes;
 use kernels::constants::Constants;
 use kernels::twin::Twin;
-use kernels::twin::ray::{Ray, Search};
+use kernels::twin::ray::{TwinRay, TwinSearch};
 use kernels::twin::report::{self, ExitPoint, Transmission};
 use kernels::twin::surface::Surface;
 use kernels::{Function, KernelSet};
@@ -144,7 +144,7 @@ fn descents() {
             let twin = subject.twin();
             let cases = (direction(modes.word - 2), point_of_tree(&subject)).prop_map(|(d, p)| words(&[d, p], &[]));
             agree(&subject, &experiment, cases, |case| {
-                let ray = Ray::new(&modes, [0; 3], vector(case, 0));
+                let ray = TwinRay::new(&modes, [0; 3], vector(case, 0));
                 packet_words(&subject, Some(report::descend(&twin.stage, &ray, vector(case, 3))))
             });
         }
@@ -162,7 +162,7 @@ fn walks_end() {
             let cases = cases.prop_map(|(o, d)| words(&[o, d], &[]));
             for_all(cases, |case| {
                 let ray = ray(&modes, case, 0);
-                let search = Search { t: twin.constants.never, triangle: None, takes_any: false };
+                let search = TwinSearch { t: twin.constants.never, triangle: None, takes_any: false };
                 let first = Some(report::own_packet(&twin.stage, &ray));
                 let packets = successors(first, |here| twin.next_packet(&ray, here, &search));
                 let most = twin.constants.most_steps as usize;

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use isa::number::{Modes, Vector};
 use kernels::twin::reflect::reflect;
 use kernels::twin::refract::{Refraction, refract, refracts};
-use kernels::twin::stage::Material;
+use kernels::twin::stage::StageMaterial;
 use kernels::twin::surface::{Surface, normal};
 use kernels::twin::unit::unit;
 use kernels::twin::vector_arithmetic::VectorArithmetic;
@@ -68,7 +68,7 @@ fn met(modes: &Modes, bits: u32, facing: Vector, incident: Vector, eta: i32) -> 
     let cosine = modes.dot(facing, incident, bits);
     let facing = if cosine > 0 { facing.map(|lane| -lane) } else { facing };
     let material =
-        Material { colour: [0; 3], reflection: 0, intensity: 0, transmission: 1, index: eta, inverse_index: 1 };
+        StageMaterial { colour: [0; 3], reflection: 0, intensity: 0, transmission: 1, index: eta, inverse_index: 1 };
     let cosine = cosine.abs();
     (cosine > 0).then_some(Surface { point: [0; 3], behind: [0; 3], facing, incident, cosine, material })
 }

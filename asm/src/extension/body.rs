@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use isa::Isa;
 use isa::definition::InstructionDef;
-use isa::extension::{Act, Body, Defect, Step, Summary, registers};
+use isa::extension::{Body, BodyAct, BodyStep, Defect, Summary, registers};
 use isa::table::Op;
 use messages::{Diagnostic, Place, Report, Source};
 
 use super::template::{Template, letter_name, register_name};
-use crate::frame::{Frame, Origin};
-use crate::line::Line;
+use crate::frame::{OpenText, Origin};
+use crate::line::OriginLine;
 use crate::message::At;
 use crate::{Loader, Options, assembler, explain};
 
@@ -21,8 +21,8 @@ pub(super) fn assemble(
     isa: &Isa,
     op: Op,
     row_at: &Place,
-    shared: Rc<[Line]>,
-    lines: Rc<[Line]>,
+    shared: Rc<[OriginLine]>,
+    lines: Rc<[OriginLine]>,
     source: &Arc<Source>,
     include: Loader,
 ) -> Result<(Body, Summary, Report), Report> {
@@ -42,13 +42,13 @@ pub(super) fn assemble(
     };
     assembler.body = Some(template);
     // What all bodies share comes first; instructions are refused there.
-    assembler.enter(Frame::new(shared, Origin::File(0)), At::default());
+    assembler.enter(OpenText::new(shared, Origin::File(0)), At::default());
     assembler.read_frames();
     if let Some(template) = &mut assembler.body {
         template.is_shared = false;
     }
     if !assembler.is_incomplete {
-        assembler.enter(Frame::new(lines, Origin::File(0)), At::default());
+        assembler.enter(OpenText::new(lines, Origin::File(0)), At::default());
         assembler.read_frames();
     }
     assembler.second_pass();
@@ -83,7 +83,7 @@ fn complete(template: Template, isa: &Isa, source: &Arc<Source>, row_at: &Place)
                 .into());
         }
         let line = steps.last().map_or(template.row_line, |last| last.line);
-        steps.push(Step { act: Act::End { outcome: 0, jumps: false }, line });
+        steps.push(BodyStep { act: BodyAct::End { outcome: 0, jumps: false }, line });
         body.steps = steps;
     }
     // Count hidden registers: temporaries, and a copy of each destination in the worst case.
@@ -113,7 +113,7 @@ fn temporaries(body: &Body, isa: &Isa, file: char) -> u8 {
     let hidden = registers::hidden(file);
     let mut used = 0;
     for step in &body.steps {
-        let Act::Execute { instruction, .. } = step.act else { continue };
+        let BodyAct::Execute { instruction, .. } = step.act else { continue };
         for operand in isa.definition(instruction.op).operands.iter().filter(|o| o.kind.register_file() == Some(file)) {
             let number = instruction.fields.get(operand.letter) as u8;
             if hidden.contains(&number) {

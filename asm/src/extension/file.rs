@@ -10,19 +10,19 @@ use isa::table::Op;
 use messages::{Diagnostic, Place, Report, Source};
 
 use super::row::{Drawn, parse};
-use super::{Loaded, MOST_INSTRUCTIONS, body, error};
+use super::{LoadedInstruction, MOST_INSTRUCTIONS, body, error};
 use crate::explain;
 use crate::frame::{file_lines, leading_directive};
 use crate::limits::TEXT_OCTETS;
-use crate::line::Line;
+use crate::line::OriginLine;
 use crate::{function, operand, pseudo};
 
 /// An instruction of the file.
-struct Block {
+struct InstructionBlock {
     /// Octet of the row behind `.instr`.
     start: usize,
     doc: String,
-    lines: Vec<Line>,
+    lines: Vec<OriginLine>,
     /// The semantics are in Rust; the lines may be a body beside them.
     is_rust: bool,
 }
@@ -31,15 +31,19 @@ struct Block {
 #[derive(Default)]
 struct Parts {
     name: Option<String>,
-    shared: Vec<Line>,
-    blocks: Vec<Block>,
+    shared: Vec<OriginLine>,
+    blocks: Vec<InstructionBlock>,
 }
 
 /// Adds the instructions of a file one after the other.
-pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<Loaded>, Report> {
+pub(super) fn load(
+    isa: &mut Isa,
+    source: &Arc<Source>,
+    include: crate::Loader,
+) -> Result<Vec<LoadedInstruction>, Report> {
     let mut report = Report::default();
     let parts = parts(source, &mut report);
-    let shared: Rc<[Line]> = parts.shared.into();
+    let shared: Rc<[OriginLine]> = parts.shared.into();
     let mut loaded = Vec::new();
     for block in parts.blocks {
         let drawn = match parse(source, block.start) {
@@ -105,7 +109,7 @@ pub(super) fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) 
 }
 
 /// The lines of a body behind its row; `None` when something else follows the row on its line.
-fn body_lines(lines: &[Line], source: &Source, row_end: usize) -> Option<Vec<Line>> {
+fn body_lines(lines: &[OriginLine], source: &Source, row_end: usize) -> Option<Vec<OriginLine>> {
     let rest = source.text[row_end..].lines().next().unwrap_or_default();
     let rest = rest.trim();
     let is_alone = rest.is_empty() || crate::token::starts_comment(rest);
@@ -127,7 +131,7 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
     }
     let mut doc = String::new();
     // The open block and where its directive stands.
-    let mut open: Option<(Block, Place)> = None;
+    let mut open: Option<(InstructionBlock, Place)> = None;
     let mut macro_depth = 0usize;
     for line in lines.iter() {
         let at = line.at_all();
@@ -170,7 +174,10 @@ fn parts(source: &Arc<Source>, report: &mut Report) -> Parts {
                 }
                 let start =
                     place.span.start + source.text[place.span.clone()].find(".instr").unwrap_or(0) + ".instr".len();
-                open = Some((Block { start, doc: std::mem::take(&mut doc), lines: Vec::new(), is_rust: false }, place));
+                open = Some((
+                    InstructionBlock { start, doc: std::mem::take(&mut doc), lines: Vec::new(), is_rust: false },
+                    place,
+                ));
             }
             Some(".end") => {
                 let message = Diagnostic::error("`.end` without `.instr`").code(explain::UNOPENED);
@@ -263,7 +270,13 @@ fn name(source: &Arc<Source>, place: &Place, is_late: bool) -> Result<String, Bo
 }
 
 /// Adds a row without its body.
-fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension: &str) -> Result<Loaded, Report> {
+fn add(
+    isa: &mut Isa,
+    source: &Arc<Source>,
+    drawn: Drawn,
+    doc: String,
+    extension: &str,
+) -> Result<LoadedInstruction, Report> {
     let Drawn { mut row, name_at, pattern_at, outcomes_at, start, end, .. } = drawn;
     row.room = extension.to_owned().into();
     row.doc = doc.into();
@@ -291,7 +304,7 @@ fn add(isa: &mut Isa, source: &Arc<Source>, drawn: Drawn, doc: String, extension
     };
     let outcomes = outcomes_at.into_iter().map(|span| Place::new(source, span)).collect();
     let (summary, is_rust) = (Summary::default(), false);
-    Ok(Loaded { op, extension: extension.to_owned(), summary, row: place, outcomes, is_rust })
+    Ok(LoadedInstruction { op, extension: extension.to_owned(), summary, row: place, outcomes, is_rust })
 }
 
 /// The message when another instruction has the name or a word of a row.

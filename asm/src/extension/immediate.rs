@@ -4,9 +4,9 @@ use isa::definition::{InstructionDef, Kind};
 use isa::extension::Immediate;
 
 use crate::assembler::Assembler;
-use crate::evaluation::Failure;
+use crate::evaluation::EvaluationFailure;
 use crate::explain;
-use crate::expression::{Expression, Step as Calculation};
+use crate::expression::{EvaluationStep as Calculation, Expression};
 use crate::instruction::out_of_range;
 use crate::message::Problem;
 use crate::symbol::Name;
@@ -50,11 +50,12 @@ impl Assembler<'_> {
         definition: &InstructionDef,
         operand: isa::definition::Operand,
         range: (i64, i64),
-    ) -> Result<Immediate, Failure> {
+    ) -> Result<Immediate, EvaluationFailure> {
         // A number without letters is known now.
         let letters = self.letters(expression);
-        let wrong =
-            |message: String, label: &str| Failure::Wrong(Problem::new(explain::BODY, message, expression.at, label));
+        let wrong = |message: String, label: &str| {
+            EvaluationFailure::Wrong(Problem::new(explain::BODY, message, expression.at, label))
+        };
         let [(name, letter)] = letters[..] else {
             if letters.len() > 1 {
                 return Err(wrong("a number of a body depends on one immediate at most".into(), "`i` and `j`"));
@@ -62,7 +63,7 @@ impl Assembler<'_> {
             let value = self.evaluate(expression)?;
             return match i32::try_from(value) {
                 Ok(value) => Ok(Immediate::Number(value)),
-                Err(_) => Err(Failure::Wrong(out_of_range(definition, operand, expression.at, value, range))),
+                Err(_) => Err(EvaluationFailure::Wrong(out_of_range(definition, operand, expression.at, value, range))),
             };
         };
         let kind = self.body.as_ref().and_then(|template| template.operand(letter)).map(|operand| operand.kind);
@@ -72,7 +73,7 @@ impl Assembler<'_> {
         }
         // Put the least two values in: they give the line `first + factor (i - least)`. `2 * i + 3` with i from 0 to 31 has first 3 and factor 2.
         let (least, most) = self.letter_range(letter);
-        let value_at = |value: i64| -> Result<i64, Failure> {
+        let value_at = |value: i64| -> Result<i64, EvaluationFailure> {
             let put = |calculation: &Calculation| match calculation {
                 Calculation::Symbol(other) if *other == name => Calculation::Number(value),
                 other => other.clone(),

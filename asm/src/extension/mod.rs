@@ -21,7 +21,7 @@ use crate::explain;
 
 /// An instruction that was added.
 #[derive(Clone, Debug)]
-pub struct Loaded {
+pub struct LoadedInstruction {
     /// The instruction's number.
     pub op: Op,
     /// Name of the extension.
@@ -64,7 +64,7 @@ pub fn source(name: &str, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
 ///
 /// # Errors
 /// All errors of the file, each with its place; then nothing is added.
-pub fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<Loaded>, Report> {
+pub fn load(isa: &mut Isa, source: &Arc<Source>, include: crate::Loader) -> Result<Vec<LoadedInstruction>, Report> {
     let mut extended = isa.clone();
     let loaded = file::load(&mut extended, source, include)?;
     *isa = extended;

@@ -24,7 +24,7 @@ pub(super) struct Drawn {
     pub end: usize,
 }
 
-type Read<T> = Result<T, Box<Diagnostic>>;
+type RowRead<T> = Result<T, Box<Diagnostic>>;
 
 /// The form of a row, for hints.
 const WRITTEN: &str = "a row is written: name (d: V, a: V) \"custom0 ddddd aaaaa ----------------\" [Done(add 3)]";
@@ -65,11 +65,11 @@ impl<'a> Scanner<'a> {
         is_here
     }
 
-    fn expect(&mut self, mark: &str) -> Read<()> {
+    fn expect(&mut self, mark: &str) -> RowRead<()> {
         if self.accept(mark) { Ok(()) } else { Err(self.expected(&format!("`{mark}`"))) }
     }
 
-    fn word(&mut self, what: &str) -> Read<(&'a str, Range<usize>)> {
+    fn word(&mut self, what: &str) -> RowRead<(&'a str, Range<usize>)> {
         self.skip_blanks();
         let rest = self.rest();
         let length = rest.find(|c| !continues_name(c)).unwrap_or(rest.len());
@@ -81,7 +81,7 @@ impl<'a> Scanner<'a> {
         Ok((&rest[..length], span))
     }
 
-    fn number(&mut self) -> Read<(u64, Range<usize>)> {
+    fn number(&mut self) -> RowRead<(u64, Range<usize>)> {
         self.skip_blanks();
         let rest = self.rest();
         let length = rest.find(|c: char| !(c.is_ascii_digit() || c == '_')).unwrap_or(rest.len());
@@ -103,7 +103,7 @@ impl<'a> Scanner<'a> {
 }
 
 /// The row whose text starts at that octet.
-pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
+pub(super) fn parse(source: &Arc<Source>, start: usize) -> RowRead<Drawn> {
     let mut scanner = Scanner { source, at: start };
     scanner.skip_blanks();
     let start = scanner.at;
@@ -132,7 +132,7 @@ pub(super) fn parse(source: &Arc<Source>, start: usize) -> Read<Drawn> {
     Ok(Drawn { row, name_at, pattern_at, outcomes_at, each_at, start, end: scanner.at })
 }
 
-fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
+fn operands(scanner: &mut Scanner) -> RowRead<Vec<(Operand, Range<usize>)>> {
     let mut operands: Vec<(Operand, Range<usize>)> = Vec::new();
     scanner.expect("(")?;
     if scanner.accept(")") {
@@ -179,7 +179,7 @@ fn operands(scanner: &mut Scanner) -> Read<Vec<(Operand, Range<usize>)>> {
 fn pattern<'a>(
     scanner: &mut Scanner<'a>,
     operands: &[(Operand, Range<usize>)],
-) -> Read<(BitPattern, &'a str, Range<usize>)> {
+) -> RowRead<(BitPattern, &'a str, Range<usize>)> {
     scanner.expect("\"").map_err(|_| scanner.expected("the word as a bit pattern, in quotation marks"))?;
     let rest = scanner.rest();
     // The pattern ends in its line, so that a missing mark does not swallow the file.
@@ -279,7 +279,10 @@ fn misfit(
     }
 }
 
-fn outcomes(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(Vec<OutcomeDef>, Vec<Range<usize>>)> {
+fn outcomes(
+    scanner: &mut Scanner,
+    each_at: &mut Option<Range<usize>>,
+) -> RowRead<(Vec<OutcomeDef>, Vec<Range<usize>>)> {
     scanner.expect("[")?;
     let (mut outcomes, mut places): (Vec<OutcomeDef>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     loop {
@@ -314,7 +317,7 @@ fn outcomes(scanner: &mut Scanner, each_at: &mut Option<Range<usize>>) -> Read<(
 }
 
 /// The contents of an outcome's parentheses, the closing one included; `each_at` gets the place of a cost for each unit.
-fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> Read<OutcomeDef> {
+fn cost(scanner: &mut Scanner, name: &str, each_at: &mut Option<Range<usize>>) -> RowRead<OutcomeDef> {
     let mut outcome =
         OutcomeDef { name: name.to_owned().into(), cost: Counts::ZERO, each: Counts::ZERO, is_body: false };
     if scanner.accept(")") {

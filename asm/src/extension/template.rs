@@ -1,20 +1,20 @@
 //! The assembler inside a body: operands and temporaries are registers, instructions become steps.
 
 use isa::definition::{InstructionDef, Kind};
-use isa::extension::{Act, Immediate, Step, registers};
+use isa::extension::{BodyAct, BodyStep, Immediate, registers};
 use isa::table::Op;
 use isa::{Fields, Instruction};
 
 use super::MOST_STEPS;
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
-use crate::evaluation::Failure;
+use crate::evaluation::EvaluationFailure;
 use crate::explain;
 use crate::instruction::{Argument, Value, out_of_range};
-use crate::line::Line;
+use crate::line::OriginLine;
 use crate::message::{At, Parsed, Problem};
 use crate::operand::{Register, looks_like_register};
-use crate::token::Kind as Token;
+use crate::token::TokenKind as Token;
 
 /// The body that is being assembled.
 pub(crate) struct Template {
@@ -23,7 +23,7 @@ pub(crate) struct Template {
     pub definition: InstructionDef,
     /// Line of the row, for steps that come from other files.
     pub row_line: u32,
-    pub steps: Vec<Step>,
+    pub steps: Vec<BodyStep>,
     /// Source of the steps.
     pub places: Vec<At>,
     /// The lines that all bodies of the file share are being read.
@@ -139,7 +139,7 @@ impl Template {
 
 impl Assembler<'_> {
     /// Notes that a step follows; `false` outside of bodies' instructions, which is reported.
-    pub(crate) fn takes_step(&mut self, line: &Line) -> bool {
+    pub(crate) fn takes_step(&mut self, line: &OriginLine) -> bool {
         let Some(template) = &mut self.body else { return true };
         if template.is_shared {
             let message = "an instruction stands outside of `.instr` and `.end`";
@@ -154,8 +154,8 @@ impl Assembler<'_> {
         // `set_act` has put the step there when its numbers are known already.
         if template.places.len() == self.program.words.len() {
             let number = if line.source == 0 { line.number } else { template.row_line };
-            let pending = Act::End { outcome: 0, jumps: false };
-            template.steps.resize(template.places.len() + 1, Step { act: pending, line: number });
+            let pending = BodyAct::End { outcome: 0, jumps: false };
+            template.steps.resize(template.places.len() + 1, BodyStep { act: pending, line: number });
             let last = template.steps.len() - 1;
             template.steps[last].line = number;
             template.places.push(line.at_all());
@@ -164,10 +164,10 @@ impl Assembler<'_> {
     }
 
     /// Says what a step does.
-    pub(crate) fn set_act(&mut self, step: usize, act: Act) {
+    pub(crate) fn set_act(&mut self, step: usize, act: BodyAct) {
         if let Some(template) = &mut self.body {
             if template.steps.len() <= step {
-                template.steps.resize(step + 1, Step { act, line: 0 });
+                template.steps.resize(step + 1, BodyStep { act, line: 0 });
             }
             template.steps[step].act = act;
         }
@@ -234,14 +234,19 @@ impl Assembler<'_> {
         cursor.end()?;
         let step = self.program.words.len();
         if self.body.as_ref().is_some_and(|template| !template.is_shared) {
-            self.set_act(step, Act::End { outcome: outcome as u8, jumps });
+            self.set_act(step, BodyAct::End { outcome: outcome as u8, jumps });
         }
         self.emit(0, cursor.line);
         Ok(())
     }
 
     /// A step from its operands, as far as its names are known.
-    pub(crate) fn encode_step(&self, op: Op, arguments: &[Argument], step: usize) -> Result<Act, Vec<Failure>> {
+    pub(crate) fn encode_step(
+        &self,
+        op: Op,
+        arguments: &[Argument],
+        step: usize,
+    ) -> Result<BodyAct, Vec<EvaluationFailure>> {
         let (isa, Some(template)) = (self.isa, &self.body) else { return Err(Vec::new()) };
         let definition = isa.definition(op);
         let mut fields = Fields::default();
@@ -259,7 +264,7 @@ impl Assembler<'_> {
                         template
                             .check_register(definition, *operand, *number as u8, argument.at)
                             .err()
-                            .map(Failure::Wrong),
+                            .map(EvaluationFailure::Wrong),
                     );
                     continue;
                 }
@@ -274,7 +279,7 @@ impl Assembler<'_> {
                             Ok(Immediate::Number(distance as i32))
                         } else {
                             let message = "the branch leads out of the body";
-                            Err(Failure::Wrong(
+                            Err(EvaluationFailure::Wrong(
                                 Problem::new(explain::BODY, message, argument.at, "no step of it")
                                     .hint("`exit NAME` ends a body"),
                             ))
@@ -287,7 +292,7 @@ impl Assembler<'_> {
                 Ok(Immediate::Number(number))
                     if operand.kind != Kind::Rel && !(range.0..=range.1).contains(&i64::from(number)) =>
                 {
-                    failures.push(Failure::Wrong(out_of_range(
+                    failures.push(EvaluationFailure::Wrong(out_of_range(
                         definition,
                         *operand,
                         argument.at,
@@ -307,7 +312,7 @@ impl Assembler<'_> {
         if !failures.is_empty() {
             return Err(failures);
         }
-        Ok(Act::Execute { instruction: Instruction { op, fields }, immediates })
+        Ok(BodyAct::Execute { instruction: Instruction { op, fields }, immediates })
     }
 
     /// The largest step that a branch may lead to: the end of the body, once that is known.

@@ -6,7 +6,7 @@
 //! exactly their own instructions.
 
 use isa::definition::{InstructionDef, Kind, Operand};
-use isa::extension::{Act, Body, Immediate, registers};
+use isa::extension::{Body, BodyAct, Immediate, registers};
 use isa::{Fields, Isa, Op};
 
 /// Target of a slot of a splice.
@@ -87,7 +87,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
     let places = places(body, row, isa, fields);
     let (before, after) = (moves(&places, true), moves(&places, false));
     // An end takes as many slots as there are copies out, or one that only carries the outcome.
-    let length = |act: &Act| if matches!(act, Act::End { .. }) { after.len().max(1) } else { 1 };
+    let length = |act: &BodyAct| if matches!(act, BodyAct::End { .. }) { after.len().max(1) } else { 1 };
     let mut starts = Vec::with_capacity(body.steps.len() + 1);
     starts.push(before.len());
     starts.extend(body.steps.iter().scan(before.len(), |at, step| {
@@ -115,8 +115,8 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
     // Write the steps; an end becomes the copies out, of which the last one leaves
     for (number, step) in body.steps.iter().enumerate() {
         let (instruction, immediates) = match step.act {
-            Act::Execute { instruction, immediates } => (instruction, immediates),
-            Act::End { outcome: exit, jumps } => {
+            BodyAct::Execute { instruction, immediates } => (instruction, immediates),
+            BodyAct::End { outcome: exit, jumps } => {
                 // A copy of s0 into itself does nothing and takes no time, but can have an outcome.
                 let nothing = [copy('s', 0, 0)];
                 let made = if after.is_empty() { &nothing[..] } else { &after[..] };
@@ -146,7 +146,7 @@ pub(crate) fn splice(body: &Body, row: &InstructionDef, isa: &Isa, fields: &Fiel
                 (piece.op, piece.fields) = copy('s', 0, 0);
                 piece.way = SpliceTarget::Inside(target);
             }
-            (None, Some(Act::End { outcome: exit, jumps }))
+            (None, Some(BodyAct::End { outcome: exit, jumps }))
                 if after.is_empty() && inner.outcomes.len() == 1 && instruction.op != Op::trap =>
             {
                 piece.way = leave(jumps);

@@ -187,33 +187,33 @@ impl Default for EngineKind {
 }
 
 /// Chooses who runs a program: the engine that is wanted, or the next one that does what is demanded. The interpreter does everything.
-pub fn choose<'a>(demand: &Demand<'a>) -> Runner<'a> {
+pub fn choose<'a>(demand: &Demand<'a>) -> EngineRunner<'a> {
     let mut refusal = None;
     for kind in EngineKind::ALL.into_iter().skip_while(|kind| *kind != demand.wish.kind) {
         match Ready::new(kind, demand) {
-            Ok(ready) => return Runner { code: demand.code, ready, choice: Choice { kind, refusal } },
+            Ok(ready) => return EngineRunner { code: demand.code, ready, choice: Choice { kind, refusal } },
             // The first reason is that of the engine which was wanted, and the one that users are told.
             Err(reason) => refusal = refusal.or(Some(reason)),
         }
     }
-    Runner { code: demand.code, ready: None, choice: Choice { kind: EngineKind::Checked, refusal } }
+    EngineRunner { code: demand.code, ready: None, choice: Choice { kind: EngineKind::Checked, refusal } }
 }
 
 /// Engine of one program: quickly as far as it is nothing unusual, then on the interpreter.
 #[derive(Clone, Debug)]
-pub struct Runner<'a> {
+pub struct EngineRunner<'a> {
     code: &'a Code<'a>,
     ready: Option<Ready<'a>>,
     choice: Choice,
 }
 
-impl Runner<'_> {
+impl EngineRunner<'_> {
     /// The engine that was chosen; after a run in which that one had to give up, the one that runs the program instead.
     pub fn choice(&self) -> Choice {
         self.ready.as_ref().and_then(Ready::replacement).unwrap_or(self.choice)
     }
 
-    /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`Runner::fold`].
+    /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`EngineRunner::fold`].
     pub fn run<T: Watch, O: RunObserver>(
         &mut self,
         core: CoreId,

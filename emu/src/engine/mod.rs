@@ -17,7 +17,7 @@ mod quick;
 mod state;
 mod taint;
 
-pub use choose::{Answers, Choice, Demand, EngineKind, Runner, Wish, choose};
+pub use choose::{Answers, Choice, Demand, EngineKind, EngineRunner, Wish, choose};
 pub use dispatch::{Task, dispatch};
 pub use host::{HostSimd, Present};
 pub use plan::Plan;

@@ -38,7 +38,7 @@ impl Shape {
 }
 
 /// Reader of words of global memory from an address on.
-pub(crate) type Read<'a> = &'a mut dyn FnMut(u32, &mut [i32]) -> Result<(), Stop>;
+pub(crate) type WordReader<'a> = &'a mut dyn FnMut(u32, &mut [i32]) -> Result<(), Stop>;
 
 /// Unit that executes an instruction, whatever the type of its meaning.
 pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
@@ -48,7 +48,7 @@ pub(crate) trait Unit: DynClone + fmt::Debug + Send + Sync {
         fields: &Fields,
         registers: &mut Registers,
         buffer: &mut Buffer,
-        read: Read,
+        read: WordReader,
         arithmetic: &Numbers,
     ) -> Result<Ending, Stop>;
 
@@ -137,7 +137,7 @@ impl<M: Meaning + Clone> Unit for TypedUnit<M> {
         fields: &Fields,
         registers: &mut Registers,
         buffer: &mut Buffer,
-        read: Read,
+        read: WordReader,
         arithmetic: &Numbers,
     ) -> Result<Ending, Stop> {
         let operands = Operands { registers, fields, shape: &self.shape };

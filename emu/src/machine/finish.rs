@@ -2,7 +2,7 @@
 
 use isa::Class;
 
-use super::Failure;
+use super::RunFailure;
 use super::cache::Cache;
 use super::outcome::{Method, RunOutcome};
 use super::processor::ProcessorState;
@@ -29,7 +29,7 @@ impl<W: Worker> Machine<'_, W> {
     }
 
     /// Check that everybody has done what was begun.
-    pub(super) fn check_end(&self) -> Result<(), Failure> {
+    pub(super) fn check_end(&self) -> Result<(), RunFailure> {
         let is_stuck = |number: usize| {
             let processor = &self.processors[number];
             match processor.state {

@@ -50,7 +50,7 @@ pub struct Setup<'a> {
     /// Names for ranges of global memory, for the totals by kind; ranges must not overlap, names may repeat.
     pub kinds: Vec<(Range<u32>, String)>,
     /// Records that are wanted.
-    pub options: Options,
+    pub options: RunOptions,
 }
 
 impl Setup<'_> {
@@ -72,7 +72,7 @@ impl Setup<'_> {
 
 /// Records of a run beyond counts and times, and the engine that it wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Options {
+pub struct RunOptions {
     /// Functions and regions: inclusive counts, calls, least and most a call. Costs time.
     pub has_profile: bool,
     /// Each work item.
@@ -89,7 +89,7 @@ pub struct Options {
     pub is_eager: bool,
 }
 
-impl Options {
+impl RunOptions {
     /// The engine that is wanted.
     pub(crate) fn wish(&self) -> Wish {
         Wish { kind: self.engine, simd: self.simd.unwrap_or_else(HostSimd::best), is_eager: self.is_eager }
@@ -98,43 +98,43 @@ impl Options {
 
 /// Reason for which a run has no result.
 #[derive(Clone, Debug)]
-pub enum Failure {
+pub enum RunFailure {
     /// The machine or the programs cannot be used.
     Setup(Report),
     /// A program went wrong.
     Trap(Box<Trap>),
 }
 
-impl Failure {
+impl RunFailure {
     /// The messages for a person.
     pub fn report(&self) -> Report {
         match self {
-            Failure::Setup(report) => report.clone(),
-            Failure::Trap(trap) => trap.diagnostic().into(),
+            RunFailure::Setup(report) => report.clone(),
+            RunFailure::Trap(trap) => trap.diagnostic().into(),
         }
     }
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for RunFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Failure::Setup(report) => report.fmt(f),
-            Failure::Trap(trap) => trap.fmt(f),
+            RunFailure::Setup(report) => report.fmt(f),
+            RunFailure::Trap(trap) => trap.fmt(f),
         }
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for RunFailure {}
 
-impl From<Trap> for Failure {
-    fn from(trap: Trap) -> Failure {
-        Failure::Trap(Box::new(trap))
+impl From<Trap> for RunFailure {
+    fn from(trap: Trap) -> RunFailure {
+        RunFailure::Trap(Box::new(trap))
     }
 }
 
-impl From<Report> for Failure {
-    fn from(report: Report) -> Failure {
-        Failure::Setup(report)
+impl From<Report> for RunFailure {
+    fn from(report: Report) -> RunFailure {
+        RunFailure::Setup(report)
     }
 }
 
@@ -142,7 +142,7 @@ impl From<Report> for Failure {
 ///
 /// # Errors
 /// A machine out of its ranges, initial data that do not fit a buffer, or a cache of data that nothing is called.
-pub(crate) fn check(setup: &Setup) -> Result<(), Failure> {
+pub(crate) fn check(setup: &Setup) -> Result<(), RunFailure> {
     setup.config.check()?;
     check_buffer("a core", setup.core, setup.config.buffer_octets)?;
     check_buffer("the main processor", setup.main, setup.config.main.buffer_octets)?;

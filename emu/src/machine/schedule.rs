@@ -13,12 +13,12 @@ use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, Progress, Worker};
-use super::{Failure, Setup};
+use super::{RunFailure, Setup};
 use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
-use crate::engine::{CoreId, Demand, Pause, Runner, choose};
+use crate::engine::{CoreId, Demand, EngineRunner, Pause, choose};
 use crate::profile::RunObserver;
 use crate::semantics::Watch;
 
@@ -31,7 +31,7 @@ pub fn run<T: Watch, O: RunObserver>(
     memory: Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> Result<RunOutcome, Failure> {
+) -> Result<RunOutcome, RunFailure> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
@@ -50,7 +50,7 @@ fn runner_of<'a, T: Watch, O: RunObserver>(
     code: &'a Code<'a>,
     arithmetic: &T,
     buffer_octets: u32,
-) -> Runner<'a> {
+) -> EngineRunner<'a> {
     let demand = Demand::new(code, setup.options.wish(), arithmetic.computes(), buffer_octets);
     choose(&Demand { has_profile: O::IS_ACTIVE, ..demand })
 }
@@ -146,7 +146,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     ///
     /// # Errors
     /// A trap.
-    pub(crate) fn run(mut self) -> Result<RunOutcome, Failure> {
+    pub(crate) fn run(mut self) -> Result<RunOutcome, RunFailure> {
         self.begin();
         while self.step()? {}
         self.check_end()?;
@@ -308,7 +308,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     }
 
     /// Does the next thing that concerns others; false when there is none.
-    fn step(&mut self) -> Result<bool, Failure> {
+    fn step(&mut self) -> Result<bool, RunFailure> {
         if self.meeting != 0 {
             self.leave_barrier();
         }
@@ -382,7 +382,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         }
     }
 
-    fn act(&mut self, number: usize, at: Clocks, act: Act) -> Result<(), Failure> {
+    fn act(&mut self, number: usize, at: Clocks, act: Act) -> Result<(), RunFailure> {
         self.now = at;
         let main = self.main();
         let processor = &mut self.processors[number];

@@ -9,7 +9,7 @@ use crate::code::Code;
 use crate::code::octets::Buffer;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
-use crate::engine::{Choice, CoreId, Pause, Runner, State, interpreter};
+use crate::engine::{Choice, CoreId, EngineRunner, Pause, State, interpreter};
 use crate::profile::{Profile, RunObserver, Unobserved};
 use crate::semantics::{Message, Watch};
 
@@ -111,7 +111,7 @@ impl NextTransfer for PlainMaster {
 pub struct Executor<'a, T, O> {
     code: &'a Code<'a>,
     core: CoreId,
-    runner: Runner<'a>,
+    runner: EngineRunner<'a>,
     arithmetic: &'a T,
     initial: Buffer,
     tally: Tally,
@@ -127,7 +127,7 @@ impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
         code: &'a Code<'a>,
         core: CoreId,
         buffer_octets: u32,
-        runner: Runner<'a>,
+        runner: EngineRunner<'a>,
         arithmetic: &'a T,
     ) -> Executor<'a, T, O> {
         let initial = Buffer::new(&code.program.buffer, buffer_octets);

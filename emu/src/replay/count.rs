@@ -7,7 +7,7 @@ use crate::code::octets::Memory;
 use crate::code::tally::Tally;
 use crate::engine::{Pause, Task};
 use crate::machine::kinds::Kinds;
-use crate::machine::{Failure, Setup, check, on_arithmetic};
+use crate::machine::{RunFailure, Setup, check, on_arithmetic};
 use crate::profile::{Profile, RunObserver};
 use crate::semantics::Watch;
 
@@ -31,7 +31,7 @@ pub struct FrameTotals {
 /// # Errors
 /// A machine out of its ranges, or a program whose initial buffer does not fit. The inner error says why there is no such
 /// result: the frame traps, or what its work items do depends on time, which [`crate::run()`] finds out about.
-pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<FrameTotals, Reason>, Failure> {
+pub fn count(setup: &Setup, memory: &Memory) -> Result<Result<FrameTotals, Reason>, RunFailure> {
     check(setup)?;
     Ok(on_arithmetic(setup, CountTask { setup, memory }))
 }

@@ -20,7 +20,7 @@ use crate::profile::{Profile, RunObserver};
 use crate::semantics::Watch;
 
 /// A core's place in the work item that it replays.
-pub struct Cursor<'a> {
+pub struct ItemCursor<'a> {
     code: &'a Code<'a>,
     core: CoreId,
     feed: &'a RefCell<Feed>,
@@ -31,10 +31,10 @@ pub struct Cursor<'a> {
     progress: Progress,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> ItemCursor<'a> {
     /// A core that has replayed nothing.
-    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>) -> Cursor<'a> {
-        Cursor { code, core, feed, recording: None, next: 0, progress: Progress::default() }
+    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>) -> ItemCursor<'a> {
+        ItemCursor { code, core, feed, recording: None, next: 0, progress: Progress::default() }
     }
 
     /// The segment that asked for what the core waits for; none where that is its message.
@@ -72,7 +72,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-impl Worker for Cursor<'_> {
+impl Worker for ItemCursor<'_> {
     type Master = BusCursor;
 
     /// Replays what [`Executor::advance`] would have done.
@@ -171,7 +171,7 @@ impl Worker for Cursor<'_> {
 /// Workers of a machine that replays: cores do, the main processor executes its program.
 pub enum Replayer<'a, T, O> {
     /// A core.
-    Core(Cursor<'a>),
+    Core(ItemCursor<'a>),
     /// The main processor.
     Main(Box<Executor<'a, T, O>>),
 }

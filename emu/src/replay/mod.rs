@@ -28,10 +28,10 @@ use crate::code::quantity::Octets;
 use crate::extension;
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
-use crate::machine::{Failure, RunOutcome, Setup};
+use crate::machine::{RunFailure, RunOutcome, Setup};
 use crate::profile::{RunObserver, Unobserved};
 use crate::semantics::Watch;
-use cursor::{Cursor, Replayer};
+use cursor::{ItemCursor, Replayer};
 use feed::{Batch, Feed};
 use item::RecordLevel;
 use prerun::PrerunTotals;
@@ -46,7 +46,7 @@ pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> Vec<Result<RunOutcome, Failure>> {
+) -> Vec<Result<RunOutcome, RunFailure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     let step = |setup: &Setup, why: Reason, progress: &mut dyn FnMut(u64)| {
         let frame = schedule::run::<T, O>(setup, memory.clone(), arithmetic, progress)?;
@@ -79,7 +79,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 }
 
 /// Outcome of one machine, or the reason for which it has to be stepped.
-type Replayed = Result<Result<RunOutcome, Failure>, Reason>;
+type Replayed = Result<Result<RunOutcome, RunFailure>, Reason>;
 
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
 fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
@@ -129,12 +129,12 @@ fn on_clock<T: Watch, O: RunObserver>(
     arithmetic: &T,
     feed: Feed,
     progress: &mut dyn FnMut(u64),
-) -> Result<Result<RunOutcome, Failure>, Reason> {
+) -> Result<Result<RunOutcome, RunFailure>, Reason> {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
     let feed = RefCell::new(feed);
-    let core = |core| Replayer::Core(Cursor::new(&core_code, core, &feed));
+    let core = |core| Replayer::Core(ItemCursor::new(&core_code, core, &feed));
     let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, &main_code, arithmetic)));
     let done = Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run();
     let mut feed = feed.into_inner();

@@ -9,7 +9,7 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, Answers, CoreId, Demand, Pause, RequestTime, Runner, State, Stopped, TaintObserver, choose, interpreter,
+    self, Answers, CoreId, Demand, EngineRunner, Pause, RequestTime, State, Stopped, TaintObserver, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
@@ -126,7 +126,7 @@ pub struct Recorder<'a, T, O> {
     pub kinds: Kinds,
     /// Observer of all items.
     pub observer: TaintObserver<O>,
-    runner: Runner<'a>,
+    runner: EngineRunner<'a>,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
 }

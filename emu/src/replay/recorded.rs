@@ -11,7 +11,7 @@ use super::record::Prefix;
 use super::recording::Reason;
 use crate::code::octets::Memory;
 use crate::engine::Task;
-use crate::machine::{Failure, RunOutcome, Setup, check, on_arithmetic};
+use crate::machine::{RunFailure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::RunObserver;
 use crate::semantics::Watch;
 
@@ -43,7 +43,7 @@ impl Recorded {
     ///
     /// # Errors
     /// As [`crate::run()`]; the inner error says why this machine would not do what was recorded.
-    pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, Failure> {
+    pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, RunFailure> {
         check(setup)?;
         match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory }) {
             Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.totals))),
@@ -83,7 +83,7 @@ struct ReplayTask<'a> {
 }
 
 impl Task for ReplayTask<'_> {
-    type Result = Result<Result<RunOutcome, Failure>, Reason>;
+    type Result = Result<Result<RunOutcome, RunFailure>, Reason>;
 
     fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
         // The channel holds all batches before anybody reads, so it must have no bound.

@@ -2,7 +2,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{Config, Options, Setup};
+use emu::machine::{Config, RunOptions, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 
@@ -42,7 +42,7 @@ fn both_engines_count_what_they_read() {
     let (core, main) = (readers(150), dispatch(45));
     let count = |engine, features| {
         let kinds = vec![(500..508, "first".to_owned()), (512..600, "second".to_owned())];
-        let options = Options { engine, simd: features, is_eager: true, ..Options::default() };
+        let options = RunOptions { engine, simd: features, is_eager: true, ..RunOptions::default() };
         let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds, options };
         let count = emu::count(&setup, &memory()).expect("it runs").expect("it is counted");
         let octets = count.kinds.totals().iter().map(|kind| (kind.kind.clone(), kind.octets)).collect::<Vec<_>>();
@@ -62,7 +62,7 @@ fn both_engines_count_what_they_read() {
 fn what_they_may_not_read_is_the_interpreters() {
     let (isa, config, main) = (Isa::base(), Config::default(), dispatch(45));
     let end = |core: &Program, engine| {
-        let options = Options { engine, is_eager: true, ..Options::default() };
+        let options = RunOptions { engine, is_eager: true, ..RunOptions::default() };
         let setup = Setup { config: &config, isa: &isa, core, main: &main, kinds: Vec::new(), options };
         emu::run(&setup, memory(), &mut |_| {}).map(|frame| (frame.method, frame.clocks)).map_err(|e| e.to_string())
     };

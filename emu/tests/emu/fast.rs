@@ -3,7 +3,7 @@
 
 use emu::engine::EngineKind;
 use emu::engine::HostSimd;
-use emu::machine::{Config, Failure, Options, RunOutcome, Setup};
+use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{InstructionDef, Isa, Kind, Op, Program};
 use random::SplitMix64;
@@ -29,9 +29,9 @@ fn frame(
     features: Option<HostSimd>,
     core: &Program,
     step_limit: u64,
-) -> Result<RunOutcome, Failure> {
+) -> Result<RunOutcome, RunFailure> {
     let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
-    let options = Options { has_items: true, engine, simd: features, is_eager: true, ..Options::default() };
+    let options = RunOptions { has_items: true, engine, simd: features, is_eager: true, ..RunOptions::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
     let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
@@ -252,7 +252,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
         gather(p);
     });
     let (config, main) = (Config { step_limit: 1 << 30, ..Config::default() }, dispatch(1));
-    let options = Options::default();
+    let options = RunOptions::default();
     let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
     let count = emu::count(&setup, &Memory::new(vec![3; MEMORY as usize])).expect("it runs").expect("it is counted");
     assert!(count.tally.instructions() > 20_000 * 100);
@@ -377,7 +377,7 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
             p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
         });
         let setup = |config, engine| {
-            let options = Options { engine, is_eager: true, ..Options::default() };
+            let options = RunOptions { engine, is_eager: true, ..RunOptions::default() };
             Setup { config, isa: &isa, core: &core, main: &main, kinds: Vec::new(), options }
         };
         let stepped = machines.each_ref().map(|config| {

@@ -1,6 +1,6 @@
 //! Cores, messages and the bus together.
 
-use emu::machine::{Config, Options, RunOutcome, Setup};
+use emu::machine::{Config, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 
@@ -52,7 +52,7 @@ pub fn worker(segments: i32, spin: i32, octets: i32) -> Program {
 
 pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> RunOutcome {
     let isa = Isa::base();
-    let options = Options { has_profile: true, has_items: true, ..Options::default() };
+    let options = RunOptions { has_profile: true, has_items: true, ..RunOptions::default() };
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![(0..400, "answer".to_owned())], options };
     match emu::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
         Ok(frame) => frame,

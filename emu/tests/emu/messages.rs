@@ -1,7 +1,7 @@
 //! Messages, barriers and the atomic counter between processors, and who waits for whom.
 
 use emu::machine::mailbox::Mailboxes;
-use emu::machine::{Config, Failure, Options, RunOutcome, Setup};
+use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use emu::semantics::Message;
@@ -12,10 +12,10 @@ use super::builder::{Builder, program};
 
 fn result(config: &Config, core: &Program, main: &Program) -> Result<RunOutcome, Box<Trap>> {
     let isa = Isa::base();
-    let setup = Setup { config, isa: &isa, core, main, kinds: vec![], options: Options::default() };
+    let setup = Setup { config, isa: &isa, core, main, kinds: vec![], options: RunOptions::default() };
     match emu::run(&setup, Memory::new(vec![0; 400]), &mut |_| {}) {
         Ok(frame) => Ok(frame),
-        Err(Failure::Trap(trap)) => Err(trap),
+        Err(RunFailure::Trap(trap)) => Err(trap),
         Err(failure) => panic!("{failure}"),
     }
 }

@@ -3,7 +3,7 @@
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::{BusConfig, CacheConfig};
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, Method, Options, RunOutcome, Setup};
+use emu::machine::{Config, Method, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use isa::{Isa, Op, Program};
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Prog
         core,
         main,
         kinds,
-        options: Options { has_profile: true, has_items: true, ..Options::default() },
+        options: RunOptions { has_profile: true, has_items: true, ..RunOptions::default() },
     }
 }
 

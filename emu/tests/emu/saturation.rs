@@ -1,7 +1,7 @@
 //! Saturation of the bus: the report's estimate of a pixel as a load, against the closed form.
 
 use emu::machine::config::MainConfig;
-use emu::machine::{Config, Options, RunOutcome, Setup};
+use emu::machine::{Config, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::quantity::Clocks;
 use isa::{Isa, Op, Program};
@@ -63,8 +63,14 @@ fn frames(cores: &[u32]) -> Vec<RunOutcome> {
     let main_config = MainConfig { traffic: false, ..MainConfig::default() };
     let machine = |&cores: &u32| Config { cores, main: main_config.clone(), ..Config::default() };
     let machines: Vec<Config> = cores.iter().map(machine).collect();
-    let setup =
-        Setup { config: &machines[0], isa: &isa, core: &core, main: &main, kinds: vec![], options: Options::default() };
+    let setup = Setup {
+        config: &machines[0],
+        isa: &isa,
+        core: &core,
+        main: &main,
+        kinds: vec![],
+        options: RunOptions::default(),
+    };
     let frames = emu::run_all(&setup, &machines, &Memory::new(vec![0; 1_240]), &mut |_| {});
     frames.into_iter().map(|frame| frame.unwrap_or_else(|failure| panic!("{failure}"))).collect()
 }

@@ -1,7 +1,7 @@
 //! Programs that go wrong, and what a person is told.
 
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
-use emu::machine::{Config, Failure, Options, Setup};
+use emu::machine::{Config, RunFailure, RunOptions, Setup};
 use emu::octets::Memory;
 use emu::trap::{Fault, Trap};
 use isa::{Isa, Op, Program};
@@ -195,9 +195,9 @@ fn a_trap_on_the_machine_names_the_work_item() {
         p.emit(Op::send5, &[1, 4]).emit(Op::halt, &[]);
     });
     let setup =
-        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: vec![], options: Options::default() };
+        Setup { config: &config, isa: &isa, core: &core, main: &main, kinds: vec![], options: RunOptions::default() };
     match emu::run(&setup, Memory::new(vec![0; 100]), &mut |_| {}) {
-        Err(Failure::Trap(trap)) => {
+        Err(RunFailure::Trap(trap)) => {
             assert_eq!((trap.core, trap.pc), (1, 2));
             assert_eq!(trap.kind, Fault::Memory { address: 98, octets: 4, size: 100 });
             assert_eq!(trap.detail, "in the work item whose first message began with 12, 98, -7");

@@ -23,7 +23,7 @@ pub enum Immediate {
 
 /// The act of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Act {
+pub enum BodyAct {
     /// An instruction on template registers; a branch distance counts steps.
     Execute {
         /// The instruction. Its registers are numbered as [`super::registers`] says.
@@ -42,9 +42,9 @@ pub enum Act {
 
 /// One step of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct BodyStep {
     /// The step's act.
-    pub act: Act,
+    pub act: BodyAct,
     /// The step's line in the source of the body, from 1.
     pub line: u32,
 }
@@ -53,7 +53,7 @@ pub struct Step {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Body {
     /// The steps; the first one is executed first, the last one is an outcome or does not fall through.
-    pub steps: Vec<Step>,
+    pub steps: Vec<BodyStep>,
     /// The file.
     pub source: Arc<Source>,
     /// Temporaries that it uses, by file (`s`, `v`, `w`): one more than the highest number.

@@ -1,7 +1,7 @@
 //! Facts about a body that are known without running it: which steps and outcomes are reached, whether it may go on for ever, and that no step
 //! reads a register that nothing has written.
 
-use super::body::{Act, Body};
+use super::body::{Body, BodyAct};
 use super::registers;
 use crate::definition::{InstructionDef, Kind, Operand};
 use crate::isa::Isa;
@@ -50,7 +50,7 @@ pub struct Summary {
 }
 
 /// The registers of the three files that hold something, a bit each.
-type Known = [u128; 3];
+type KnownRegisters = [u128; 3];
 
 fn place(file: char) -> usize {
     match file {
@@ -69,8 +69,8 @@ impl Body {
     /// The steps that may follow a step.
     pub fn successors(&self, step: usize, isa: &Isa) -> impl Iterator<Item = usize> + use<> {
         let (next, target) = match self.steps[step].act {
-            Act::End { .. } => (None, None),
-            Act::Execute { instruction, .. } => {
+            BodyAct::End { .. } => (None, None),
+            BodyAct::Execute { instruction, .. } => {
                 let definition = isa.definition(instruction.op);
                 let distance = definition.operands.iter().find(|operand| operand.kind == Kind::Rel);
                 let target = distance.map(|operand| (step as i64 + instruction.fields.get(operand.letter)) as usize);
@@ -83,7 +83,7 @@ impl Body {
 
     /// Registers (file, number in the body, how many) that a step reads or writes.
     fn operands(&self, step: usize, isa: &Isa, is_written: bool) -> Vec<(char, u8, Kind)> {
-        let Act::Execute { instruction, .. } = self.steps[step].act else { return Vec::new() };
+        let BodyAct::Execute { instruction, .. } = self.steps[step].act else { return Vec::new() };
         let operands = isa.definition(instruction.op).operands.iter();
         let wanted = operands.filter(|operand| if is_written { operand.is_written() } else { operand.is_read() });
         let found = wanted.filter_map(|operand| {
@@ -99,9 +99,9 @@ impl Body {
     /// Why it cannot be executed, by the lowest step.
     pub fn summary(&self, definition: &InstructionDef, isa: &Isa) -> Result<Summary, Defect> {
         // What is known to be written before each step, on every way that leads there; `None` for steps that no way reaches.
-        let mut known: Vec<Option<Known>> = vec![None; self.steps.len()];
+        let mut known: Vec<Option<KnownRegisters>> = vec![None; self.steps.len()];
         // At the start `s0` holds zero and sources hold what the program put there.
-        let mut first: Known = [1, 0, 0];
+        let mut first: KnownRegisters = [1, 0, 0];
         for operand in definition.operands.iter().filter(|operand| operand.is_read()) {
             if let Some(file) = operand.kind.register_file() {
                 first[place(file)] |= bits(operand.kind, registers::operand(operand.letter, 0));
@@ -131,7 +131,7 @@ impl Body {
         Ok(self.summarize(definition, isa, &known))
     }
 
-    fn check(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<Known>]) -> Result<(), Defect> {
+    fn check(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<KnownRegisters>]) -> Result<(), Defect> {
         // In the order of the steps, so that the first defect of the text is told.
         let mut has_outcome = false;
         for (step, known) in known.iter().enumerate() {
@@ -144,7 +144,7 @@ impl Body {
                 }
             }
             // At an outcome all destinations have to be there.
-            if !matches!(self.steps[step].act, Act::End { .. }) {
+            if !matches!(self.steps[step].act, BodyAct::End { .. }) {
                 continue;
             }
             has_outcome = true;
@@ -160,7 +160,7 @@ impl Body {
         if has_outcome { Ok(()) } else { Err(Defect::Endless) }
     }
 
-    fn summarize(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<Known>]) -> Summary {
+    fn summarize(&self, definition: &InstructionDef, isa: &Isa, known: &[Option<KnownRegisters>]) -> Summary {
         let mut summary = Summary {
             reached: known.iter().map(Option::is_some).collect(),
             outcomes: vec![false; definition.outcomes.len()],
@@ -170,7 +170,7 @@ impl Body {
         let mut used = Vec::new();
         for step in (0..self.steps.len()).filter(|&step| known[step].is_some()) {
             match self.steps[step].act {
-                Act::End { outcome, jumps } => {
+                BodyAct::End { outcome, jumps } => {
                     summary.outcomes[usize::from(outcome)] = true;
                     used.extend(
                         jumps
@@ -180,7 +180,7 @@ impl Body {
                             .map(|o| o.letter),
                     );
                 }
-                Act::Execute { instruction, immediates } => {
+                BodyAct::Execute { instruction, immediates } => {
                     let inner = isa.definition(instruction.op);
                     // These may stop any machine; a division only one that makes it a trap.
                     if instruction.op == Op::trap || matches!(&*inner.room, "local" | "bus") {

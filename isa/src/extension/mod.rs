@@ -7,7 +7,7 @@ mod flow;
 use std::any::Any;
 use std::sync::Arc;
 
-pub use body::{Act, Body, Immediate, Step};
+pub use body::{Body, BodyAct, BodyStep, Immediate};
 pub use flow::{Defect, Summary};
 
 use crate::definition::InstructionDef;

@@ -151,7 +151,7 @@ macro_rules! stamp {
         }
 
         #[allow(non_camel_case_types, dead_code, reason = "numbers the mnemonics in the order of the table")]
-        enum Number { $($($name,)*)* }
+        enum RowNumber { $($($name,)*)* }
 
         impl Op {
             /// Opcodes of the built-in rows, in the order of the table.
@@ -160,7 +160,7 @@ macro_rules! stamp {
             /// Place in the list of all rows, extensions after the table.
             pub const fn index(self) -> usize {
                 match self {
-                    $($(Op::$name => Number::$name as usize,)*)*
+                    $($(Op::$name => RowNumber::$name as usize,)*)*
                     Op::Ext(n) => Op::BUILT_IN.len() + n as usize,
                 }
             }

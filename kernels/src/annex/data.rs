@@ -42,7 +42,7 @@ pub struct PixelSearch {
 /// Something odd in the printed figures.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Erratum {
+pub struct PrintedErratum {
     /// Short name.
     pub id: String,
     /// Place in the report where it is printed.
@@ -75,7 +75,7 @@ pub struct Peer {
 struct AnnexFile {
     row: Vec<RawRow>,
     figure: Vec<Figure>,
-    erratum: Vec<Erratum>,
+    erratum: Vec<PrintedErratum>,
     peer: Vec<Peer>,
 }
 
@@ -108,7 +108,7 @@ struct RawTerm {
 pub(super) struct Data {
     pub rows: Vec<Row>,
     pub figures: Vec<Figure>,
-    pub errata: Vec<Erratum>,
+    pub errata: Vec<PrintedErratum>,
     pub peers: Vec<Peer>,
 }
 

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use isa::{Class, Counts};
 
-pub use data::{Erratum, Figure, Peer, PixelSearch};
+pub use data::{Figure, Peer, PixelSearch, PrintedErratum};
 pub use world::MEMORY;
 
 use data::Data;
@@ -83,7 +83,7 @@ pub fn printed(figure: &str) -> Option<f64> {
 }
 
 /// Oddities in the printed figures.
-pub fn errata() -> &'static [Erratum] {
+pub fn errata() -> &'static [PrintedErratum] {
     &DATA.errata
 }
 

@@ -12,7 +12,7 @@ use messages::Diagnostic;
 use scenes::layout::Layout;
 
 use crate::function::{Function, KernelFile, unknown};
-use crate::prelude::Walk;
+use crate::prelude::WalkMemory;
 use crate::skip::Skip;
 
 macro_rules! file {
@@ -23,7 +23,7 @@ macro_rules! file {
 use file;
 
 /// Answers of a set of kernels to all that programs, twins and commands ask of it. There are no defaults: a new set answers each question.
-pub(crate) struct Answers {
+pub(crate) struct SetAnswers {
     /// Name on the command line.
     pub name: &'static str,
     /// Layout of memory that goes with it unless the user chooses another.
@@ -35,9 +35,9 @@ pub(crate) struct Answers {
     /// Functions that it serves by files made for each other.
     pub teams: &'static [Team],
     /// Way in which its walk remembers far sides, when the user has replaced none of the functions that walk.
-    pub walk: Walk,
+    pub walk: WalkMemory,
     /// Way in which its walk remembers far sides, when the user has replaced one of them.
-    pub walk_alone: Walk,
+    pub walk_alone: WalkMemory,
     /// Exactness of its decisions.
     pub decisions: Decisions,
     /// Formulas for what follows a hit.
@@ -90,7 +90,7 @@ macro_rules! kernel_sets {
             /// All sets of kernels.
             pub const ALL: &[KernelSet] = &[$(KernelSet::$variant),*];
 
-            pub(crate) const fn answers(self) -> &'static Answers {
+            pub(crate) const fn answers(self) -> &'static SetAnswers {
                 match self { $(KernelSet::$variant => &$file::SET,)* }
             }
         }
@@ -130,8 +130,8 @@ impl KernelSet {
     }
 
     /// Way in which the set's walk through the tree remembers far sides, when the user has replaced some functions.
-    pub fn walk(self, replaced: &[Function]) -> Walk {
-        let Answers { walk, walk_alone, .. } = *self.answers();
+    pub fn walk(self, replaced: &[Function]) -> WalkMemory {
+        let SetAnswers { walk, walk_alone, .. } = *self.answers();
         // Without replacements the set has what it was made for. With some, its own walk stays only if the whole team does:
         // half of a team would leave notes on the way down that the other half does not read.
         if replaced.is_empty() || self.team(Function::Descend, replaced).is_some() { walk } else { walk_alone }

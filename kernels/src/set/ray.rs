@@ -2,13 +2,13 @@
 
 use scenes::layout::Layout;
 
-use super::{Answers, Decisions, Formulas, Team, file};
+use super::{Decisions, Formulas, SetAnswers, Team, file};
 use crate::function::Function;
-use crate::prelude::Walk;
+use crate::prelude::WalkMemory;
 use crate::skip::Skip;
 
 /// The set's answers.
-pub(super) static SET: Answers = Answers {
+pub(super) static SET: SetAnswers = SetAnswers {
     name: "ray",
     layout: Layout::Wide,
     base: Some(super::KernelSet::Vector),
@@ -26,8 +26,8 @@ pub(super) static SET: Answers = Answers {
             ],
         },
     ],
-    walk: Walk::Planes,
-    walk_alone: Walk::Boxes,
+    walk: WalkMemory::Planes,
+    walk_alone: WalkMemory::Boxes,
     decisions: Decisions::Exact,
     formulas: Formulas::Vector,
     skips: Skip::ALL,

@@ -2,13 +2,13 @@
 
 use scenes::layout::Layout;
 
-use super::{Answers, Decisions, Formulas, file};
+use super::{Decisions, Formulas, SetAnswers, file};
 use crate::function::Function;
-use crate::prelude::Walk;
+use crate::prelude::WalkMemory;
 use crate::skip::Skip;
 
 /// The set's answers. The main processor's `dispatch` and `interpolate`, which the report does not have, are those of `vector`.
-pub(super) static SET: Answers = Answers {
+pub(super) static SET: SetAnswers = SetAnswers {
     name: "report",
     layout: Layout::Report,
     base: Some(super::KernelSet::Vector),
@@ -35,8 +35,8 @@ pub(super) static SET: Answers = Answers {
         (Function::FirstPacket, file!("report/first_packet.s")),
     ],
     teams: &[],
-    walk: Walk::Restart,
-    walk_alone: Walk::Restart,
+    walk: WalkMemory::Restart,
+    walk_alone: WalkMemory::Restart,
     decisions: Decisions::Rounded,
     formulas: Formulas::Printed,
     skips: &[Skip::Features, Skip::Weightless, Skip::Unlit, Skip::AnyHit, Skip::Beyond],

@@ -2,13 +2,13 @@
 
 use scenes::layout::Layout;
 
-use super::{Answers, Decisions, Formulas, file};
+use super::{Decisions, Formulas, SetAnswers, file};
 use crate::function::Function;
-use crate::prelude::Walk;
+use crate::prelude::WalkMemory;
 use crate::skip::Skip;
 
 /// The set's answers.
-pub(super) static SET: Answers = Answers {
+pub(super) static SET: SetAnswers = SetAnswers {
     name: "vector",
     layout: Layout::Wide,
     base: None,
@@ -37,8 +37,8 @@ pub(super) static SET: Answers = Answers {
         (Function::FirstPacket, file!("vector/first_packet.s")),
     ],
     teams: &[],
-    walk: Walk::Boxes,
-    walk_alone: Walk::Boxes,
+    walk: WalkMemory::Boxes,
+    walk_alone: WalkMemory::Boxes,
     decisions: Decisions::Wide,
     formulas: Formulas::Vector,
     skips: Skip::ALL,

@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use scenes::camera::RawCamera;
 
-use super::ray::Ray;
+use super::ray::TwinRay;
 use super::unit::sqrt;
 use super::vector_arithmetic::{VectorArithmetic, WideVector};
 
@@ -16,7 +16,7 @@ pub fn camera(
     camera: &RawCamera,
     column: u32,
     row: u32,
-) -> Ray {
+) -> TwinRay {
     let [column, row] = [column, row].map(|number| arithmetic.widen((number as i32).into(), 0));
     let step = |step: i64, number: i64| i128::from(arithmetic.widen(i128::from(step) * i128::from(number), 0));
     let right = |from: i64, by: i64| arithmetic.widen(i128::from(from) + step(by, column), 0);
@@ -25,7 +25,7 @@ pub fn camera(
         RawCamera::Orthographic { direction, extra, first, pitch, z } => {
             let x = arithmetic.narrow64(right(first[0], pitch), extra);
             let y = arithmetic.narrow64(down(first[1], pitch), extra);
-            Ray::new(arithmetic, [x, y, z], direction)
+            TwinRay::new(arithmetic, [x, y, z], direction)
         }
         RawCamera::Perspective { eye, extra, base, column, row } => {
             let way: WideVector = from_fn(|k| down(right(base[k], column[k]), row[k]));
@@ -34,7 +34,7 @@ pub fn camera(
             let length = arithmetic.widen(i128::from(length) << extra, 0);
             let direction =
                 way.map(|component| arithmetic.quotient(i128::from(component) << direction_bits, length.into()));
-            Ray::new(arithmetic, eye, direction)
+            TwinRay::new(arithmetic, eye, direction)
         }
     }
 }

@@ -4,17 +4,17 @@
 use isa::number::Vector;
 use isa::number::ray::ratio;
 
-use super::ray::Ray;
+use super::ray::TwinRay;
 use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::Constants;
 
-type Exact = [i128; 3];
+type ExactVector = [i128; 3];
 
-fn cross(a: Exact, b: Exact) -> Exact {
+fn cross(a: ExactVector, b: ExactVector) -> ExactVector {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn dot(a: Exact, b: Exact) -> i128 {
+fn dot(a: ExactVector, b: ExactVector) -> i128 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -24,15 +24,15 @@ fn dot(a: Exact, b: Exact) -> i128 {
 pub fn exact_triangle(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    ray: &Ray,
+    ray: &TwinRay,
     vertices: &[Vector; 3],
 ) -> i32 {
     let seen = |vertex: Vector| std::array::from_fn(|k| i128::from(vertex[k]) - i128::from(ray.origin[k]));
-    let [a, b, c]: [Exact; 3] = vertices.map(seen);
+    let [a, b, c]: [ExactVector; 3] = vertices.map(seen);
     let direction = ray.direction.map(i128::from);
     let edges = [cross(a, b), cross(b, c), cross(c, a)];
     let whole: i128 = edges.iter().map(|&edge| dot(edge, direction)).sum();
-    let sign = |edge: &Exact| {
+    let sign = |edge: &ExactVector| {
         let in_order = [dot(*edge, direction), edge[0], edge[1], edge[2]];
         in_order.into_iter().find(|&part| part != 0).unwrap_or(0).signum()
     };

@@ -4,15 +4,15 @@ use std::array::from_fn;
 
 use super::descend::descend;
 use super::exit_face::runs;
-use super::ray::{ExitPlane, Packet, Ray};
-use super::stage::Stage;
+use super::ray::{ExitPlane, Packet, TwinRay};
+use super::stage::TwinStage;
 use super::vector_arithmetic::VectorArithmetic;
 
 /// The first packet of a ray that may start outside the scene's box; `None` when it misses the box.
 ///
 /// The last of the planes that it enters by has to come before the first that it leaves by; of planes of axes a < b met at the same t,
 /// a is the later one exactly when the direction along a is negative.
-pub fn first_packet(arithmetic: &impl VectorArithmetic, stage: &Stage, ray: &Ray) -> Option<Packet> {
+pub fn first_packet(arithmetic: &impl VectorArithmetic, stage: &TwinStage, ray: &TwinRay) -> Option<Packet> {
     let (low, high) = (stage.bounds.low, stage.bounds.high);
     let near = from_fn(|k| if ray.is_backwards(k) { high[k] } else { low[k] });
     let far = from_fn(|k| if ray.is_backwards(k) { low[k] } else { high[k] });

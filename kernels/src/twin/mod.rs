@@ -32,9 +32,9 @@ use scenes::image::MemoryImage;
 use crate::build::{Crop, SceneFeatures};
 use crate::constants::Constants;
 use crate::set::{Decisions, KernelSet};
-use ray::{Packet, Ray, Stuck};
+use ray::{Packet, Stuck, TwinRay};
 use ray_tree::Branch;
-use stage::Stage;
+use stage::TwinStage;
 
 /// All that the twins of a scene's kernels share.
 #[derive(Clone, Debug)]
@@ -48,7 +48,7 @@ pub struct Twin<A> {
     /// Which rays have children.
     pub features: SceneFeatures,
     /// Tree, triangles, materials and lights.
-    pub stage: Stage,
+    pub stage: TwinStage,
     /// Origins and directions of the camera rays.
     pub camera: RawCamera,
     /// Ambient intensity in the colour format.
@@ -59,7 +59,7 @@ pub struct Twin<A> {
 
 /// Reason that there is no picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Failure {
+pub enum TwinFailure {
     /// The octets of the image hold no scene.
     NoScene,
     /// A ray of this pixel, counted from 0 row by row, visits more packets than there are.
@@ -69,16 +69,16 @@ pub enum Failure {
     },
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for TwinFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Failure::NoScene => f.write_str("the memory image holds no scene"),
-            Failure::Stuck { pixel } => write!(f, "a ray of pixel {pixel} visits more packets than there are"),
+            TwinFailure::NoScene => f.write_str("the memory image holds no scene"),
+            TwinFailure::Stuck { pixel } => write!(f, "a ray of pixel {pixel} visits more packets than there are"),
         }
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for TwinFailure {}
 
 /// The frame that the machine draws: the pixels of `crop` in the colour format, row by row, on all host threads.
 ///
@@ -90,11 +90,11 @@ pub fn render(
     crop: &Crop,
     profile: KernelSet,
     modes: Modes,
-) -> Result<Vec<Vector>, Failure> {
+) -> Result<Vec<Vector>, TwinFailure> {
     if modes == Modes::default() {
-        Twin::new(image, features, profile, Nearest32).ok_or(Failure::NoScene)?.render(crop)
+        Twin::new(image, features, profile, Nearest32).ok_or(TwinFailure::NoScene)?.render(crop)
     } else {
-        Twin::new(image, features, profile, modes).ok_or(Failure::NoScene)?.render(crop)
+        Twin::new(image, features, profile, modes).ok_or(TwinFailure::NoScene)?.render(crop)
     }
 }
 
@@ -106,7 +106,7 @@ impl<A: Arithmetic> Twin<A> {
             arithmetic,
             constants: Constants::new(image),
             features: *features,
-            stage: Stage::new(image)?,
+            stage: TwinStage::new(image)?,
             camera: image.camera,
             ambient: image.ambient,
             background: image.background,
@@ -117,11 +117,11 @@ impl<A: Arithmetic> Twin<A> {
     ///
     /// # Errors
     /// A ray for which the machine traps.
-    pub fn render(&self, crop: &Crop) -> Result<Vec<Vector>, Failure>
+    pub fn render(&self, crop: &Crop) -> Result<Vec<Vector>, TwinFailure>
     where
         A: Sync,
     {
-        let rows: Vec<Result<Vec<Vector>, Failure>> =
+        let rows: Vec<Result<Vec<Vector>, TwinFailure>> =
             (0..crop.height).into_par_iter().map(|row| self.row(crop, row)).collect();
         let mut pixels = Vec::with_capacity(crop.width as usize * crop.height as usize);
         for row in rows {
@@ -130,10 +130,10 @@ impl<A: Arithmetic> Twin<A> {
         Ok(pixels)
     }
 
-    fn row(&self, crop: &Crop, row: u32) -> Result<Vec<Vector>, Failure> {
+    fn row(&self, crop: &Crop, row: u32) -> Result<Vec<Vector>, TwinFailure> {
         let mut branches = Vec::new();
         let pixels = (0..crop.width).map(|column| {
-            let pixel = |Stuck| Failure::Stuck { pixel: row * crop.width + column };
+            let pixel = |Stuck| TwinFailure::Stuck { pixel: row * crop.width + column };
             self.pixel(crop.column + column, crop.row + row, &mut branches).map_err(pixel)
         });
         pixels.collect()
@@ -147,12 +147,12 @@ impl<A: Arithmetic> Twin<A> {
     }
 
     /// The ray of a pixel, row 0 on top.
-    pub fn camera_ray(&self, column: u32, row: u32) -> Ray {
+    pub fn camera_ray(&self, column: u32, row: u32) -> TwinRay {
         camera::camera(&self.arithmetic, self.constants.formats.direction, &self.camera, column, row)
     }
 
     /// The first packet of a camera ray; `None` when it misses the scene's box.
-    pub fn camera_packet(&self, ray: &Ray) -> Option<Packet> {
+    pub fn camera_packet(&self, ray: &TwinRay) -> Option<Packet> {
         match self.profile.decisions() {
             Decisions::Rounded => report::first_packet(&self.arithmetic, &self.constants, &self.stage, ray),
             Decisions::Wide | Decisions::Exact => first_packet::first_packet(&self.arithmetic, &self.stage, ray),

@@ -6,12 +6,12 @@ use std::ops::Range;
 use isa::number::ray::{BoxEnd, Plane, Ray, SplitEnd, across_box, step};
 use scenes::kdtree::Bounds;
 
-use super::stage::Node;
+use super::stage::StageNode;
 
 /// The packets that a ray visits, in order: ranges of references.
 #[derive(Clone, Debug)]
 pub struct Packets<'a> {
-    nodes: &'a [Node],
+    nodes: &'a [StageNode],
     ray: Ray,
     /// Splits that the ray has still to cross, the next one last, each with its far child.
     notes: Vec<(Plane, u32)>,
@@ -23,7 +23,7 @@ pub struct Packets<'a> {
 
 impl<'a> Packets<'a> {
     /// The packets of a tree in its box, the root being the first node.
-    pub fn new(nodes: &'a [Node], bounds: &Bounds, ray: Ray) -> Packets<'a> {
+    pub fn new(nodes: &'a [StageNode], bounds: &Bounds, ray: Ray) -> Packets<'a> {
         let (enter, outer, end) = across_box(&ray, bounds.low, bounds.high);
         let from = matches!(end, BoxEnd::Inside | BoxEnd::Entered).then_some((0, enter));
         Packets { nodes, ray, notes: Vec::new(), outer, from }
@@ -42,8 +42,8 @@ impl Iterator for Packets<'_> {
         let (mut number, entry) = self.from.take()?;
         loop {
             let (axis, at, left) = match self.nodes[number as usize] {
-                Node::Inner { axis, at, left } => (axis, at, left),
-                Node::Leaf(ref references) => {
+                StageNode::Inner { axis, at, left } => (axis, at, left),
+                StageNode::Leaf(ref references) => {
                     self.from = self.notes.pop().map(|(split, far)| (far, split));
                     return Some(references.clone());
                 }

@@ -9,7 +9,7 @@ use super::vector_arithmetic::VectorArithmetic;
 
 /// A ray P(t) = origin + t direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ray {
+pub struct TwinRay {
     /// The origin: a position.
     pub origin: Vector,
     /// The direction, of unit length.
@@ -18,10 +18,10 @@ pub struct Ray {
     pub steep: Vector,
 }
 
-impl Ray {
+impl TwinRay {
     /// A ray from its origin and direction.
-    pub fn new(arithmetic: &impl VectorArithmetic, origin: Vector, direction: Vector) -> Ray {
-        Ray { origin, direction, steep: arithmetic.magnitude(direction) }
+    pub fn new(arithmetic: &impl VectorArithmetic, origin: Vector, direction: Vector) -> TwinRay {
+        TwinRay { origin, direction, steep: arithmetic.magnitude(direction) }
     }
 
     /// The ray goes towards smaller coordinates of an axis; 0 counts as positive.
@@ -59,7 +59,7 @@ pub struct Packet {
 
 /// A search for the nearest hit, or for any hit nearer than a distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Search {
+pub struct TwinSearch {
     /// Distance of the nearest hit so far; before the first one, the distance that it has to stay below.
     pub t: i32,
     /// The triangle of the nearest hit so far, by index.

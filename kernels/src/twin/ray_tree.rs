@@ -3,7 +3,7 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::ray::{Packet, Ray, Search, Stuck};
+use super::ray::{Packet, Stuck, TwinRay, TwinSearch};
 use super::reflect::{reflect, reflects};
 use super::refract::{Refraction, refract, refracts};
 use super::report;
@@ -14,7 +14,7 @@ use crate::set::Formulas;
 /// A node of the ray tree that is still to be visited.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    ray: Ray,
+    ray: TwinRay,
     packet: Option<Packet>,
     /// Weight of the path to the node.
     weight: i32,
@@ -28,7 +28,7 @@ impl<A: Arithmetic> Twin<A> {
     ///
     /// # Errors
     /// A ray that visits more packets than there are.
-    pub fn ray_tree(&self, ray: Ray, first: Option<Packet>, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
+    pub fn ray_tree(&self, ray: TwinRay, first: Option<Packet>, branches: &mut Vec<Branch>) -> Result<Vector, Stuck> {
         let mut colour = [0; 3];
         branches.clear();
         let weight = 1 << self.constants.formats.weight;
@@ -45,7 +45,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// Follows the ray of a node and adds what it sees, times the weight of the path, to the pixel. The surface that it meets.
     fn contribution(&self, branch: &Branch, colour: &mut Vector) -> Result<Option<Surface>, Stuck> {
-        let mut search = Search { t: self.constants.never, triangle: None, takes_any: false };
+        let mut search = TwinSearch { t: self.constants.never, triangle: None, takes_any: false };
         if let Some(packet) = &branch.packet {
             self.trace(&branch.ray, packet.clone(), &mut search)?;
         }
@@ -66,7 +66,7 @@ impl<A: Arithmetic> Twin<A> {
         let mut child = |weight: i32, origin: Vector, inside: bool, direction: Vector| {
             // A ray that cannot change a component of the pixel is not followed.
             if weight > self.features.cutoff {
-                let ray = Ray::new(arithmetic, origin, direction);
+                let ray = TwinRay::new(arithmetic, origin, direction);
                 let packet = self.own_packet(&ray);
                 branches.push(Branch { ray, packet, weight, inside, level: branch.level + 1 });
             }

@@ -3,9 +3,9 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::ray::{Ray, Search, Stuck};
+use super::ray::{Stuck, TwinRay, TwinSearch};
 use super::report;
-use super::stage::Light;
+use super::stage::StageLight;
 use super::surface::Surface;
 use super::unit::unit;
 use super::vector_arithmetic::VectorArithmetic;
@@ -31,7 +31,7 @@ impl<A: Arithmetic> Twin<A> {
     }
 
     /// The cosine of the angle between the normal and a light that the surface sees.
-    fn visible(&self, surface: &Surface, light: &Light) -> Result<Option<i32>, Stuck> {
+    fn visible(&self, surface: &Surface, light: &StageLight) -> Result<Option<i32>, Stuck> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let way = arithmetic.difference(light.position, surface.point);
         let formulas = self.profile.formulas();
@@ -44,9 +44,9 @@ impl<A: Arithmetic> Twin<A> {
             Formulas::Printed => report::dot,
             Formulas::Vector => A::dot,
         };
-        let ray = Ray::new(arithmetic, surface.point, direction);
+        let ray = TwinRay::new(arithmetic, surface.point, direction);
         let distance = dot(arithmetic, direction, way, constants.across());
-        let mut search = Search { t: distance, triangle: None, takes_any: true };
+        let mut search = TwinSearch { t: distance, triangle: None, takes_any: true };
         if let Some(packet) = self.own_packet(&ray) {
             self.trace(&ray, packet, &mut search)?;
         }

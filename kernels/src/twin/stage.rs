@@ -10,7 +10,7 @@ use super::ray::Packet;
 
 /// A node of the kd tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Node {
+pub enum StageNode {
     /// Divided at the plane `axis = at`; the right child follows the left one.
     Inner {
         /// Axis of the plane.
@@ -26,7 +26,7 @@ pub enum Node {
 
 /// A surface: raw coefficients in the weight format, indices of refraction in theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Material {
+pub struct StageMaterial {
     /// Diffuse colour.
     pub colour: Vector,
     /// Specular coefficient ks.
@@ -43,7 +43,7 @@ pub struct Material {
 
 /// A point light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Light {
+pub struct StageLight {
     /// Position of the light, raw.
     pub position: Vector,
     /// The light's colour in the colour format.
@@ -52,33 +52,33 @@ pub struct Light {
 
 /// A scene in arrays.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Stage {
+pub struct TwinStage {
     /// Box of the tree's root, raw.
     pub bounds: Bounds,
     /// The tree's nodes; the first is the root.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<StageNode>,
     /// Triangles by index, packet by packet.
     pub references: Vec<u32>,
     /// Triangles, by index.
     pub triangles: Vec<StoredTriangle>,
     /// Materials, by number.
-    pub materials: Vec<Material>,
+    pub materials: Vec<StageMaterial>,
     /// Lights, by number.
-    pub lights: Vec<Light>,
+    pub lights: Vec<StageLight>,
 }
 
-impl Stage {
+impl TwinStage {
     /// The scene of an image; `None` when its octets hold none.
-    pub fn new(image: &MemoryImage) -> Option<Stage> {
+    pub fn new(image: &MemoryImage) -> Option<TwinStage> {
         let contents = image.decode()?;
         let (nodes, references) = tree(&contents.tree);
-        let stage = Stage {
+        let stage = TwinStage {
             bounds: image.bounds,
             nodes,
             references,
             triangles: contents.triangles,
-            materials: contents.materials.iter().map(|fields| Material::new(fields)).collect::<Option<_>>()?,
-            lights: contents.lights.iter().map(|fields| Light::new(fields)).collect::<Option<_>>()?,
+            materials: contents.materials.iter().map(|fields| StageMaterial::new(fields)).collect::<Option<_>>()?,
+            lights: contents.lights.iter().map(|fields| StageLight::new(fields)).collect::<Option<_>>()?,
         };
         stage.is_sound().then_some(stage)
     }
@@ -89,8 +89,8 @@ impl Stage {
         let mut number = 0;
         loop {
             let (axis, at, left) = match self.nodes[number as usize] {
-                Node::Inner { axis, at, left } => (axis, at, left),
-                Node::Leaf(ref references) => return Packet { bounds, references: references.clone() },
+                StageNode::Inner { axis, at, left } => (axis, at, left),
+                StageNode::Leaf(ref references) => return Packet { bounds, references: references.clone() },
             };
             // The children share the plane: it becomes a face of the one that is entered.
             if is_right(axis, at) {
@@ -105,9 +105,9 @@ impl Stage {
 
     /// Every search ends and finds what it looks for: there is a root, children come after their parents, materials exist.
     fn is_sound(&self) -> bool {
-        let has_children = |(number, node): (usize, &Node)| match node {
-            Node::Inner { left, .. } => number < *left as usize && (*left as usize) < self.nodes.len() - 1,
-            Node::Leaf(_) => true,
+        let has_children = |(number, node): (usize, &StageNode)| match node {
+            StageNode::Inner { left, .. } => number < *left as usize && (*left as usize) < self.nodes.len() - 1,
+            StageNode::Leaf(_) => true,
         };
         // Searches rely on this instead of checking at each step.
         !self.nodes.is_empty()
@@ -117,31 +117,31 @@ impl Stage {
 }
 
 /// A tree as nodes and references: triangles by index, packet by packet.
-pub fn tree(tree: &KdTree) -> (Vec<Node>, Vec<u32>) {
+pub fn tree(tree: &KdTree) -> (Vec<StageNode>, Vec<u32>) {
     let mut references = Vec::with_capacity(tree.references());
     let node = |number| match tree.content(number) {
-        Content::Inner { axis, at, left } => Node::Inner { axis, at, left },
+        Content::Inner { axis, at, left } => StageNode::Inner { axis, at, left },
         Content::Leaf { triangles } => {
             let first = references.len() as u32;
             references.extend_from_slice(triangles);
-            Node::Leaf(first..references.len() as u32)
+            StageNode::Leaf(first..references.len() as u32)
         }
     };
     let nodes = (0..tree.count() as u32).map(node).collect();
     (nodes, references)
 }
 
-impl Material {
-    fn new(fields: &[i64]) -> Option<Material> {
+impl StageMaterial {
+    fn new(fields: &[i64]) -> Option<StageMaterial> {
         let &[r, g, b, reflection, intensity, transmission, index, inverse_index] = words(fields).first_chunk()?;
-        Some(Material { colour: [r, g, b], reflection, intensity, transmission, index, inverse_index })
+        Some(StageMaterial { colour: [r, g, b], reflection, intensity, transmission, index, inverse_index })
     }
 }
 
-impl Light {
-    fn new(fields: &[i64]) -> Option<Light> {
+impl StageLight {
+    fn new(fields: &[i64]) -> Option<StageLight> {
         let &[x, y, z, r, g, b] = words(fields).first_chunk()?;
-        Some(Light { position: [x, y, z], colour: [r, g, b] })
+        Some(StageLight { position: [x, y, z], colour: [r, g, b] })
     }
 }
 

@@ -3,9 +3,9 @@
 use isa::number::{Arithmetic, Vector};
 
 use super::Twin;
-use super::ray::Ray;
+use super::ray::TwinRay;
 use super::report;
-use super::stage::Material;
+use super::stage::StageMaterial;
 use super::unit::unit;
 use super::vector_arithmetic::VectorArithmetic;
 use crate::constants::{Constants, SIDE_MARGIN};
@@ -25,7 +25,7 @@ pub struct Surface {
     /// -normal . incident, not negative.
     pub cosine: i32,
     /// The material.
-    pub material: Material,
+    pub material: StageMaterial,
 }
 
 /// The unit normal of a triangle that faces a ray, and the cosine of incidence (report 4.1).
@@ -47,7 +47,7 @@ pub fn normal(
 }
 
 /// The point at distance `t` along a ray, each component rounded.
-pub fn point(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, t: i32) -> Vector {
+pub fn point(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &TwinRay, t: i32) -> Vector {
     arithmetic.sum(ray.origin, arithmetic.scaled(ray.direction, t, constants.along()))
 }
 
@@ -84,7 +84,7 @@ pub fn height(
 pub fn sides(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    ray: &Ray,
+    ray: &TwinRay,
     t: i32,
     facing: Vector,
     vertices: &[Vector; 3],
@@ -108,7 +108,7 @@ pub fn sides(
 
 impl<A: Arithmetic> Twin<A> {
     /// The surface that a ray meets: triangle `index` at distance `t`.
-    pub fn surface(&self, ray: &Ray, t: i32, index: u32) -> Surface {
+    pub fn surface(&self, ray: &TwinRay, t: i32, index: u32) -> Surface {
         let triangle = &self.stage.triangles[index as usize];
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
         let bits = constants.formats.direction;

@@ -7,7 +7,7 @@ use super::descend::{descend, own_packet};
 use super::exact_triangle::exact_triangle;
 use super::exit_face::exit_face;
 use super::first_packet::first_packet;
-use super::ray::{Packet, Ray, Search, Stuck};
+use super::ray::{Packet, Stuck, TwinRay, TwinSearch};
 use super::report;
 use super::triangle::triangle;
 use crate::set::Decisions;
@@ -17,7 +17,7 @@ impl<A: Arithmetic> Twin<A> {
     ///
     /// # Errors
     /// A ray that visits more packets than there are.
-    pub fn trace(&self, ray: &Ray, first: Packet, search: &mut Search) -> Result<(), Stuck> {
+    pub fn trace(&self, ray: &TwinRay, first: Packet, search: &mut TwinSearch) -> Result<(), Stuck> {
         let mut packet = first;
         for _ in 0..self.constants.most_steps {
             self.packet(ray, &packet, search);
@@ -31,7 +31,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The packet in which a secondary ray starts. Its origin is moved off a surface, so it may lie outside the scene's box: only the
     /// profile `ray` looks.
-    pub fn own_packet(&self, ray: &Ray) -> Option<Packet> {
+    pub fn own_packet(&self, ray: &TwinRay) -> Option<Packet> {
         match self.profile.decisions() {
             Decisions::Rounded => Some(report::own_packet(&self.stage, ray)),
             Decisions::Wide => Some(own_packet(&self.arithmetic, &self.stage, ray)),
@@ -40,7 +40,7 @@ impl<A: Arithmetic> Twin<A> {
     }
 
     /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
-    pub fn triangle(&self, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+    pub fn triangle(&self, ray: &TwinRay, vertices: &[Vector; 3]) -> i32 {
         match self.profile.decisions() {
             Decisions::Rounded => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
             Decisions::Wide => triangle(&self.arithmetic, &self.constants, ray, vertices),
@@ -50,7 +50,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index; the profile `report` tests all and
     /// keeps the first of equal hits.
-    pub fn packet(&self, ray: &Ray, packet: &Packet, search: &mut Search) {
+    pub fn packet(&self, ray: &TwinRay, packet: &Packet, search: &mut TwinSearch) {
         let is_literal = self.profile.decisions() == Decisions::Rounded;
         for &index in &self.stage.references[packet.references.start as usize..packet.references.end as usize] {
             let vertices = &self.stage.triangles[index as usize].vertices;
@@ -68,7 +68,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The packet after the current one; `None` when the search is over: the ray leaves the scene, any hit will do and there is one, or
     /// the nearest hit is surely nearer than the exit, (t + 1 ulp) |D_k| < run_k.
-    pub fn next_packet(&self, ray: &Ray, packet: &Packet, search: &Search) -> Option<Packet> {
+    pub fn next_packet(&self, ray: &TwinRay, packet: &Packet, search: &TwinSearch) -> Option<Packet> {
         if search.takes_any && search.triangle.is_some() {
             return None;
         }

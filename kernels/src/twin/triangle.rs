@@ -2,7 +2,7 @@
 
 use isa::number::Vector;
 
-use super::ray::Ray;
+use super::ray::TwinRay;
 use super::vector_arithmetic::{VectorArithmetic, WideVector};
 use crate::constants::Constants;
 
@@ -11,7 +11,12 @@ use crate::constants::Constants;
 /// An edge that the ray meets exactly is decided as if the direction were moved by (e, e^2, e^3), e infinitely small. Decisions are exact
 /// as long as [`Constants::edge_shift`] is 0; beyond, both triangles of an edge round the same determinant of it, so that a ray that hits
 /// the edge still hits one of them.
-pub fn triangle(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+pub fn triangle(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    ray: &TwinRay,
+    vertices: &[Vector; 3],
+) -> i32 {
     let &Constants { edge_shift, t_shift, missed, .. } = constants;
     let [v0, v1, v2] = *vertices;
     let edge1 = arithmetic.difference(v1, v0);

@@ -4,7 +4,7 @@ use isa::number::{Modes, Overflow, Quantization, Vector};
 use kernels::build::{Crop, KernelOptions, SceneFeatures};
 use kernels::constants::{Constants, SIDE_MARGIN};
 use kernels::twin::exact_triangle::exact_triangle;
-use kernels::twin::ray::Ray;
+use kernels::twin::ray::TwinRay;
 use kernels::twin::surface::{normal, point, sides};
 use kernels::{KernelSet, twin};
 use random::SplitMix64;
@@ -148,7 +148,7 @@ fn secondary_rays_start_on_their_sides() {
         let length = way.iter().map(|x| x * x).sum::<f64>().sqrt();
         let one = f64::from(1 << constants.formats.direction);
         let direction = way.map(|x| (x / length * one).round() as i32);
-        let ray = Ray::new(&modes, origin, direction);
+        let ray = TwinRay::new(&modes, origin, direction);
         let t = exact_triangle(&modes, &constants, &ray, &vertices);
         if t == constants.missed || t >= constants.never {
             continue;

@@ -3,7 +3,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{MeshBuilder, Surface};
+use super::mesh::{MaterialNumber, MeshBuilder};
 use crate::model::{Scene, Vec3};
 
 /// Half of the opening's width and height.
@@ -28,7 +28,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
 
     let tiles = sizes.level;
     let side = (tiles, tiles);
-    let plain = |surface: Surface| move |_, _| surface;
+    let plain = |surface: MaterialNumber| move |_, _| surface;
     let across = |i: u32| 2.0 * f64::from(i) / f64::from(tiles) - 1.0;
     let depth = |j: u32| foreshortened(f64::from(j) / f64::from(tiles));
     mesh.patch(side, |i, j| inside(across(i), -1.0, depth(j)), |i, j| if (i + j) % 2 == 0 { white } else { grey });

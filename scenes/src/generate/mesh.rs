@@ -14,7 +14,7 @@ pub(super) struct MeshBuilder {
 
 /// A material by number, as [`MeshBuilder`] hands it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Surface(pub u32);
+pub(super) struct MaterialNumber(pub u32);
 
 impl MeshBuilder {
     /// An empty scene.
@@ -31,23 +31,23 @@ impl MeshBuilder {
         }
     }
 
-    fn material(&mut self, material: Material) -> Surface {
+    fn material(&mut self, material: Material) -> MaterialNumber {
         self.scene.materials.push(material);
-        Surface(self.scene.materials.len() as u32 - 1)
+        MaterialNumber(self.scene.materials.len() as u32 - 1)
     }
 
     /// A surface that scatters the share `intensity` of the light.
-    pub(super) fn matte(&mut self, colour: Vec3, intensity: f64) -> Surface {
+    pub(super) fn matte(&mut self, colour: Vec3, intensity: f64) -> MaterialNumber {
         self.material(Material { colour, reflection: 0.0, intensity, index: 0.0 })
     }
 
     /// A surface that reflects the share `reflection`, and scatters a little where `intensity` is not 0.
-    pub(super) fn mirror(&mut self, colour: Vec3, reflection: f64, intensity: f64) -> Surface {
+    pub(super) fn mirror(&mut self, colour: Vec3, reflection: f64, intensity: f64) -> MaterialNumber {
         self.material(Material { colour, reflection, intensity, index: 0.0 })
     }
 
     /// A transparent surface: what is neither reflected nor scattered passes.
-    pub(super) fn glass(&mut self, colour: Vec3, reflection: f64, intensity: f64, index: f64) -> Surface {
+    pub(super) fn glass(&mut self, colour: Vec3, reflection: f64, intensity: f64, index: f64) -> MaterialNumber {
         self.material(Material { colour, reflection, intensity, index })
     }
 
@@ -63,12 +63,12 @@ impl MeshBuilder {
     }
 
     /// A triangle of known vertices.
-    pub(super) fn triangle(&mut self, vertices: [u32; 3], surface: Surface) {
+    pub(super) fn triangle(&mut self, vertices: [u32; 3], surface: MaterialNumber) {
         self.scene.triangles.push(Triangle { vertices, material: surface.0 });
     }
 
     /// A plane quadrilateral as two triangles; the corners go round.
-    pub(super) fn quad(&mut self, [a, b, c, d]: [u32; 4], surface: Surface) {
+    pub(super) fn quad(&mut self, [a, b, c, d]: [u32; 4], surface: MaterialNumber) {
         self.triangle([a, b, c], surface);
         self.triangle([a, c, d], surface);
     }
@@ -79,7 +79,7 @@ impl MeshBuilder {
         &mut self,
         (columns, rows): (u32, u32),
         point: impl Fn(u32, u32) -> Vec3,
-        surface: impl Fn(u32, u32) -> Surface,
+        surface: impl Fn(u32, u32) -> MaterialNumber,
     ) {
         let first = self.scene.vertices.len() as u32;
         for j in 0..=rows {
@@ -96,7 +96,7 @@ impl MeshBuilder {
     }
 
     /// A box with half edges `half` along the axes of `frame`.
-    pub(super) fn block(&mut self, centre: Vec3, half: Vec3, frame: Frame, surface: Surface) {
+    pub(super) fn block(&mut self, centre: Vec3, half: Vec3, frame: Frame, surface: MaterialNumber) {
         let corners: Vec<u32> = (0..8)
             .map(|n| {
                 let local = [0, 1, 2].map(|k| if n >> k & 1 == 1 { half[k] } else { -half[k] });
@@ -109,7 +109,7 @@ impl MeshBuilder {
     }
 
     /// A regular octahedron with the given distance from centre to corner.
-    pub(super) fn octahedron(&mut self, centre: Vec3, radius: f64, frame: Frame, surface: Surface) {
+    pub(super) fn octahedron(&mut self, centre: Vec3, radius: f64, frame: Frame, surface: MaterialNumber) {
         let corners: Vec<u32> = (0..6)
             .map(|n| {
                 let mut local = [0.0; 3];
@@ -124,7 +124,7 @@ impl MeshBuilder {
 
     /// A sphere as an icosahedron whose triangles are split in four `splits` times: 20 * 4^splits triangles, all
     /// vertices at distance `radius`.
-    pub(super) fn sphere(&mut self, centre: Vec3, radius: f64, frame: Frame, splits: u32, surface: Surface) {
+    pub(super) fn sphere(&mut self, centre: Vec3, radius: f64, frame: Frame, splits: u32, surface: MaterialNumber) {
         let (mut directions, mut faces) = icosahedron();
         for _ in 0..splits {
             let mut middles = HashMap::new();

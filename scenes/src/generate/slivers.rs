@@ -2,7 +2,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{MeshBuilder, Surface};
+use super::mesh::{MaterialNumber, MeshBuilder};
 use crate::model::{Scene, Vec3};
 
 /// Strips of slivers of six widths before a wall, with degenerate and duplicate triangles; `level` is the number of
@@ -52,7 +52,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
 }
 
 /// A strip of `count` slivers, each as long as `along` and as wide as `across`, points alternating.
-fn strip(mesh: &mut MeshBuilder, start: Vec3, along: Vec3, across: Vec3, count: u32, surface: Surface) {
+fn strip(mesh: &mut MeshBuilder, start: Vec3, along: Vec3, across: Vec3, count: u32, surface: MaterialNumber) {
     let corner = |n: u32| {
         let side = scale(across, f64::from(n / 2) + 0.5 * f64::from(n % 2));
         let p = add(start, side);

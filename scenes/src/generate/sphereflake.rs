@@ -2,7 +2,7 @@
 
 use super::Sizes;
 use super::frame::{Frame, add, scale};
-use super::mesh::{MeshBuilder, Surface};
+use super::mesh::{MaterialNumber, MeshBuilder};
 use crate::model::{Scene, Vec3};
 
 /// Half of the tangent of the slant at which the ground is seen.
@@ -36,7 +36,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
 struct Flake {
     generations: u32,
     /// Surfaces by generation (later ones repeat the last) and by kind of place.
-    surfaces: [[Surface; 3]; 3],
+    surfaces: [[MaterialNumber; 3]; 3],
 }
 
 impl Flake {

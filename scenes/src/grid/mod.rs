@@ -37,13 +37,13 @@ pub struct Grid {
 }
 
 /// A thing that a grid has to hold, with a name for messages.
-struct Point {
+struct GridPoint {
     name: &'static str,
     number: usize,
     at: Vec3,
 }
 
-impl Point {
+impl GridPoint {
     fn is_light(&self) -> bool {
         self.name == "light"
     }
@@ -70,10 +70,10 @@ impl Grid {
         }
         let corners = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
         let mut points = vec![
-            Point { name: "the scene's corner", number: 1, at: corners.0 },
-            Point { name: "the scene's corner", number: 2, at: corners.1 },
+            GridPoint { name: "the scene's corner", number: 1, at: corners.0 },
+            GridPoint { name: "the scene's corner", number: 2, at: corners.1 },
         ];
-        points.extend(scene.lights.iter().enumerate().map(|(k, light)| Point {
+        points.extend(scene.lights.iter().enumerate().map(|(k, light)| GridPoint {
             name: "light",
             number: k + 1,
             at: light.position,
@@ -91,7 +91,7 @@ impl Grid {
         }
         let box_down = (points[0].at, points[1].at);
         if let Some(eye) = camera::eye(box_down, &camera::mapped(&view.camera, down)) {
-            points.push(Point { name: "the eye", number: 0, at: eye });
+            points.push(GridPoint { name: "the eye", number: 0, at: eye });
         }
         let grid = |power: i32| Grid::with(&points, corners, word, unit, power);
         let limit = (1i64 << (word - 2)) - 4;
@@ -122,12 +122,12 @@ impl Grid {
     }
 
     /// The grid with 2^power steps in a unit; `None` when a point does not fit.
-    fn with(points: &[Point], corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
+    fn with(points: &[GridPoint], corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
         let limit = ((1i64 << (word - 2)) - 4) as f64;
         let farthest = ((1i64 << (word - 1)) - 8) as f64;
         let middle = AXES.map(|k| rounded_middle(points[0].at[k], points[1].at[k], power));
-        let raw = |point: &Point| AXES.map(|k| nearest(shifted(point.at[k] - middle[k], power)));
-        let (lights, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(|point| point.is_light());
+        let raw = |point: &GridPoint| AXES.map(|k| nearest(shifted(point.at[k] - middle[k], power)));
+        let (lights, others): (Vec<&GridPoint>, Vec<&GridPoint>) = points.iter().partition(|point| point.is_light());
         // The reach is that of all but the lights, since rays start and end there; a light counts by its way to them.
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for at in others.into_iter().map(raw) {
@@ -188,14 +188,14 @@ fn rounded_middle(low: f64, high: f64, power: i32) -> f64 {
     if half.abs() < (1u64 << 52) as f64 { floor + shifted(nearest(half), -power) } else { low / 2.0 + high / 2.0 }
 }
 
-fn too_coarse(grid: &Grid, points: &[Point], side: u32, is_chosen: bool) -> Diagnostic {
+fn too_coarse(grid: &Grid, points: &[GridPoint], side: u32, is_chosen: bool) -> Diagnostic {
     let needed = FEWEST_BITS.min(grid.word - 4);
     let message = format!(
         "the scene's box is {side} grid steps long in words of {} bits, which is less than {needed} bits ({} steps)",
         grid.word,
         1 << needed
     );
-    let distance = |p: &Point| largest(sub(p.at, grid.middle)) * if p.is_light() { 0.5 } else { 1.0 };
+    let distance = |p: &GridPoint| largest(sub(p.at, grid.middle)) * if p.is_light() { 0.5 } else { 1.0 };
     let farthest = points.iter().rev().max_by(|a, b| distance(a).total_cmp(&distance(b)));
     let hint = match farthest {
         _ if is_chosen => "choose a larger pos, or leave it out".to_string(),

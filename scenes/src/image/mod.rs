@@ -122,14 +122,14 @@ pub struct MemoryImage {
     /// Colour where a ray hits nothing, in the colour format.
     pub background: [i32; 3],
     /// Numbers of triangles, materials and lights.
-    pub counts: Counts,
+    pub counts: StructureCounts,
     /// Size and shape of the tree that is stored; the tree itself is in the octets alone ([`MemoryImage::decode`] reads it back).
     pub tree: Statistics,
 }
 
 /// Numbers of structures in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
+pub struct StructureCounts {
     /// Triangles.
     pub triangles: u32,
     /// Materials.
@@ -190,7 +190,7 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     let (bytes, regions) = encode::memory(&tree, scene, &mesh, &tables, layout, shift, view.size)?;
     // The root is the first node, whatever the layout.
     let root = regions[1].1.start;
-    let counts = Counts {
+    let counts = StructureCounts {
         triangles: scene.triangles.len() as u32,
         materials: scene.materials.len() as u32,
         lights: scene.lights.len() as u32,

@@ -51,7 +51,7 @@ pub struct SceneInfo {
     /// The kd tree.
     pub tree: Statistics,
     /// Structures of global memory.
-    pub memory: Memory,
+    pub memory: ImageMemory,
     /// Bits of a word, and fraction bits of each quantity.
     pub formats: Named<i32>,
     /// The cost of the grid in precision.
@@ -77,7 +77,7 @@ pub struct MaterialInfo {
 
 /// Octets of global memory.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Memory {
+pub struct ImageMemory {
     /// Name of the layout.
     pub layout: &'static str,
     /// Octets by structure, in the order of the addresses.
@@ -143,7 +143,7 @@ impl SceneInfo {
             has_glass: has(|material| material.transmission > 0.0),
             materials,
             tree: image.tree,
-            memory: Memory {
+            memory: ImageMemory {
                 layout: image.layout.name(),
                 octets: Named(image.regions.iter().map(|(kind, range)| (kind.name(), range.len() as u64)).collect()),
                 total: image.bytes.len(),

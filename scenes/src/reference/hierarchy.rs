@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::search::{Hit, Search, better};
-use super::triangle::{PreparedTriangle, Ray, Shapes};
+use super::triangle::{PreparedTriangle, Shapes, ShearedRay};
 use crate::model::Vec3;
 use crate::vector::AXES;
 
@@ -93,7 +93,7 @@ impl<'a> Hierarchy<'a> {
     }
 
     /// Visits the leaves that the ray passes before `end`, near ones first; `visit` returns the new end.
-    fn walk(&self, ray: &Ray, mut end: f64, mut visit: impl FnMut(&[u32]) -> f64) {
+    fn walk(&self, ray: &ShearedRay, mut end: f64, mut visit: impl FnMut(&[u32]) -> f64) {
         // A component 0 gives an infinite reciprocal, and with it the comparisons that are right for such a ray.
         let reciprocal = ray.direction.map(|d| 1.0 / d);
         let entry = |node: &BoxNode, end: f64| enters(node, ray.origin, reciprocal, end);
@@ -199,7 +199,7 @@ impl Search for Hierarchy<'_> {
         self.shapes.triangle(index)
     }
 
-    fn nearest(&self, ray: &Ray) -> Option<Hit> {
+    fn nearest(&self, ray: &ShearedRay) -> Option<Hit> {
         let mut best = None;
         self.walk(ray, f64::INFINITY, |leaf| {
             for &index in leaf {
@@ -212,7 +212,7 @@ impl Search for Hierarchy<'_> {
         best
     }
 
-    fn is_blocked(&self, ray: &Ray, end: f64) -> bool {
+    fn is_blocked(&self, ray: &ShearedRay, end: f64) -> bool {
         let mut is_blocked = false;
         self.walk(ray, end, |leaf| {
             is_blocked |= leaf.iter().any(|&index| self.triangle(index).hit(ray).is_some_and(|t| t < end));

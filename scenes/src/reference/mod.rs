@@ -127,7 +127,7 @@ impl<'a> Reference<'a> {
     /// True where the camera ray of column `c` and row `r`, row 0 on top, meets a triangle.
     pub fn is_met(&self, c: u32, r: u32) -> bool {
         let (origin, direction) = self.rays.ray(c, r);
-        self.search.nearest(&triangle::Ray::new(origin, direction)).is_some()
+        self.search.nearest(&triangle::ShearedRay::new(origin, direction)).is_some()
     }
 
     /// The colour of the pixel in column `c` and row `r`, row 0 on top, and the rays that it took.

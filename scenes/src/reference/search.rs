@@ -1,7 +1,7 @@
 //! Which triangle a ray meets first, and whether it meets any: what is asked, and the answer by trying all triangles. The quick answer is in
 //! [`super::hierarchy`]; it is the same, bit for bit, because both use the same test of one triangle and the same order of hits.
 
-use super::triangle::{PreparedTriangle, Ray, Shapes};
+use super::triangle::{PreparedTriangle, Shapes, ShearedRay};
 
 /// A triangle that is hit, and the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,10 +18,10 @@ pub trait Search: Sync {
     fn triangle(&self, index: u32) -> PreparedTriangle;
 
     /// The hit with the smallest distance; of equal ones that of the triangle with the lowest number.
-    fn nearest(&self, ray: &Ray) -> Option<Hit>;
+    fn nearest(&self, ray: &ShearedRay) -> Option<Hit>;
 
     /// Some triangle is hit at a distance less than `end`.
-    fn is_blocked(&self, ray: &Ray, end: f64) -> bool;
+    fn is_blocked(&self, ray: &ShearedRay, end: f64) -> bool;
 }
 
 /// Tries all triangles.
@@ -46,12 +46,12 @@ impl Search for Exhaustive<'_> {
         self.shapes.triangle(index)
     }
 
-    fn nearest(&self, ray: &Ray) -> Option<Hit> {
+    fn nearest(&self, ray: &ShearedRay) -> Option<Hit> {
         let hit = |&index: &u32| Some(Hit { t: self.triangle(index).hit(ray)?, index });
         self.indices.iter().filter_map(hit).fold(None, better)
     }
 
-    fn is_blocked(&self, ray: &Ray, end: f64) -> bool {
+    fn is_blocked(&self, ray: &ShearedRay, end: f64) -> bool {
         self.indices.iter().any(|&index| self.triangle(index).hit(ray).is_some_and(|t| t < end))
     }
 }

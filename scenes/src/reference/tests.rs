@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::search::Hit;
-use super::triangle::Ray;
+use super::triangle::ShearedRay;
 use super::whitted::{reflected, refracted};
 use super::*;
 use crate::generate;
@@ -172,7 +172,7 @@ fn nearest_hits_are_ordered_by_distance_then_by_number() {
     triangles.extend([triangle([3, 4, 5]), triangle([0, 1, 1])]);
     let vertices = corners.into_iter().chain(corners.map(|[x, y, _]| [x, y, 0.25])).collect();
     let shapes = Shapes { vertices, triangles: &triangles };
-    let ray = Ray::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]);
+    let ray = ShearedRay::new([0.25, 0.25, 1.0], [0.0, 0.0, -1.0]);
     let of = |indices: &[u32]| {
         let found = Hierarchy::new(shapes.clone(), indices.to_vec()).nearest(&ray);
         assert_eq!(found, Exhaustive { shapes: shapes.clone(), indices: indices.to_vec() }.nearest(&ray));
@@ -236,7 +236,7 @@ proptest! {
         let (tree, all) = (Hierarchy::new(shapes.clone(), indices.clone()), Exhaustive { shapes, indices });
         for (origin, direction) in rays {
             let Some(direction) = unit(quarter(direction)) else { continue };
-            let ray = Ray::new(quarter(origin), direction);
+            let ray = ShearedRay::new(quarter(origin), direction);
             prop_assert_eq!(tree.nearest(&ray), all.nearest(&ray));
             prop_assert_eq!(tree.is_blocked(&ray, end), all.is_blocked(&ray, end));
         }

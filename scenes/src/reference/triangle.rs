@@ -8,7 +8,7 @@ use crate::vector::{cross, sub, unit};
 
 /// A ray, with the shear that makes it the z axis.
 #[derive(Clone, Copy, Debug)]
-pub struct Ray {
+pub struct ShearedRay {
     /// The ray's origin.
     pub origin: Vec3,
     /// The ray's direction, of length 1.
@@ -18,14 +18,14 @@ pub struct Ray {
     shear: Vec3,
 }
 
-impl Ray {
+impl ShearedRay {
     /// The ray from `origin` along `direction`, which is not 0.
-    pub fn new(origin: Vec3, direction: Vec3) -> Ray {
+    pub fn new(origin: Vec3, direction: Vec3) -> ShearedRay {
         let largest = |a: usize, b: usize| if direction[b].abs() > direction[a].abs() { b } else { a };
         let z = largest(largest(0, 1), 2);
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shear = [direction[x] / direction[z], direction[y] / direction[z], 1.0 / direction[z]];
-        Ray { origin, direction, axes: [x, y, z], shear }
+        ShearedRay { origin, direction, axes: [x, y, z], shear }
     }
 
     /// The point in sheared space, and how large the terms were that its x and y are differences of.
@@ -77,7 +77,7 @@ impl PreparedTriangle {
 
     /// Distance t > 0 along the ray at which it meets the triangle, edges included; `None` also where the triangle is seen so exactly from
     /// its edge that rounding alone decides.
-    pub fn hit(&self, ray: &Ray) -> Option<f64> {
+    pub fn hit(&self, ray: &ShearedRay) -> Option<f64> {
         let [(a, a_terms), (b, b_terms), (c, c_terms)] = self.vertices.map(|vertex| ray.sheared(vertex));
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
@@ -99,7 +99,7 @@ impl PreparedTriangle {
 
     /// The point in which a ray meets the triangle, from the vertices and not from the distance: it lies in the triangle's plane however far
     /// the ray has come. Only for rays that hit.
-    pub fn point(&self, ray: &Ray) -> Vec3 {
+    pub fn point(&self, ray: &ShearedRay) -> Vec3 {
         let [a, b, c] = self.vertices.map(|vertex| ray.sheared(vertex).0);
         let weights = [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]];
         let sum: f64 = weights.iter().sum();

@@ -3,7 +3,7 @@
 
 use super::RayCounts;
 use super::search::Search;
-use super::triangle::{PreparedTriangle, Ray};
+use super::triangle::{PreparedTriangle, ShearedRay};
 use crate::model::{self, Light, Material, Scene, Vec3, View};
 use crate::vector::{add, dot, scale, sub, unit};
 
@@ -25,8 +25,8 @@ pub struct World<'a> {
 }
 
 /// A ray of the ray tree that is still to be followed.
-struct Branch {
-    ray: Ray,
+struct PendingRay {
+    ray: ShearedRay,
     /// Product of the coefficients on the way from the eye.
     weight: f64,
     /// 0 for the camera's ray.
@@ -54,7 +54,8 @@ impl<'a> World<'a> {
     pub fn colour(&self, search: &dyn Search, origin: Vec3, direction: Vec3) -> (Vec3, RayCounts) {
         let mut counts = RayCounts { camera: 1, ..RayCounts::default() };
         let mut colour = [0.0; 3];
-        let mut open = vec![Branch { ray: Ray::new(origin, direction), weight: 1.0, level: 0, is_inside: false }];
+        let mut open =
+            vec![PendingRay { ray: ShearedRay::new(origin, direction), weight: 1.0, level: 0, is_inside: false }];
         while let Some(branch) = open.pop() {
             let Some(hit) = search.nearest(&branch.ray) else {
                 colour = add(colour, scale(self.background, branch.weight));
@@ -93,7 +94,7 @@ impl<'a> World<'a> {
             counts.shadow += 1;
             let way = sub(light.position, origin);
             let Some(direction) = unit(way) else { continue };
-            if !search.is_blocked(&Ray::new(origin, direction), dot(way, direction)) {
+            if !search.is_blocked(&ShearedRay::new(origin, direction), dot(way, direction)) {
                 intensity = add(intensity, scale(light.colour, material.intensity * cosine));
             }
         }
@@ -103,11 +104,11 @@ impl<'a> World<'a> {
     /// Adds the reflected and the refracted ray of a hit, as far as they have a weight.
     fn branches(
         &self,
-        branch: &Branch,
+        branch: &PendingRay,
         material: &Material,
         point: Vec3,
         normal: Vec3,
-        open: &mut Vec<Branch>,
+        open: &mut Vec<PendingRay>,
         counts: &mut RayCounts,
     ) {
         let direction = branch.ray.direction;
@@ -115,8 +116,8 @@ impl<'a> World<'a> {
         let mut child = |direction: Vec3, side: f64, weight: f64, is_inside: bool| {
             // Weights underflow to 0 on very deep paths only, which then bring nothing.
             if let Some(direction) = unit(direction).filter(|_| branch.weight * weight > 0.0) {
-                let ray = Ray::new(add(point, scale(normal, side * OFFSET)), direction);
-                open.push(Branch { ray, weight: branch.weight * weight, level: branch.level + 1, is_inside });
+                let ray = ShearedRay::new(add(point, scale(normal, side * OFFSET)), direction);
+                open.push(PendingRay { ray, weight: branch.weight * weight, level: branch.level + 1, is_inside });
                 return 1;
             }
             0

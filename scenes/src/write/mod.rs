@@ -35,7 +35,7 @@ pub fn off_coloured(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
         return off(scene, out);
     }
     let component = |x: f64| {
-        let text = Number::new(x)?.to_string();
+        let text = ShortestNumber::new(x)?.to_string();
         // A whole number would be one of 0 to 255.
         Ok(if text.contains(['.', 'e']) { text } else { text + ".0" })
     };
@@ -70,8 +70,14 @@ pub fn dsc(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "DSC\n{} {}", scene.size.0, scene.size.1)?;
     writeln!(out, "{} {}", scene.materials.len(), scene.lights.len())?;
     for material in &scene.materials {
-        let (reflection, intensity) = (Number::new(material.reflection)?, Number::new(material.intensity)?);
-        writeln!(out, "{} {reflection} {intensity} {}", triple(material.colour)?, Number::new(material.index)?)?;
+        let (reflection, intensity) =
+            (ShortestNumber::new(material.reflection)?, ShortestNumber::new(material.intensity)?);
+        writeln!(
+            out,
+            "{} {reflection} {intensity} {}",
+            triple(material.colour)?,
+            ShortestNumber::new(material.index)?
+        )?;
     }
     for light in &scene.lights {
         writeln!(out, "{} {}", triple(light.position)?, triple(light.colour)?)?;
@@ -84,24 +90,24 @@ pub fn dsc(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
 }
 
 fn triple(v: Vec3) -> io::Result<String> {
-    let [x, y, z] = v.map(Number::new);
+    let [x, y, z] = v.map(ShortestNumber::new);
     Ok(format!("{} {} {}", x?, y?, z?))
 }
 
 /// A finite number, shown with the fewest digits that read back as the same bits.
-struct Number(f64);
+struct ShortestNumber(f64);
 
-impl Number {
-    fn new(value: f64) -> io::Result<Number> {
+impl ShortestNumber {
+    fn new(value: f64) -> io::Result<ShortestNumber> {
         if value.is_finite() {
-            Ok(Number(value))
+            Ok(ShortestNumber(value))
         } else {
             Err(Error::new(ErrorKind::InvalidData, format!("{value} cannot be written: not a finite number")))
         }
     }
 }
 
-impl fmt::Display for Number {
+impl fmt::Display for ShortestNumber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
         if size != 0.0 && !(1e-5..1e16).contains(&size) { write!(f, "{:e}", self.0) } else { write!(f, "{}", self.0) }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::io::{self, Write};
 
-use super::{Number, triple};
+use super::{ShortestNumber, triple};
 use crate::model::{Material, Scene, Vec3};
 
 /// Writes the mesh of a scene as an `.obj` file whose materials are in the file `library`; see [`mtl`]. Materials without
@@ -47,9 +47,9 @@ pub fn mtl(scene: &Scene, names: &[String], out: &mut impl Write) -> io::Result<
         writeln!(out, "Ka {}", triple(material.colour)?)?;
         writeln!(out, "Kd {}", triple(coefficients.diffuse)?)?;
         writeln!(out, "Ks {}", triple([material.reflection; 3])?)?;
-        writeln!(out, "d {}", Number::new(coefficients.opacity)?)?;
+        writeln!(out, "d {}", ShortestNumber::new(coefficients.opacity)?)?;
         if let Some(refraction) = coefficients.refraction {
-            writeln!(out, "Ni {}", Number::new(refraction)?)?;
+            writeln!(out, "Ni {}", ShortestNumber::new(refraction)?)?;
         }
         writeln!(out, "illum {}", coefficients.model)?;
     }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::Number;
+use super::ShortestNumber;
 use crate::model::Scene;
 
 /// Writes the mesh of a scene as a binary `.ply` file: coordinates in double precision, and for each triangle the
@@ -23,7 +23,7 @@ pub fn ply(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
     }
     writeln!(out, "end_header")?;
     for &coordinate in scene.vertices.iter().flatten() {
-        Number::new(coordinate)?;
+        ShortestNumber::new(coordinate)?;
         out.write_all(&coordinate.to_le_bytes())?;
     }
     for triangle in &scene.triangles {

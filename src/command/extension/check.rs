@@ -56,7 +56,8 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
                 continue;
             }
             let steps = isa.body(loaded.op).map_or(0, |body| {
-                body.steps.iter().filter(|step| matches!(step.act, isa::extension::Act::Execute { .. })).count() as u64
+                body.steps.iter().filter(|step| matches!(step.act, isa::extension::BodyAct::Execute { .. })).count()
+                    as u64
             });
             let beside = if loaded.is_rust { "beside it a body: " } else { "" };
             text += &format!(
@@ -74,7 +75,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
 fn spent(isa: &Isa, op: isa::Op) -> String {
     let mut sum = Counts::ZERO;
     for step in isa.body(op).iter().flat_map(|body| &body.steps) {
-        if let isa::extension::Act::Execute { instruction, .. } = step.act {
+        if let isa::extension::BodyAct::Execute { instruction, .. } = step.act {
             sum += isa.definition(instruction.op).outcomes[0].cost;
         }
     }

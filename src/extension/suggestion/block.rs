@@ -5,7 +5,7 @@ use std::ops::Range;
 use emu::timing::Timing;
 use isa::{Instruction, Isa, Program};
 
-use super::flow::{Flow, Registers, registers};
+use super::flow::{ProgramFlow, RegisterSet, registers};
 use super::pattern::{Pattern, is_plain};
 use super::source;
 
@@ -17,7 +17,7 @@ const WIDEST: usize = 20;
 
 /// Accesses of an instruction to the local buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Access {
+enum BufferAccess {
     None,
     Reads,
     Writes,
@@ -25,31 +25,31 @@ enum Access {
 
 /// One instruction of a block.
 #[derive(Clone, Debug)]
-pub struct Item {
+pub struct BlockItem {
     /// The words that it stands for.
     pub words: Vec<usize>,
     /// The line in their place, when it was made of them.
     pub made: Option<String>,
-    reads: Registers,
-    writes: Registers,
-    buffer: Access,
+    reads: RegisterSet,
+    writes: RegisterSet,
+    buffer: BufferAccess,
     /// True where nothing may change places with it.
     is_fence: bool,
     /// True where it may become part of another one.
     is_plain: bool,
 }
 
-impl Item {
-    fn new(pc: usize, instruction: Option<&Instruction>, isa: &Isa) -> Item {
+impl BlockItem {
+    fn new(pc: usize, instruction: Option<&Instruction>, isa: &Isa) -> BlockItem {
         let words = vec![pc];
         let Some(instruction) = instruction else {
-            let all = Registers::MAX;
-            return Item {
+            let all = RegisterSet::MAX;
+            return BlockItem {
                 words,
                 made: None,
                 reads: all,
                 writes: all,
-                buffer: Access::Writes,
+                buffer: BufferAccess::Writes,
                 is_fence: true,
                 is_plain: false,
             };
@@ -57,25 +57,26 @@ impl Item {
         let (row, is_plain) = (isa.definition(instruction.op), is_plain(instruction, isa));
         // Loads have a result, stores have none but the address.
         let buffer = match (&*row.room, row.operand(b'd')) {
-            ("local", Some(_)) => Access::Reads,
-            ("local", None) => Access::Writes,
-            _ => Access::None,
+            ("local", Some(_)) => BufferAccess::Reads,
+            ("local", None) => BufferAccess::Writes,
+            _ => BufferAccess::None,
         };
         let [reads, writes] = [false, true].map(|is_written| registers(instruction, isa, is_written));
-        Item { words, made: None, reads, writes, buffer, is_fence: !is_plain, is_plain }
+        BlockItem { words, made: None, reads, writes, buffer, is_fence: !is_plain, is_plain }
     }
 
     /// True where two instructions must keep their order.
-    fn conflicts(&self, other: &Item) -> bool {
+    fn conflicts(&self, other: &BlockItem) -> bool {
         self.is_fence
             || other.is_fence
             || self.writes & (other.reads | other.writes) != 0
             || self.reads & other.writes != 0
-            || self.buffer.max(other.buffer) == Access::Writes && self.buffer.min(other.buffer) != Access::None
+            || self.buffer.max(other.buffer) == BufferAccess::Writes
+                && self.buffer.min(other.buffer) != BufferAccess::None
     }
 
     /// The registers that may be read before it, from those after it.
-    fn live_before(&self, live: Registers) -> Registers {
+    fn live_before(&self, live: RegisterSet) -> RegisterSet {
         live & !self.writes | self.reads
     }
 }
@@ -108,19 +109,19 @@ pub struct Block {
     /// Number of executions.
     pub count: u64,
     /// Instructions of the block.
-    pub items: Vec<Item>,
+    pub items: Vec<BlockItem>,
     /// Sequences in it; `None` when they have to be looked for again.
     pub candidates: Option<Vec<Candidate>>,
     /// Registers that may be read behind it.
-    live: Registers,
+    live: RegisterSet,
 }
 
 /// The blocks of a function, in their order; none where it is not in one piece.
-pub fn blocks(program: &Program, flow: &Flow, isa: &Isa, function: &'static str, counts: &[u64]) -> Vec<Block> {
+pub fn blocks(program: &Program, flow: &ProgramFlow, isa: &Isa, function: &'static str, counts: &[u64]) -> Vec<Block> {
     let Some((_, range)) = source::range(program, function) else { return Vec::new() };
     let mut blocks: Vec<Block> = Vec::new();
     for pc in range {
-        let item = Item::new(pc, flow.instructions[pc].as_ref(), isa);
+        let item = BlockItem::new(pc, flow.instructions[pc].as_ref(), isa);
         let begins = flow.is_leader[pc] || pc != 0 && program.region_of[pc] != program.region_of[pc - 1];
         match blocks.last_mut().filter(|_| !begins) {
             Some(block) => {
@@ -143,7 +144,7 @@ pub fn blocks(program: &Program, flow: &Flow, isa: &Isa, function: &'static str,
 
 impl Block {
     /// Looks for sequences, unless that was done and nothing has changed since.
-    pub fn search(&mut self, flow: &Flow, isa: &Isa, timing: &Timing) -> &[Candidate] {
+    pub fn search(&mut self, flow: &ProgramFlow, isa: &Isa, timing: &Timing) -> &[Candidate] {
         if self.candidates.is_none() {
             let mut found = Vec::new();
             if self.count != 0 {
@@ -235,7 +236,7 @@ impl Block {
         Some((before, after))
     }
 
-    fn candidate(&self, picks: Vec<usize>, flow: &Flow, isa: &Isa, timing: &Timing) -> Option<Candidate> {
+    fn candidate(&self, picks: Vec<usize>, flow: &ProgramFlow, isa: &Isa, timing: &Timing) -> Option<Candidate> {
         let (before, after) = self.arrange(&picks)?;
         let window = picks[0]..picks.last()? + 1;
         // Registers that are read after the window, or by what is moved behind the instruction.
@@ -256,17 +257,17 @@ impl Block {
         let parts = || picks.iter().map(|&at| &self.items[at]);
         let (reads, writes) = pattern.registers(fields);
         // The new instruction takes the words, registers and buffer accesses of its parts together.
-        let made = Item {
+        let made = BlockItem {
             words: parts().flat_map(|item| item.words.clone()).collect(),
             made: Some(line),
             reads,
             writes,
-            buffer: parts().map(|item| item.buffer).max().unwrap_or(Access::None),
+            buffer: parts().map(|item| item.buffer).max().unwrap_or(BufferAccess::None),
             is_fence: false,
             is_plain: false,
         };
-        let at = |places: &[usize]| -> Vec<Item> { places.iter().map(|&at| self.items[at].clone()).collect() };
-        let order: Vec<Item> = at(before).into_iter().chain([made]).chain(at(after)).collect();
+        let at = |places: &[usize]| -> Vec<BlockItem> { places.iter().map(|&at| self.items[at].clone()).collect() };
+        let order: Vec<BlockItem> = at(before).into_iter().chain([made]).chain(at(after)).collect();
         self.items.splice(window.clone(), order);
         self.candidates = None;
     }

@@ -3,10 +3,10 @@
 use isa::{Instruction, Isa, Kind, Op, Program};
 
 /// Registers, a bit each: 32 scalars, 32 vectors, 8 wide accumulators.
-pub type Registers = u128;
+pub type RegisterSet = u128;
 
 /// The registers that an instruction reads, or writes; `s0` is none.
-pub fn registers(instruction: &Instruction, isa: &Isa, is_written: bool) -> Registers {
+pub fn registers(instruction: &Instruction, isa: &Isa, is_written: bool) -> RegisterSet {
     let mut found = 0;
     for operand in isa.definition(instruction.op).operands.iter() {
         if (is_written && operand.is_written()) || (!is_written && operand.is_read()) {
@@ -17,7 +17,7 @@ pub fn registers(instruction: &Instruction, isa: &Isa, is_written: bool) -> Regi
 }
 
 /// The registers of an operand.
-pub fn bits(kind: Kind, number: u8) -> Registers {
+pub fn bits(kind: Kind, number: u8) -> RegisterSet {
     let first = match kind.register_file() {
         Some('s') => 0,
         Some('v') => 32,
@@ -28,7 +28,7 @@ pub fn bits(kind: Kind, number: u8) -> Registers {
 }
 
 /// A program, decoded, with what follows what.
-pub struct Flow {
+pub struct ProgramFlow {
     /// Instructions of the program.
     pub instructions: Vec<Option<Instruction>>,
     /// Targets of each branch or call.
@@ -36,12 +36,12 @@ pub struct Flow {
     /// Words at which control may arrive from elsewhere than the word before.
     pub is_leader: Vec<bool>,
     /// Registers that may be read after each word.
-    pub live: Vec<Registers>,
+    pub live: Vec<RegisterSet>,
 }
 
-impl Flow {
+impl ProgramFlow {
     /// Follows a program.
-    pub fn new(program: &Program, isa: &Isa) -> Flow {
+    pub fn new(program: &Program, isa: &Isa) -> ProgramFlow {
         let instructions: Vec<Option<Instruction>> = program.words.iter().map(|&word| isa.decode(word)).collect();
         let target = |(pc, instruction): (usize, &Option<Instruction>)| {
             let instruction = instruction.as_ref()?;
@@ -59,7 +59,7 @@ impl Flow {
                 is_leader[pc + 1] = true;
             }
         }
-        let mut flow = Flow { live: vec![0; instructions.len()], instructions, targets, is_leader };
+        let mut flow = ProgramFlow { live: vec![0; instructions.len()], instructions, targets, is_leader };
         flow.follow(isa);
         flow
     }
@@ -97,15 +97,15 @@ impl Flow {
             .collect();
         // Repeat from the last word to the first until nothing changes: what is read before a word is what is read after it, without what it
         // writes, with what it reads. Sets only grow, so this ends.
-        let mut before: Vec<Registers> = vec![0; words + 1];
+        let mut before: Vec<RegisterSet> = vec![0; words + 1];
         loop {
             let mut is_done = true;
             for pc in (0..words).rev() {
                 let after = match &next[pc] {
-                    None => Registers::MAX,
+                    None => RegisterSet::MAX,
                     Some(next) => next.iter().filter(|&&to| to <= words).map(|&to| before[to]).fold(0, |a, b| a | b),
                 };
-                let here = self.instructions[pc].as_ref().map_or(Registers::MAX, |found| {
+                let here = self.instructions[pc].as_ref().map_or(RegisterSet::MAX, |found| {
                     after & !registers(found, isa, true) | registers(found, isa, false)
                 });
                 is_done &= here == before[pc] && after == self.live[pc];

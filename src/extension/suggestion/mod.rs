@@ -16,7 +16,7 @@ use kernels::Function;
 pub use self::result::{SUGGESTION_SCHEMA, SuggestionResult};
 
 use self::block::{Block, blocks};
-use self::flow::Flow;
+use self::flow::ProgramFlow;
 use self::pattern::Pattern;
 use self::words::Majors;
 use crate::drawing::Drawing;
@@ -85,8 +85,8 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
     let program = &drawing.build.cores;
     let timing = job.machine.timing();
     let code = Code::new(program, isa, timing);
-    let flow = Flow::new(program, isa);
-    let main_flow = Flow::new(&drawing.build.main, isa);
+    let flow = ProgramFlow::new(program, isa);
+    let main_flow = ProgramFlow::new(&drawing.build.main, isa);
     let counts: Vec<u64> = (0..code.words()).map(|pc| drawing.frame.tally.word(&code, pc).instructions).collect();
     // A function that both programs have must read the same in both, since one file serves both.
     let mut functions: Vec<(Function, Vec<Block>)> = Vec::new();

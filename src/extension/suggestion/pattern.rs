@@ -4,7 +4,7 @@ use emu::timing::Timing;
 use isa::definition::Operand;
 use isa::{Instruction, Isa, Kind};
 
-use super::flow::{Registers, bits, registers};
+use super::flow::{RegisterSet, bits, registers};
 
 /// Most bits that the operands of an instruction take.
 pub const MOST_BITS: u32 = 26;
@@ -24,7 +24,7 @@ pub struct Pattern {
 
 /// Registers that are used together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Unit {
+struct RegisterUnit {
     file: char,
     first: u8,
     kind: Kind,
@@ -50,7 +50,7 @@ impl Pattern {
     /// can say it.
     pub fn new(
         instructions: &[Instruction],
-        live: Registers,
+        live: RegisterSet,
         isa: &Isa,
         timing: &Timing,
     ) -> Option<(Pattern, Vec<u8>)> {
@@ -110,7 +110,7 @@ impl Pattern {
     }
 
     /// The registers that it reads and those that it writes there.
-    pub fn registers(&self, fields: &[u8]) -> (Registers, Registers) {
+    pub fn registers(&self, fields: &[u8]) -> (RegisterSet, RegisterSet) {
         let (mut reads, mut writes) = (0, 0);
         for (&(letter, kind), &number) in self.operands.iter().zip(fields) {
             let operand = Operand { letter: letter as u8, kind };
@@ -127,8 +127,8 @@ impl Pattern {
 }
 
 /// The registers of the instructions by how they are used together; `None` where groups overlap.
-fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<Unit>> {
-    let mut units: Vec<Unit> = Vec::new();
+fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<RegisterUnit>> {
+    let mut units: Vec<RegisterUnit> = Vec::new();
     for instruction in instructions {
         for is_written in [false, true] {
             for operand in isa.definition(instruction.op).operands.iter() {
@@ -138,7 +138,7 @@ fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<Unit>> {
                 if file == 's' && first == 0 {
                     continue;
                 }
-                let overlaps = |unit: &&mut Unit| {
+                let overlaps = |unit: &&mut RegisterUnit| {
                     unit.file == file && first < unit.first + unit.kind.registers() && unit.first < first + count
                 };
                 match units.iter_mut().find(overlaps) {
@@ -148,7 +148,7 @@ fn units(instructions: &[Instruction], isa: &Isa) -> Option<Vec<Unit>> {
                     Some(_) => return None,
                     None => {
                         let kind = kind_of(file, count)?;
-                        units.push(Unit { file, first, kind, is_read_first: !is_written, is_written });
+                        units.push(RegisterUnit { file, first, kind, is_read_first: !is_written, is_written });
                     }
                 }
             }
@@ -177,7 +177,7 @@ pub fn line(instruction: &Instruction, isa: &Isa, name: &dyn Fn(char, u8) -> Str
 
 /// Clocks one after the other, and along the longest chain of results.
 fn latency(instructions: &[Instruction], isa: &Isa, timing: &Timing) -> (u64, u64) {
-    let mut ready: Vec<(Registers, u64)> = Vec::new();
+    let mut ready: Vec<(RegisterSet, u64)> = Vec::new();
     let (mut serial, mut critical) = (0, 0);
     for instruction in instructions {
         let clocks = timing.clocks(&isa.definition(instruction.op).outcomes[0].cost).0;

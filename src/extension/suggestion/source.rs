@@ -6,7 +6,7 @@ use std::ops::Range;
 use isa::{Isa, Program};
 
 use super::block::Block;
-use super::flow::Flow;
+use super::flow::ProgramFlow;
 use super::pattern::line;
 
 /// The words of a function, when they stand together and hold no other function.
@@ -36,7 +36,7 @@ fn chain(program: &Program, pc: usize) -> Vec<u16> {
 }
 
 /// The text of a function from its blocks. `None` where the function and others lead into each other otherwise than by calls.
-pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Block]) -> Option<String> {
+pub fn text(program: &Program, flow: &ProgramFlow, isa: &Isa, name: &str, blocks: &[Block]) -> Option<String> {
     // Refuse a function that others jump into: its words would no longer be where they lead.
     let (function, range) = range(program, name)?;
     let leads_in = |pc: usize| flow.targets[pc].is_some_and(|to| to != range.start && range.contains(&to));
@@ -95,7 +95,7 @@ pub fn text(program: &Program, flow: &Flow, isa: &Isa, name: &str, blocks: &[Blo
 }
 
 /// The line of one word.
-fn single(flow: &Flow, isa: &Isa, pc: usize, label: &dyn Fn(usize) -> Option<String>) -> Option<String> {
+fn single(flow: &ProgramFlow, isa: &Isa, pc: usize, label: &dyn Fn(usize) -> Option<String>) -> Option<String> {
     let instruction = flow.instructions[pc].as_ref()?;
     Some(match flow.targets[pc] {
         Some(to) => {

@@ -267,7 +267,7 @@ fn constants_take_one_word_or_two() {
 
 #[test]
 fn every_pseudo_instruction_expands() {
-    use asm::pseudo::{PSEUDOS, Part};
+    use asm::pseudo::{PSEUDOS, PseudoPart};
     let isa = Isa::base();
     for pseudo in PSEUDOS {
         assert!(isa.find(pseudo.name).is_none(), "{} is a row", pseudo.name);
@@ -278,8 +278,8 @@ fn every_pseudo_instruction_expands() {
                 .operands
                 .iter()
                 .map(|&(letter, part)| match part {
-                    Part::Number => next.next().unwrap_or(&"1").to_string(),
-                    Part::Kind(kind) => {
+                    PseudoPart::Number => next.next().unwrap_or(&"1").to_string(),
+                    PseudoPart::Kind(kind) => {
                         kind.register_file().map_or(".".into(), |file| format!("{file}{}", letter as u8 % 8))
                     }
                 })

@@ -7,7 +7,7 @@ use isa::number::Nearest32;
 use isa::table::{AnyOutcome, outcome};
 
 use super::context::Context;
-use super::run::Host;
+use super::run::NativeHost;
 use super::{Recipe, Status};
 use crate::code::registers::{Registers, read};
 use crate::engine::HostSimd;
@@ -78,7 +78,7 @@ macro_rules! row_function {
             // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
             let (context, registers, step) = unsafe { (&mut *context, &mut *registers, &*step) };
             // SAFETY: the context is that of a run.
-            let host = unsafe { Host::of(context) };
+            let host = unsafe { NativeHost::of(context) };
             let fields = &step.fields;
             let address = registers.scalar(fields.a).wrapping_add(fields.i) as u32;
             host.ask(context, step);
@@ -188,7 +188,7 @@ pub(super) unsafe extern "C" fn add_units(context: *mut Context, step: *const St
     // SAFETY: as the function asks for.
     let (context, step) = unsafe { (&mut *context, &*step) };
     // SAFETY: the context is that of a run.
-    let host = unsafe { Host::of(context) };
+    let host = unsafe { NativeHost::of(context) };
     host.add_units(context, step.exit as usize + ended as u32 as usize, (ended >> 32) as u32);
     0
 }
@@ -201,7 +201,7 @@ pub(super) unsafe extern "C" fn went(context: *mut Context, ways: u64, motion: u
     // SAFETY: as the function asks for.
     let context = unsafe { &mut *context };
     // SAFETY: the context is that of a run.
-    let host = unsafe { Host::of(context) };
+    let host = unsafe { NativeHost::of(context) };
     let motion = [Motion::Jump, Motion::Call, Motion::Return][motion as usize % 3];
     host.went(context, ways as u32, (ways >> 32) as u32, motion);
     0
@@ -215,7 +215,7 @@ pub(super) unsafe extern "C" fn unit(context: *mut Context, registers: *mut Regi
     // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
     let (context, registers, step) = unsafe { (&mut *context, &mut *registers, &*step) };
     // SAFETY: the context is that of a run.
-    let host = unsafe { Host::of(context) };
+    let host = unsafe { NativeHost::of(context) };
     // SAFETY: buffer and units are the core's, which nobody else has.
     let (buffer, units) = unsafe { (&mut *host.buffer, &mut *host.units) };
     let Some(unit) = units.get_mut(step.unit) else { return (Status::Bailout as u64) << 32 };

@@ -40,7 +40,7 @@ pub(super) struct Context {
     pub before: i64,
     /// Address of the arithmetic that functions compute with.
     pub arithmetic: *const (),
-    /// The rest of the machine: see [`super::run::Host`].
+    /// The rest of the machine: see [`super::run::NativeHost`].
     pub host: *mut (),
     /// Operations by class since they were last emptied, where functions are measured.
     pub classes: Lanes,
@@ -74,7 +74,7 @@ offsets! {
 
 /// Place of the counters behind the context, in octets from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Layout {
+pub(super) struct CounterLayout {
     /// Counts of exits that were taken: a number of 64 bits an exit.
     pub exits: i32,
     /// Counts of runs that were begun and that no exit leads to whose target is known: one a place.
@@ -85,15 +85,15 @@ pub(super) struct Layout {
     pub octets: i32,
 }
 
-impl Layout {
+impl CounterLayout {
     /// The layout for so many exits, places and reads; `None` for a program so large that offsets do not fit 31 bits.
-    pub fn new(exits: usize, places: usize, sites: usize) -> Option<Layout> {
+    pub fn new(exits: usize, places: usize, sites: usize) -> Option<CounterLayout> {
         let start = size_of::<Context>().next_multiple_of(8);
         let begun = start.checked_add(exits.checked_mul(8)?)?;
         let site = begun.checked_add(places.checked_mul(8)?)?;
         let end = site.checked_add(sites.checked_mul(16)?)?;
         let fit = |octets: usize| i32::try_from(octets).ok();
-        Some(Layout { exits: fit(start)?, begun: fit(begun)?, sites: fit(site)?, octets: fit(end)? })
+        Some(CounterLayout { exits: fit(start)?, begun: fit(begun)?, sites: fit(site)?, octets: fit(end)? })
     }
 
     /// Counter of an exit, an offset in octets.
@@ -114,16 +114,16 @@ impl Layout {
 
 /// Memory with a context in front and counters behind, as a layout says.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(super) struct ContextFrame {
     octets: Box<[u64]>,
-    layout: Layout,
+    layout: CounterLayout,
 }
 
-impl Frame {
+impl ContextFrame {
     /// All zero.
-    pub fn new(layout: Layout) -> Frame {
+    pub fn new(layout: CounterLayout) -> ContextFrame {
         const { assert!(align_of::<Context>() == 8) };
-        Frame { octets: vec![0; layout.octets as usize / 8].into(), layout }
+        ContextFrame { octets: vec![0; layout.octets as usize / 8].into(), layout }
     }
 
     /// The context, from which generated code reaches the counters as well.

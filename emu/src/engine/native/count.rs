@@ -1,6 +1,6 @@
 //! Counts of a core in generated code, and how they fold into passes and octets.
 
-use super::context::{Frame, Layout};
+use super::context::{ContextFrame, CounterLayout};
 use super::{AddOctets, Native, run};
 use crate::code::tally::Tally;
 use crate::engine::plan::{Plan, Step};
@@ -8,7 +8,7 @@ use crate::engine::plan::{Plan, Step};
 /// Counters of a core. Those that generated code changes stand in the frame.
 #[derive(Clone, Debug)]
 pub(super) struct Counters {
-    pub frame: Frame,
+    pub frame: ContextFrame,
     /// Counts of runs that ended before each place.
     pub cut: Vec<u64>,
     /// Units by exit.
@@ -19,9 +19,9 @@ pub(super) struct Counters {
 
 impl Counters {
     /// Nothing yet.
-    pub fn new(layout: Layout, plan: &Plan, sites: usize) -> Counters {
+    pub fn new(layout: CounterLayout, plan: &Plan, sites: usize) -> Counters {
         Counters {
-            frame: Frame::new(layout),
+            frame: ContextFrame::new(layout),
             cut: vec![0; plan.steps().len()],
             units: vec![0; plan.exits()],
             kinds: vec![0; sites],

@@ -30,7 +30,7 @@ use crate::profile::RunObserver;
 use crate::semantics::{Computes, Watch};
 use blocks::Blocks;
 use classes::Classes;
-use context::{Context, Layout};
+use context::{Context, CounterLayout};
 use count::Counters;
 use executable::Executable;
 
@@ -107,13 +107,13 @@ impl Status {
 const NO_SITE: u32 = u32::MAX;
 
 /// Generated code as a function: see [`lower::function`].
-type Function = unsafe extern "C" fn(*mut Context, *mut Registers, u32) -> u32;
+type CompiledFunction = unsafe extern "C" fn(*mut Context, *mut Registers, u32) -> u32;
 
 /// Code that was generated for a program.
 #[derive(Debug)]
 struct Compiled {
-    function: Function,
-    layout: Layout,
+    function: CompiledFunction,
+    layout: CounterLayout,
     /// The places at which it can be entered.
     is_join: Vec<bool>,
     /// Numbers of the reads that are done inline, by place.
@@ -275,10 +275,11 @@ impl Compiled {
                 site_places.push(place);
             }
         }
-        let layout = Layout::new(plan.exits(), steps.len(), site_places.len()).ok_or("the program is too large")?;
+        let layout =
+            CounterLayout::new(plan.exits(), steps.len(), site_places.len()).ok_or("the program is too large")?;
         let classes = recipe.has_profile.then(|| Classes::new(plan));
         let blocks = Blocks::new(plan, recipe, classes.as_ref());
-        let source = lower::Source {
+        let source = lower::LowerSource {
             plan,
             steps: &steps,
             extras: &extras,
@@ -296,7 +297,7 @@ impl Compiled {
         }
         let executable = Executable::new(compiled.code_buffer()).map_err(|_| NO_MEMORY)?;
         // SAFETY: what was generated is a function of that signature, in the host's calling convention, with nothing left to relocate.
-        let function = unsafe { std::mem::transmute::<*const u8, Function>(executable.start()) };
+        let function = unsafe { std::mem::transmute::<*const u8, CompiledFunction>(executable.start()) };
         Ok(Compiled {
             function,
             layout,

@@ -6,7 +6,7 @@ use std::panic::resume_unwind;
 use isa::Counts;
 
 use super::classes::Lanes;
-use super::context::{Context, Layout, NOTED};
+use super::context::{Context, CounterLayout, NOTED};
 use super::count::Counters;
 use super::{NO_SITE, Native, NotedRead, Status, Stopped, TimedLink};
 use crate::code::octets::Buffer;
@@ -67,7 +67,7 @@ struct Totals {
 }
 
 /// The machine as functions see it that generated code calls.
-pub(super) struct Host<'a> {
+pub(super) struct NativeHost<'a> {
     plan: &'a Plan<'a>,
     pub buffer: *mut Buffer,
     pub units: *mut Units,
@@ -79,7 +79,7 @@ pub(super) struct Host<'a> {
     /// Memory of the sites: the kind of the data there.
     kinds: &'a mut [u32],
     sites: &'a [u32],
-    layout: Layout,
+    layout: CounterLayout,
     reads_inline: bool,
     fault: Option<Fault>,
     /// Payload of a panic of an instruction with a meaning in Rust.
@@ -90,12 +90,12 @@ pub(super) struct Host<'a> {
     is_full: bool,
 }
 
-impl<'a> Host<'a> {
+impl<'a> NativeHost<'a> {
     /// The host of a run.
     ///
     /// # Safety
     /// The context is that of a run, and nobody else holds its host.
-    pub unsafe fn of<'h>(context: &mut Context) -> &'h mut Host<'a> {
+    pub unsafe fn of<'h>(context: &mut Context) -> &'h mut NativeHost<'a> {
         // SAFETY: it was put there by `run`, which waits for generated code.
         unsafe { &mut *context.host.cast() }
     }
@@ -257,7 +257,7 @@ impl Native<'_> {
         let (buffer_octets, before) =
             (state.buffer.start_mut(), link.quick().map(|quick| (quick.before(), quick.memory().map(<[u8]>::as_ptr))));
         let context = counters.frame.context();
-        let mut host = Host {
+        let mut host = NativeHost {
             plan,
             buffer: &raw mut state.buffer,
             units: &raw mut state.units,

@@ -8,8 +8,8 @@ use scenes::kdtree::Bounds;
 use super::scalar::dot;
 use super::walk::descend;
 use crate::constants::Constants;
-use crate::twin::ray::{Packet, Ray};
-use crate::twin::stage::Stage;
+use crate::twin::ray::{Packet, TwinRay};
+use crate::twin::stage::TwinStage;
 use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// Exit of a ray from a packet.
@@ -26,7 +26,7 @@ pub struct ExitPoint {
 }
 
 /// A crossing of a ray with a plane.
-struct Crossing {
+struct PlaneCrossing {
     axis: usize,
     plane: i32,
     /// s = n . (V0 - P0) / n . u.
@@ -41,9 +41,9 @@ struct Crossing {
 fn crossings(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    ray: &Ray,
+    ray: &TwinRay,
     bounds: &Bounds,
-) -> impl Iterator<Item = Crossing> {
+) -> impl Iterator<Item = PlaneCrossing> {
     let (bits, along) = (constants.formats.direction, constants.along());
     let planes = (0..3).flat_map(move |axis| [(axis, -1, bounds.low), (axis, 1, bounds.high)]);
     planes.filter_map(move |(axis, side, corner)| {
@@ -56,14 +56,19 @@ fn crossings(
         let ahead = dot(arithmetic, outward, arithmetic.difference(corner, ray.origin), bits);
         let t = arithmetic.quotient(i128::from(ahead) << along, slope.into());
         let point = arithmetic.sum(ray.origin, arithmetic.scaled(ray.direction, t, along));
-        Some(Crossing { axis, plane: corner[axis], t, point, slope })
+        Some(PlaneCrossing { axis, plane: corner[axis], t, point, slope })
     })
 }
 
 /// The nearest of the crossings by which the ray leaves; of equal ones the last. Each point is brought into the packet.
-pub fn exit_face(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, bounds: &Bounds) -> ExitPoint {
+pub fn exit_face(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    ray: &TwinRay,
+    bounds: &Bounds,
+) -> ExitPoint {
     let mut exit = ExitPoint { axis: 3, plane: 0, t: constants.missed, point: [0; 3] };
-    for Crossing { axis, plane, t, mut point, slope } in crossings(arithmetic, constants, ray, bounds) {
+    for PlaneCrossing { axis, plane, t, mut point, slope } in crossings(arithmetic, constants, ray, bounds) {
         if slope > 0 && t <= exit.t {
             point = from_fn(|k| point[k].max(bounds.low[k]).min(bounds.high[k]));
             point[axis] = plane;
@@ -78,8 +83,8 @@ pub fn exit_face(arithmetic: &impl VectorArithmetic, constants: &Constants, ray:
 pub fn first_packet(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    stage: &Stage,
-    ray: &Ray,
+    stage: &TwinStage,
+    ray: &TwinRay,
 ) -> Option<Packet> {
     let bounds = &stage.bounds;
     let is_between = |point: Vector, k: usize| (bounds.low[k]..=bounds.high[k]).contains(&point[k]);
@@ -87,7 +92,7 @@ pub fn first_packet(
         return Some(descend(stage, ray, ray.origin));
     }
     let mut nearest = None;
-    for Crossing { axis, plane, t, mut point, .. } in crossings(arithmetic, constants, ray, bounds) {
+    for PlaneCrossing { axis, plane, t, mut point, .. } in crossings(arithmetic, constants, ray, bounds) {
         point[axis] = plane;
         let is_valid = t > 0 && (0..3).all(|k| is_between(point, k));
         if is_valid && nearest.is_none_or(|(nearest, _)| t <= nearest) {

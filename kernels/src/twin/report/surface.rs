@@ -4,7 +4,7 @@ use isa::number::Vector;
 
 use super::scalar::{cross, dot};
 use crate::constants::Constants;
-use crate::twin::ray::Ray;
+use crate::twin::ray::TwinRay;
 use crate::twin::surface::{self, Surface};
 use crate::twin::unit::sqrt;
 use crate::twin::vector_arithmetic::VectorArithmetic;
@@ -30,7 +30,7 @@ pub fn normal(arithmetic: &impl VectorArithmetic, fraction: u32, vertices: &[Vec
 pub fn sides(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    ray: &Ray,
+    ray: &TwinRay,
     t: i32,
     normal: Vector,
 ) -> (Vector, i32, Vector, Vector) {

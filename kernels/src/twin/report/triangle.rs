@@ -4,7 +4,7 @@ use isa::number::{Vector, normalizing_shift, split_shift};
 
 use super::scalar::{cross, dot};
 use crate::constants::Constants;
-use crate::twin::ray::Ray;
+use crate::twin::ray::TwinRay;
 use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// Results of the formulas of 3.1.2.
@@ -17,7 +17,12 @@ struct Solution {
 
 /// Ray against triangle by the formulas of 3.1.2, or [`Constants::missed`]: no early out, inclusive comparisons, (1 / det) x three times.
 /// Edges and determinant are shifted into range, and quotients back.
-pub fn triangle(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> i32 {
+pub fn triangle(
+    arithmetic: &impl VectorArithmetic,
+    constants: &Constants,
+    ray: &TwinRay,
+    vertices: &[Vector; 3],
+) -> i32 {
     let Solution { determinant, t, u, v } = solve(arithmetic, constants, ray, vertices);
     let one = 1 << constants.formats.barycentric;
     let is_outside = u < 0 || u > one || v < 0 || v > one || arithmetic.plus(v, u) > one;
@@ -28,14 +33,14 @@ pub fn triangle(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: 
 pub fn barycentric(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    ray: &Ray,
+    ray: &TwinRay,
     vertices: &[Vector; 3],
 ) -> [i32; 2] {
     let Solution { u, v, .. } = solve(arithmetic, constants, ray, vertices);
     [u, v]
 }
 
-fn solve(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &Ray, vertices: &[Vector; 3]) -> Solution {
+fn solve(arithmetic: &impl VectorArithmetic, constants: &Constants, ray: &TwinRay, vertices: &[Vector; 3]) -> Solution {
     let formats = &constants.formats;
     let (word, bits, barycentric) = (formats.word, formats.direction, formats.barycentric);
     // Fraction bits of 1 / det beyond those of a determinant.

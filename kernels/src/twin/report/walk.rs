@@ -4,17 +4,17 @@ use isa::number::Vector;
 
 use super::crossing::exit_face;
 use crate::constants::Constants;
-use crate::twin::ray::{Packet, Ray, Search};
-use crate::twin::stage::Stage;
+use crate::twin::ray::{Packet, TwinRay, TwinSearch};
+use crate::twin::stage::TwinStage;
 use crate::twin::vector_arithmetic::VectorArithmetic;
 
 /// From the root down to the packet that has a point; in the plane of a split the ray's direction decides.
-pub fn descend(stage: &Stage, ray: &Ray, point: Vector) -> Packet {
+pub fn descend(stage: &TwinStage, ray: &TwinRay, point: Vector) -> Packet {
     stage.descend(|axis, at| point[axis] > at || point[axis] == at && !ray.is_backwards(axis))
 }
 
 /// The packet in which a ray starts that starts inside the scene's box.
-pub fn own_packet(stage: &Stage, ray: &Ray) -> Packet {
+pub fn own_packet(stage: &TwinStage, ray: &TwinRay) -> Packet {
     descend(stage, ray, ray.origin)
 }
 
@@ -22,10 +22,10 @@ pub fn own_packet(stage: &Stage, ray: &Ray) -> Packet {
 pub fn next_packet(
     arithmetic: &impl VectorArithmetic,
     constants: &Constants,
-    stage: &Stage,
-    ray: &Ray,
+    stage: &TwinStage,
+    ray: &TwinRay,
     packet: &Packet,
-    search: &Search,
+    search: &TwinSearch,
 ) -> Option<Packet> {
     let exit = exit_face(arithmetic, constants, ray, &packet.bounds);
     if (search.takes_any || search.triangle.is_some()) && search.t < exit.t {

@@ -35,14 +35,14 @@ pub struct Description {
 type WordedCount<'a> = (u32, Word<'a>);
 
 /// The kind of a line of six numbers.
-struct Shape {
+struct LineShape {
     name: &'static str,
     fields: [&'static str; 6],
 }
 
-const MATERIAL: Shape =
-    Shape { name: "material", fields: ["red", "green", "blue", "reflection", "intensity", "index of refraction"] };
-const LIGHT: Shape = Shape { name: "light", fields: ["x", "y", "z", "red", "green", "blue"] };
+const MATERIAL: LineShape =
+    LineShape { name: "material", fields: ["red", "green", "blue", "reflection", "intensity", "index of refraction"] };
+const LIGHT: LineShape = LineShape { name: "light", fields: ["x", "y", "z", "red", "green", "blue"] };
 
 /// Reads a `.dsc` text. `#` starts a comment and words may be spread over lines, except that a material or light which
 /// begins a line has that line for itself: a missing number would otherwise shift all that follow.
@@ -173,7 +173,7 @@ fn is_not_a_light(words: &mut Words<'_>, materials: WordedCount<'_>, lights: Wor
 /// usable, but the next may be.
 fn six<'a>(
     words: &mut Words<'a>,
-    shape: &Shape,
+    shape: &LineShape,
     n: u32,
     announced: WordedCount<'a>,
 ) -> Option<Option<([f64; 6], [Word<'a>; 6])>> {

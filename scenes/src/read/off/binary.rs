@@ -9,7 +9,7 @@ use super::super::colour::{Spec, Writing};
 use super::super::faces::Faces;
 use super::super::mesh::Mesh;
 use super::super::words::{Words, counted};
-use super::header::{Binary, DIMENSIONS, Header};
+use super::header::{BinaryPart, DIMENSIONS, Header};
 use super::position;
 use crate::model::Vec3;
 
@@ -22,13 +22,13 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 }
 
 /// Reads the part that follows the header in `words`; `None` after a complaint.
-pub(super) fn read(bytes: &[u8], header: &Header, binary: Binary, words: &mut Words<'_>) -> Option<Mesh> {
+pub(super) fn read(bytes: &[u8], header: &Header, binary: BinaryPart, words: &mut Words<'_>) -> Option<Mesh> {
     let source = words.place(0..0).source;
     // Comments before may hold octets that are not text, and have another length there: lines are the same.
     let lines = source.text[..binary.start].matches('\n').count();
     let start =
         bytes.iter().enumerate().filter(|&(_, &octet)| octet == b'\n').nth(lines - 1).map_or(0, |(at, _)| at + 1);
-    let mut numbers = Numbers { rest: &bytes[start..], all: bytes };
+    let mut numbers = BinaryNumbers { rest: &bytes[start..], all: bytes };
     match body(&mut numbers, header, binary, &source.name) {
         Ok(mesh) => Some(mesh),
         Err(message) => {
@@ -40,12 +40,12 @@ pub(super) fn read(bytes: &[u8], header: &Header, binary: Binary, words: &mut Wo
 }
 
 /// The rest of the binary part.
-struct Numbers<'a> {
+struct BinaryNumbers<'a> {
     rest: &'a [u8],
     all: &'a [u8],
 }
 
-impl Numbers<'_> {
+impl BinaryNumbers<'_> {
     /// Offset of the next number in the file.
     fn at(&self) -> usize {
         self.all.len() - self.rest.len()
@@ -100,7 +100,7 @@ impl Numbers<'_> {
     }
 }
 
-fn body(numbers: &mut Numbers<'_>, header: &Header, binary: Binary, name: &str) -> Result<Mesh, String> {
+fn body(numbers: &mut BinaryNumbers<'_>, header: &Header, binary: BinaryPart, name: &str) -> Result<Mesh, String> {
     let mut header = *header;
     if binary.has_dimension {
         let dimension = numbers.whole(|| "the dimension".to_string())?;

@@ -23,12 +23,12 @@ pub(super) struct Header {
     /// A texture position of two numbers follows.
     pub has_texture: bool,
     /// Everything after the header is binary, from this place on.
-    pub binary: Option<Binary>,
+    pub binary: Option<BinaryPart>,
 }
 
 /// Start of the binary part, and its first number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Binary {
+pub(super) struct BinaryPart {
     /// First octet of the word `BINARY` and the one after its last.
     pub word: (usize, usize),
     /// Offset of the first octet behind that line, in the text that the header was read from.
@@ -41,7 +41,7 @@ pub(super) struct Binary {
 pub(super) const DIMENSIONS: u32 = 1000;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Prefix {
+enum OffPrefix {
     Texture,
     Colour,
     Normal,
@@ -51,14 +51,14 @@ enum Prefix {
 }
 
 /// The letters before `OFF`, and what is glued behind it. Letters in another order than Geomview's are read too.
-fn keyword(input: &str) -> IResult<&str, Vec<Prefix>> {
+fn keyword(input: &str) -> IResult<&str, Vec<OffPrefix>> {
     let letter = alt((
-        value(Prefix::Texture, tag("ST")),
-        value(Prefix::Colour, tag("C")),
-        value(Prefix::Normal, tag("N")),
-        value(Prefix::Homogeneous, tag("4")),
-        value(Prefix::Dimension, tag("n")),
-        value(Prefix::Smooth, tag("S")),
+        value(OffPrefix::Texture, tag("ST")),
+        value(OffPrefix::Colour, tag("C")),
+        value(OffPrefix::Normal, tag("N")),
+        value(OffPrefix::Homogeneous, tag("4")),
+        value(OffPrefix::Dimension, tag("n")),
+        value(OffPrefix::Smooth, tag("S")),
     ));
     let (rest, letters) = many0(letter).parse(input)?;
     let (rest, _) = alt((tag("OFF"), tag("off"), tag("Off"))).parse(rest)?;
@@ -92,15 +92,15 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
     if is_repeated || !(glued.is_empty() || glued == "BINARY" || glued.starts_with(|c: char| c.is_ascii_digit())) {
         return refuse(words, word);
     }
-    header.is_homogeneous = has(Prefix::Homogeneous);
-    header.has_normals = has(Prefix::Normal);
-    header.has_colours = has(Prefix::Colour);
-    header.has_texture = has(Prefix::Texture);
+    header.is_homogeneous = has(OffPrefix::Homogeneous);
+    header.has_normals = has(OffPrefix::Normal);
+    header.has_colours = has(OffPrefix::Colour);
+    header.has_texture = has(OffPrefix::Texture);
     words.seek(word.span().end - glued.len());
     let mut mark = take_binary(words);
-    let has_dimension = has(Prefix::Dimension) && mark.is_some();
+    let has_dimension = has(OffPrefix::Dimension) && mark.is_some();
     let mut dimension = 3;
-    if has(Prefix::Dimension) && !has_dimension {
+    if has(OffPrefix::Dimension) && !has_dimension {
         dimension = read_dimension(words)?;
         mark = take_binary(words);
     }
@@ -111,7 +111,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
             words.complain(Diagnostic::error("a line end must follow `BINARY`").at(place, "expected a line end"));
             return None;
         };
-        header.binary = Some(Binary { word: (word.start, word.span().end), start, has_dimension });
+        header.binary = Some(BinaryPart { word: (word.start, word.span().end), start, has_dimension });
     }
     header.components = dimension + usize::from(header.is_homogeneous);
     Some(header)

@@ -9,7 +9,7 @@ use ply_rs_bw::ply::Encoding;
 use super::super::mesh::Mesh;
 use super::super::words::{Words, counted};
 use super::header::Element;
-use super::row::Row;
+use super::row::ElementRow;
 use super::{PlyContents, has_room, is_empty, which};
 
 /// Reads the elements from octet `start` on; `None` after a complaint.
@@ -21,7 +21,7 @@ pub(super) fn read(
     words: &mut Words<'_>,
 ) -> Option<Mesh> {
     let name = words.place(0..0).source.name.clone();
-    let parser = Parser::<Row>::new();
+    let parser = Parser::<ElementRow>::new();
     let mut contents = PlyContents::default();
     let mut cursor = Cursor::new(bytes);
     cursor.set_position(start as u64);

@@ -5,7 +5,7 @@ use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType, ScalarType};
 
 use super::super::words::{Word, Words, shortened};
-use super::row::{CORNERS, POSITION, Row};
+use super::row::{CORNERS, ElementRow, POSITION};
 
 /// Octets in which a header must end.
 const HEAD: usize = 1 << 20;
@@ -56,7 +56,7 @@ pub(super) struct Element<'a> {
 
 /// Reads a header which is all of the text; `None` after a complaint.
 pub(super) fn read<'a>(words: &mut Words<'a>) -> Option<(Header, Vec<Element<'a>>)> {
-    let parser = Parser::<Row>::new();
+    let parser = Parser::<ElementRow>::new();
     let mut lines = String::new();
     // Elements by name, each with its number and the names of its properties.
     let mut elements: Vec<(Word<'a>, Word<'a>, Vec<&'a str>)> = Vec::new();

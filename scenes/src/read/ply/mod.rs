@@ -12,7 +12,7 @@ use messages::{Diagnostic, Report};
 use ply_rs_bw::ply::Encoding;
 
 use self::header::{Element, Role};
-use self::row::Row;
+use self::row::ElementRow;
 use super::colour::{Spec, Writing};
 use super::faces::Faces;
 use super::format::{Likelihood, MeshReader};
@@ -101,7 +101,7 @@ struct PlyContents {
 
 impl PlyContents {
     /// Takes an element of a role; `number` counts from 0.
-    fn push(&mut self, role: Role, number: usize, row: &Row) -> Result<(), Complaint> {
+    fn push(&mut self, role: Role, number: usize, row: &ElementRow) -> Result<(), Complaint> {
         match role {
             Role::Vertices => {
                 if !row.position.iter().all(|x| x.is_finite()) {
@@ -117,7 +117,7 @@ impl PlyContents {
         }
     }
 
-    fn face(&mut self, number: usize, row: &Row) -> Result<(), Complaint> {
+    fn face(&mut self, number: usize, row: &ElementRow) -> Result<(), Complaint> {
         self.corners.clear();
         for &corner in &row.corners {
             let vertex = self.vertex(corner, || format!("face {number}"))?;
@@ -132,7 +132,7 @@ impl PlyContents {
     }
 
     /// Every corner from the third of a strip on ends a triangle with the two before it, turned alternately.
-    fn strips(&mut self, number: usize, row: &Row) -> Result<(), Complaint> {
+    fn strips(&mut self, number: usize, row: &ElementRow) -> Result<(), Complaint> {
         for strip in row.corners.split(|&corner| corner == -1) {
             for (n, three) in strip.windows(3).enumerate() {
                 let turned = [three[n % 2], three[1 - n % 2], three[2]];

@@ -12,9 +12,9 @@ pub(super) const POSITION: [&str; 3] = ["x", "y", "z"];
 pub(super) const COLOUR: [[&str; 2]; 3] =
     [["red", "diffuse_red"], ["green", "diffuse_green"], ["blue", "diffuse_blue"]];
 
-/// Place of a property in a [`Row`].
+/// Place of a property in a [`ElementRow`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Slot {
+pub(super) enum PropertySlot {
     /// Coordinate 0 to 2.
     Position(usize),
     /// Component 0 to 2 of a colour.
@@ -25,24 +25,24 @@ pub(super) enum Slot {
     Unused,
 }
 
-impl Slot {
+impl PropertySlot {
     /// The place of a property of this name.
-    pub(super) fn of(name: &str) -> Slot {
+    pub(super) fn of(name: &str) -> PropertySlot {
         if let Some(k) = POSITION.iter().position(|&axis| axis == name) {
-            Slot::Position(k)
+            PropertySlot::Position(k)
         } else if let Some(k) = COLOUR.iter().position(|names| names.contains(&name)) {
-            Slot::Colour(k)
+            PropertySlot::Colour(k)
         } else if CORNERS.contains(&name) {
-            Slot::Corners
+            PropertySlot::Corners
         } else {
-            Slot::Unused
+            PropertySlot::Unused
         }
     }
 }
 
 /// Parts of an element that are used.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Row {
+pub(super) struct ElementRow {
     /// Coordinates of a vertex.
     pub position: [f64; 3],
     /// Components of a colour, 0..1 as whole-number types have them.
@@ -51,7 +51,7 @@ pub(super) struct Row {
     pub corners: Vec<i64>,
 }
 
-impl Row {
+impl ElementRow {
     /// Forgets the last element.
     pub(super) fn clear(&mut self) {
         self.position = [0.0; 3];
@@ -60,11 +60,11 @@ impl Row {
     }
 
     /// Takes a number of a type.
-    pub(super) fn set(&mut self, slot: Slot, value: f64, kind: &ScalarType) {
+    pub(super) fn set(&mut self, slot: PropertySlot, value: f64, kind: &ScalarType) {
         match slot {
-            Slot::Position(k) => self.position[k] = value,
-            Slot::Colour(k) => self.colour[k] = Some(value / full(kind)),
-            Slot::Corners | Slot::Unused => {}
+            PropertySlot::Position(k) => self.position[k] = value,
+            PropertySlot::Colour(k) => self.colour[k] = Some(value / full(kind)),
+            PropertySlot::Corners | PropertySlot::Unused => {}
         }
     }
 }
@@ -113,15 +113,15 @@ fn list(property: &Property) -> Option<Vec<i64>> {
 }
 
 /// The library `ply-rs-bw` hands over the properties of binary files.
-impl PropertyAccess for Row {
-    fn new() -> Row {
-        Row::default()
+impl PropertyAccess for ElementRow {
+    fn new() -> ElementRow {
+        ElementRow::default()
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        match (scalar(&property), Slot::of(name)) {
+        match (scalar(&property), PropertySlot::of(name)) {
             (Some((value, kind)), slot) => self.set(slot, value, &kind),
-            (None, Slot::Corners) => self.corners = list(&property).unwrap_or_default(),
+            (None, PropertySlot::Corners) => self.corners = list(&property).unwrap_or_default(),
             (None, _) => {}
         }
         PropertyAccessResult::Set

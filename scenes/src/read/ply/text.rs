@@ -7,13 +7,13 @@ use ply_rs_bw::ply::{PropertyType, ScalarType};
 use super::super::mesh::Mesh;
 use super::super::words::{Word, Words, shortened};
 use super::header::{Element, Role};
-use super::row::{Row, Slot};
+use super::row::{ElementRow, PropertySlot};
 use super::{PlyContents, has_room, is_empty, which};
 
 /// A property of an element, ready to be read many times.
-struct Column<'d> {
+struct TextColumn<'d> {
     name: &'d str,
-    slot: Slot,
+    slot: PropertySlot,
     kind: &'d PropertyType,
 }
 
@@ -25,10 +25,10 @@ pub(super) fn read(words: &mut Words<'_>, elements: &[Element<'_>], name: &str) 
             return None;
         }
         let properties = element.definition.properties.iter();
-        let columns: Vec<Column<'_>> = properties
-            .map(|(name, property)| Column { name, slot: slot(element.role, name), kind: &property.data_type })
+        let columns: Vec<TextColumn<'_>> = properties
+            .map(|(name, property)| TextColumn { name, slot: slot(element.role, name), kind: &property.data_type })
             .collect();
-        let mut row = Row::default();
+        let mut row = ElementRow::default();
         for number in 0..element.definition.count {
             let mut reader = ElementReader { words, element, number, first: None, last_end: 0, cut: None, read: 0 };
             let first = reader.read(&columns, &mut row)?;
@@ -66,12 +66,12 @@ pub(super) fn read(words: &mut Words<'_>, elements: &[Element<'_>], name: &str) 
 }
 
 /// Place of a property of an element in a row.
-fn slot(role: Role, name: &str) -> Slot {
-    match (role, Slot::of(name)) {
-        (Role::Vertices, slot @ (Slot::Position(_) | Slot::Colour(_))) => slot,
-        (Role::Faces, slot @ (Slot::Colour(_) | Slot::Corners)) => slot,
-        (Role::Strips, slot @ Slot::Corners) => slot,
-        _ => Slot::Unused,
+fn slot(role: Role, name: &str) -> PropertySlot {
+    match (role, PropertySlot::of(name)) {
+        (Role::Vertices, slot @ (PropertySlot::Position(_) | PropertySlot::Colour(_))) => slot,
+        (Role::Faces, slot @ (PropertySlot::Colour(_) | PropertySlot::Corners)) => slot,
+        (Role::Strips, slot @ PropertySlot::Corners) => slot,
+        _ => PropertySlot::Unused,
     }
 }
 
@@ -91,7 +91,7 @@ struct ElementReader<'r, 'a, 'e> {
 
 impl<'a> ElementReader<'_, 'a, '_> {
     /// Reads all numbers of the element into a row; its first word. `None` after a complaint.
-    fn read(&mut self, columns: &[Column<'_>], row: &mut Row) -> Option<Word<'a>> {
+    fn read(&mut self, columns: &[TextColumn<'_>], row: &mut ElementRow) -> Option<Word<'a>> {
         row.clear();
         for column in columns {
             match column.kind {
@@ -104,7 +104,7 @@ impl<'a> ElementReader<'_, 'a, '_> {
                     // A length that the file does not hold ends with the file, not with the host's memory.
                     for _ in 0..length as u64 {
                         let value = self.number(column, kind, false)?;
-                        if column.slot == Slot::Corners {
+                        if column.slot == PropertySlot::Corners {
                             row.corners.push(value as i64);
                         }
                     }
@@ -120,7 +120,7 @@ impl<'a> ElementReader<'_, 'a, '_> {
     }
 
     /// The next number of a property; `None` after a complaint.
-    fn number(&mut self, column: &Column<'_>, kind: &ScalarType, is_length: bool) -> Option<f64> {
+    fn number(&mut self, column: &TextColumn<'_>, kind: &ScalarType, is_length: bool) -> Option<f64> {
         let what = || if is_length { format!("the length of `{}`", column.name) } else { format!("`{}`", column.name) };
         let Some(word) = self.words.next() else {
             let which = which(self.element, self.number);
@@ -140,7 +140,7 @@ impl<'a> ElementReader<'_, 'a, '_> {
         }
         self.last_end = word.span().end;
         self.read += 1;
-        let is_used = is_length || matches!(column.slot, Slot::Position(_) | Slot::Corners);
+        let is_used = is_length || matches!(column.slot, PropertySlot::Position(_) | PropertySlot::Corners);
         let value = match kind {
             ScalarType::Float => word.text.parse::<f32>().map(f64::from),
             _ => word.text.parse::<f64>(),

@@ -25,7 +25,7 @@ use isa::{Kind, Op};
 
 use super::blocks::Blocks;
 use super::classes::Classes;
-use super::context::{Layout, SUMS};
+use super::context::{CounterLayout, SUMS};
 use super::{Recipe, Status};
 use crate::code::registers::Registers;
 use crate::engine::plan::{Plan, Step};
@@ -60,14 +60,14 @@ enum Continuation {
 }
 
 /// Everything that is known before code is generated.
-pub(super) struct Source<'a> {
+pub(super) struct LowerSource<'a> {
     pub plan: &'a Plan<'a>,
     /// The plan's steps where they will be as long as the code.
     pub steps: &'a [Step],
     /// Additions of exits to the sums, where that will be as long as the code.
     pub extras: &'a [u64],
     pub recipe: &'a Recipe,
-    pub layout: Layout,
+    pub layout: CounterLayout,
     pub blocks: &'a Blocks,
     /// Numbers of the reads, by place.
     pub sites: &'a [u32],
@@ -78,7 +78,7 @@ pub(super) struct Source<'a> {
 /// A function on its way.
 struct Lower<'a, 'b> {
     b: FunctionBuilder<'b>,
-    source: &'a Source<'a>,
+    source: &'a LowerSource<'a>,
     /// The block that begins at each place at which one does.
     entries: Vec<Option<Block>>,
     context: Value,
@@ -119,7 +119,7 @@ fn call_signature(isa: &dyn TargetIsa) -> Signature {
 }
 
 /// The function of a program.
-pub(super) fn function(isa: &dyn TargetIsa, source: &Source) -> Function {
+pub(super) fn function(isa: &dyn TargetIsa, source: &LowerSource) -> Function {
     let mut function = Function::new();
     function.signature = entry_signature(isa);
     let mut context = FunctionBuilderContext::new();

@@ -19,7 +19,7 @@ pub struct EffortArguments {
     /// Weight that a reflected or refracted ray must exceed to be followed, 0 to 1.
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true, default_value = "0")]
     pub weight_cutoff: f64,
-    /// What not to leave out, names between commas, or `all`; `lancer skips` lists them and what they save.
+    /// Skips not to make, names between commas, or `all`; `lancer skips` lists them and what they save.
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = unskipped())]
     pub no_skip: Vec<Vec<Skip>>,
     /// Interpolates pixels between four corners that differ by at most this in each component, 0 to 1 (without a number: 0.01).

@@ -18,7 +18,7 @@ pub struct MachineArguments {
     /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = layout())]
     pub layout: Option<Layout>,
-    /// What executes the programs; only the host's time depends on it. auto: the fastest that suits.
+    /// Engine that executes the programs; only the host's time depends on it. auto: the fastest that suits.
     #[arg(long, value_name = "NAME", value_parser = engine(), default_value = AUTO)]
     pub engine: EngineKind,
 }

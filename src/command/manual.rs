@@ -22,7 +22,7 @@ Examples:
 enum ManualForm {
     /// The instruction set and the assembler, as Markdown.
     Markdown,
-    /// The same as one HTML page.
+    /// The manual as one HTML page.
     Html,
     /// The man page of the command.
     Man,
@@ -32,7 +32,7 @@ enum ManualForm {
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct ManualArguments {
-    /// What to write.
+    /// Form to write.
     #[arg(long = "as", value_name = "FORM", value_enum, default_value = "markdown")]
     form: ManualForm,
     #[command(flatten)]

@@ -67,7 +67,7 @@ pub struct RunArguments {
     /// Machine: a preset's name or a TOML file.
     #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
     machine: String,
-    /// What executes the program; only the host's time depends on it. auto: the fastest that suits.
+    /// Engine that executes the program; only the host's time depends on it. auto: the fastest that suits.
     #[arg(long, value_name = "NAME", value_parser = arguments::engine(), default_value = "auto")]
     engine: EngineKind,
     /// Prints the results as JSON instead of tables.

@@ -50,7 +50,7 @@ pub struct StressArguments {
     /// Number of trials: quick (seconds) or full (hours).
     #[arg(long, value_name = "SIZE", value_parser = size(), default_value = CatalogueSize::Quick.name(), conflicts_with = "full")]
     size: CatalogueSize,
-    /// The same as --size full.
+    /// Every case at full size: short for --size full.
     #[arg(long)]
     full: bool,
     /// Keeps what is done in a file, and goes on from what is there.

@@ -41,7 +41,7 @@ pub struct SuggestArguments {
     /// Prints the result as JSON.
     #[arg(long, help_heading = "Results")]
     json: bool,
-    /// What the names of the files begin with.
+    /// Beginning of the names of the files.
     #[arg(short, long, value_name = "PREFIX", default_value = "fused", help_heading = "Results")]
     output: PathBuf,
 }

@@ -59,9 +59,13 @@ const PARTS: &[Part] = &[
     },
 ];
 
-/// Changes to the release profile, each of which undoes one lever of the build, with what it is called.
+/// Changes to the release build, each of which undoes one lever or leaves out a feature: what it is called, and arguments of `cargo build`.
+///
+/// An argument with `=` is a key of Cargo's configuration and follows `--config`.
 const LEVERS: &[(&str, &[&str])] = &[
     ("as it is", &[]),
+    ("without native code", &["--no-default-features", "--features", "cli"]),
+    ("the library alone", &["--no-default-features", "--lib"]),
     (
         "line tables, nothing stripped",
         &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
@@ -144,7 +148,7 @@ fn part(part: &Part) -> Result<String, String> {
 /// A table of builds from nothing, each with one lever undone.
 fn build() -> Result<String, String> {
     let mut text = format!(
-        "`cargo build --release` from nothing, each line with one lever of `Cargo.toml` undone by `--config`.\n\n{}.\n\n\
+        "`cargo build --release` from nothing, each line with one lever of `Cargo.toml` undone by `--config`, or without a feature.\n\n{}.\n\n\
          | build | seconds | CPU seconds | MB |\n|---|---|---|---|\n",
         host()
     );
@@ -152,9 +156,9 @@ fn build() -> Result<String, String> {
     for (name, changes) in LEVERS {
         let _ = std::fs::remove_dir_all(&target);
         let mut command = Command::new("cargo");
-        command.args(["build", "--release", "--quiet", "--bin", "lancer", "--target-dir"]).arg(&target);
+        command.args(["build", "--release", "--quiet", "--package", "lancer", "--target-dir"]).arg(&target);
         for change in *changes {
-            command.args(["--config", change]);
+            command.args(change.contains('=').then_some("--config").into_iter().chain([*change]));
         }
         let (start, before) = (Instant::now(), cpu_seconds());
         let status = command.current_dir(root()).status().map_err(|error| error.to_string())?;
@@ -163,9 +167,10 @@ fn build() -> Result<String, String> {
         }
         let cpu =
             cpu_seconds().zip(before).map_or_else(|| "-".into(), |(after, before)| format!("{:.0}", after - before));
-        let octets = std::fs::metadata(target.join("release/lancer")).map_or(0, |file| file.len());
+        let size = std::fs::metadata(target.join("release/lancer"))
+            .map_or_else(|_| "-".into(), |file| format!("{:.1}", file.len() as f64 / 1e6));
         let seconds = start.elapsed().as_secs_f64();
-        let _ = writeln!(text, "| {name} | {seconds:.0} | {cpu} | {:.1} |", octets as f64 / 1e6);
+        let _ = writeln!(text, "| {name} | {seconds:.0} | {cpu} | {size} |");
     }
     let _ = std::fs::remove_dir_all(&target);
     Ok(text)

@@ -23,7 +23,6 @@ fn engines(criterion: &mut Criterion) {
         let scene = scene.expect("it is generated");
         for &profile in KernelSet::ALL {
             let mut job = Job::new(scene.clone());
-            job.view.shift = lancer::job::SHIFT;
             job.kernels.profile = profile;
             let (load, _) = Load::picture(&job).expect("it fits");
             let mut group = criterion.benchmark_group(format!("{}/{}", generator.name, profile.name()));

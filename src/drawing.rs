@@ -8,6 +8,7 @@ use emu::engine::Choice;
 use emu::machine::{self, RunOutcome};
 use emu::profile::Profile;
 use kernels::build::{Build, Crop};
+use kernels::twin::samples::Samples;
 use messages::{Diagnostic, Report};
 use rayon::prelude::*;
 use scenes::image::{MemoryImage, MemoryKind};
@@ -136,8 +137,9 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
         machine::RunOptions { has_profile, has_items: true, has_losses, engine, ..machine::RunOptions::default() };
     let setup = load.setup(&job.machine, options);
     let engine = setup.engine();
+    let samples = Samples::new(&job.scene, &image, job.kernels.profile, job.machine.arithmetic.modes());
     let (frame, reference) = std::thread::scope(|scope| {
-        let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &crop))));
+        let beside = scope.spawn(|| reference.as_ref().map(|reference| timed(|| part(reference, &samples, &crop))));
         let frame = timed(|| emu::run(&setup, load.memory.clone(), progress));
         (frame, beside.join().expect("the reference does not panic"))
     });
@@ -172,9 +174,9 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
 }
 
 /// The part of the reference picture that is drawn.
-fn part(reference: &Reference, crop: &Crop) -> Picture {
+fn part(reference: &Reference, samples: &Samples, crop: &Crop) -> Picture {
     let row = |row: u32| -> Vec<_> {
-        (0..crop.width).map(|column| reference.pixel(crop.column + column, crop.row + row).0).collect()
+        (0..crop.width).map(|column| reference.pixel(crop.column + column, crop.row + row, Some(samples)).0).collect()
     };
     let rows: Vec<Vec<_>> = (0..crop.height).into_par_iter().map(row).collect();
     Picture { size: (crop.width, crop.height), pixels: rows.into_iter().flatten().collect() }

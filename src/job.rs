@@ -15,10 +15,6 @@ use scenes::model::{Scene, View};
 
 use crate::machine;
 
-/// Place of a ray in its pixel in pictures that are measured, in pixels to the right of the middle and above it: parallel rays through the
-/// middles would run along edges of axis-aligned scenes.
-pub const SHIFT: [f64; 2] = [0.137, 0.071];
-
 /// Results of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {

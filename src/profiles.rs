@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
-use crate::job::{Detail, Job, SHIFT, result_name};
+use crate::job::{Detail, Job, result_name};
 use crate::result::{ByClass, FormatTable, image_hash};
 
 /// Version of [`Profiles`].
@@ -103,7 +103,7 @@ pub fn measure(
         machine: machine.0.clone(),
         width: size.0,
         height: size.1,
-        shift: SHIFT,
+        shift: View::new(size).shift,
         pictures: Vec::new(),
         ratios: Vec::new(),
     };
@@ -127,7 +127,7 @@ pub fn measure(
 
 fn job(scene: &Scene, size: (u32, u32), profile: KernelSet) -> Job {
     let mut job = Job::new(scene.clone());
-    job.view = View { shift: SHIFT, ..View::new(size) };
+    job.view = View::new(size);
     job.kernels.profile = profile;
     job.detail = Detail::Totals;
     job

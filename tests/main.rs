@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod architecture;
+mod bless;
 mod case;
 mod cases;
 mod cli;

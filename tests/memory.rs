@@ -2,7 +2,7 @@
 
 use kernels::KernelSet;
 use lancer::drawing::{self, Comparison};
-use lancer::job::{Job, SHIFT};
+use lancer::job::Job;
 use peak_alloc::PeakAlloc;
 use scenes::generate;
 use scenes::kdtree::Depth;
@@ -21,7 +21,6 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
     let mut job = Job::new(generate::scene("terrain", &options).expect("the terrain has any number of triangles"));
-    job.view.shift = SHIFT;
     job.kernels.profile = KernelSet::Ray;
     job.kd_depth = Depth::Auto;
     let drawing =

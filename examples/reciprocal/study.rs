@@ -71,7 +71,6 @@ pub fn job(bits: u32) -> Result<Job, Report> {
     let scene = generate::scene("cornell", &generate::GenerateOptions { size: (24, 18), ..Default::default() });
     let mut job = Job::new(scene.expect("it is generated"));
     job.isa = isa(bits)?;
-    job.view.shift = lancer::job::SHIFT;
     job.kernels.replaced.push((Function::Unit, Source::new("unit.s", KERNEL)));
     Ok(job)
 }

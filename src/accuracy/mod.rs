@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use isa::number::Quantization;
 use kernels::KernelSet;
+use kernels::twin::samples::Samples;
 use scenes::layout::Layout;
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Picture, Scene, View};
@@ -171,14 +172,14 @@ pub struct MeasuredVariant {
     pub dominated_by: Option<String>,
 }
 
-/// Draws a scene in a variant and measures it against a picture of the view in double precision.
+/// Draws a scene in a variant and measures it against `reference`, that view of the scene in double precision.
 ///
 /// # Errors
 /// A scene that does not fit the formats, or a trap.
 pub fn measure(
     scene: &Scene,
     view: &View,
-    reference: &Picture,
+    reference: &Reference,
     variant: &Variant,
     has_times: bool,
 ) -> Result<MeasuredVariant, Failure> {
@@ -199,7 +200,9 @@ pub fn measure(
     let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
     drawing.image.bytes = drawing.frame.memory.octets().to_vec();
     let stored = drawing.image.stored_scene(scene).expect("an image that was built can be read");
-    let stored = Reference::framed(&stored, scene.bounds(), view, SearchMethod::Hierarchy)?.picture().picture;
+    let samples = Samples::new(scene, &drawing.image, variant.profile, job.machine.arithmetic.modes());
+    let stored = Reference::framed(&stored, scene.bounds(), view, SearchMethod::Hierarchy)?;
+    let [exact, stored] = [reference, &stored].map(|reference| reference.picture(Some(&samples)).picture);
     // Measure camera rays by themselves on the stored grid.
     let rays = RayErrors::new(&drawing.image, &job, view.size);
     let result = Render::new(&job, &drawing);
@@ -216,8 +219,8 @@ pub fn measure(
         bounces: variant.bounces,
         cutoff: variant.cutoff,
         interpolate: variant.interpolate,
-        error: error(reference),
-        ssim: similarity::structural_similarity(&drawing.picture, reference),
+        error: error(&exact),
+        ssim: similarity::structural_similarity(&drawing.picture, &exact),
         stored_error: error(&stored),
         rays,
         clocks: each(result.clocks),

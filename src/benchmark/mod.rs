@@ -147,7 +147,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 Runner::Reference => timed(|| {
                     (0..crop.height).into_par_iter().for_each(|row| {
                         for column in 0..crop.width {
-                            std::hint::black_box(reference.pixel(crop.column + column, crop.row + row));
+                            std::hint::black_box(reference.pixel(crop.column + column, crop.row + row, None));
                         }
                     });
                     Ok(())

@@ -10,13 +10,13 @@ use kernels::KernelSet;
 use messages::Diagnostic;
 use scenes::layout::Layout;
 use scenes::model::View;
+use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::accuracy::{self, Choices, MeasuredVariant};
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
-use crate::job::SHIFT;
 use crate::numeral::short;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
@@ -159,8 +159,8 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
-        let view = View { shift: SHIFT, ..View::new(arguments.size) };
-        let reference = scenes::reference::render(&loaded.scene, &view)?.picture;
+        let view = View::new(arguments.size);
+        let reference = Reference::new(&loaded.scene, &view, SearchMethod::Hierarchy)?;
         let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
         for variant in &variants {
             match accuracy::measure(&loaded.scene, &view, &reference, variant, arguments.timing) {
@@ -183,7 +183,14 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
     files.extend(arguments.svg.as_ref().map(|path| (path, accuracy::svg(&measured))));
     files::write_all(&files)?;
     let (width, height) = arguments.size;
-    let results = AccuracyResults { schema: SCHEMA, width, height, shift: SHIFT, variants: measured, refused };
+    let results = AccuracyResults {
+        schema: SCHEMA,
+        width,
+        height,
+        shift: View::new(arguments.size).shift,
+        variants: measured,
+        refused,
+    };
     terminal.print(&if arguments.json { result::json(&results) } else { text(&results) })?;
     Ok(Exit::Done)
 }

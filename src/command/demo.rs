@@ -12,7 +12,7 @@ use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::files::map::LEAST_ERROR;
 use crate::files::picture::PictureFormat;
-use crate::job::{Job, SHIFT};
+use crate::job::Job;
 use crate::result::Render;
 use crate::terminal::Terminal;
 use crate::{annex, files, summary};
@@ -22,7 +22,7 @@ const FOLDER: &str = "out";
 
 const NEXT: &str = "\
 Try next:
-  lancer render sphereflake --shift 0.137,0.071    another scene; the list: lancer scene generate -h
+  lancer render sphereflake                        another scene; the list: lancer scene generate -h
   lancer render cornell --camera perspective       seen from an eye in front of the room
   lancer render cornell --pixel 160,120            one pixel: its colour and what it took
   lancer render cornell --json --cores 8           all figures, on a machine with more cores
@@ -42,11 +42,10 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     // Count the annexes, then draw the picture.
     let measured = annex::measure()?;
     terminal.print(&annex::text::demo(&measured))?;
-    let mut job = Job::new(generate::scene(
+    let job = Job::new(generate::scene(
         "cornell",
         &generate::GenerateOptions { size, ..generate::GenerateOptions::default() },
     )?);
-    job.view.shift = SHIFT;
     let drawing = draw(&job, Comparison::Reference, terminal)?;
     let result = Render::new(&job, &drawing);
     // Write the picture and its maps.

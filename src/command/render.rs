@@ -17,7 +17,7 @@ use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
-  lancer render cornell --shift 0.137,0.071
+  lancer render cornell
   lancer render house.dsc -o house.png --heat heat.png --error error.png
   lancer render bunny.off --size 640x480 --camera perspective --eye 0,-1,3 -o bunny.pfm
   lancer render sphereflake --json --cores 8 --word 24 > counts.json

@@ -6,11 +6,12 @@ use isa::number::{Modes, Vector};
 use kernels::KernelSet;
 use kernels::build::{Crop, SceneFeatures};
 use kernels::twin;
+use kernels::twin::samples::Samples;
 use scenes::generate::{self, SCENES};
 use scenes::image::{self, MemoryImage};
 use scenes::metrics;
 use scenes::model::{Material, Picture, Scene, View};
-use scenes::reference;
+use scenes::reference::{Reference, SearchMethod};
 
 use super::random::Random;
 use super::tally::{TrialTally, tally, tally_in_turn};
@@ -33,11 +34,6 @@ fn coarse(number: u64, size: (u32, u32)) -> Scene {
     generate::scene(generator.name, &generate::GenerateOptions { level, triangles, size }).expect("a scene of the list")
 }
 
-/// A view whose rays pass between the vertices.
-fn shifted(scene: &Scene) -> View {
-    View { shift: crate::job::SHIFT, ..View::new(scene.size) }
-}
-
 /// The pixels that the kernels of the profile `ray` draw, by their native twin.
 fn drawn(scene: &Scene, view: &View) -> Result<(MemoryImage, Vec<Vector>), String> {
     let refused = |report: messages::Report| report.render(false);
@@ -49,9 +45,15 @@ fn drawn(scene: &Scene, view: &View) -> Result<(MemoryImage, Vec<Vector>), Strin
     Ok((image, pixels))
 }
 
+/// The picture in double precision, decided on edges as by the kernels.
+fn exact(scene: &Scene, view: &View, image: &MemoryImage) -> Result<Picture, String> {
+    let reference = Reference::new(scene, view, SearchMethod::Hierarchy).map_err(|report| report.render(false))?;
+    Ok(reference.picture(Some(&Samples::new(scene, image, KernelSet::Ray, Modes::default()))).picture)
+}
+
 fn compare(scene: &Scene, other: &Scene) -> Result<f64, String> {
-    let (_, one) = drawn(scene, &shifted(scene))?;
-    let (_, two) = drawn(other, &shifted(other))?;
+    let (_, one) = drawn(scene, &View::new(scene.size))?;
+    let (_, two) = drawn(other, &View::new(other.size))?;
     let different = one.iter().zip(&two).filter(|(a, b)| a != b).count();
     if different == 0 { Ok(0.0) } else { Err(format!("{}: {different} pixels differ", scene.name)) }
 }
@@ -78,7 +80,7 @@ pub fn scales(_: u64, trials: Range<u64>) -> TrialTally {
 pub fn translations(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (16, 12));
-        let view = shifted(&scene);
+        let view = View::new(scene.size);
         let grid =
             image::build(&scene, &view, &image::MemoryOptions::default()).map_err(|report| report.render(false))?.grid;
         // On the grid first, so that moving does not round.
@@ -96,7 +98,7 @@ pub fn kernels(_: u64, trials: Range<u64>) -> TrialTally {
     tally_in_turn(trials, |trial| {
         let scene = coarse(trial % MEASURED, (16, 12));
         let mut job = Job::new(scene);
-        job.view = shifted(&job.scene);
+        job.view = View::new(job.scene.size);
         job.kernels.profile = KernelSet::Ray;
         job.detail = Detail::Totals;
         let drawing = drawing::draw(&job, Comparison::None, &mut |_| {}).map_err(|failure| match failure {
@@ -113,10 +115,10 @@ pub fn kernels(_: u64, trials: Range<u64>) -> TrialTally {
 pub fn bounces(_: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let scene = coarse(trial % MEASURED, (40, 30));
-        let view = shifted(&scene);
+        let view = View::new(scene.size);
         let (image, pixels) = drawn(&scene, &view)?;
-        let reference = reference::render(&scene, &view).map_err(|report| report.render(false))?.picture;
-        let error = metrics::compare(&picture(&image, &pixels), &reference).ok_or("pictures of two sizes")?;
+        let exact = exact(&scene, &view, &image)?;
+        let error = metrics::compare(&picture(&image, &pixels), &exact).ok_or("pictures of two sizes")?;
         Ok(error.max * 255.0)
     })
 }
@@ -137,7 +139,7 @@ pub fn colours(_: u64, trials: Range<u64>) -> TrialTally {
         scene.materials.fill(white);
         let light = scene.lights[0];
         scene.lights = vec![light; 2 + trial as usize % 6];
-        let view = View { ambient: 0.4, ..shifted(&scene) };
+        let view = View { ambient: 0.4, ..View::new(scene.size) };
         let mut options = image::MemoryOptions::default();
         options.formats.colour = Some(30);
         let image = image::build(&scene, &view, &options).map_err(|report| report.render(false))?;
@@ -145,7 +147,7 @@ pub fn colours(_: u64, trials: Range<u64>) -> TrialTally {
         let crop = Crop { column: 0, row: 0, width: 40, height: 30 };
         let pixels = twin::render(&image, &features, &crop, KernelSet::Ray, Modes::default());
         let pixels = picture(&image, &pixels.map_err(|failure| failure.to_string())?).pixels;
-        let exact = reference::render(&scene, &view).map_err(|report| report.render(false))?.picture.pixels;
+        let exact = exact(&scene, &view, &image)?.pixels;
         let differences = pixels.iter().flatten().zip(exact.iter().flatten()).map(|(a, b)| (a - b.min(2.0)).abs());
         Ok(differences.fold(0.0, f64::max) * 255.0 / 2.0)
     })

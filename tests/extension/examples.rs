@@ -7,7 +7,7 @@ use asm::extension::load;
 use emu::engine::EngineKind;
 use emu::machine::{RunOptions, RunOutcome};
 use kernels::{Function, KernelSet};
-use lancer::job::{Job, SHIFT};
+use lancer::job::Job;
 use lancer::load::Load;
 use messages::Source;
 use scenes::generate;
@@ -74,7 +74,6 @@ fn all_ways_to_run_an_example_agree() {
     for (folder, rows, kernels) in examples() {
         let scene = generate::scene("cornell", &generate::GenerateOptions { size: (8, 6), ..Default::default() });
         let mut job = Job::new(scene.unwrap());
-        job.view.shift = SHIFT;
         job.kernels.profile = profile(&kernels).unwrap();
         load(&mut job.isa, &Source::new("t.isa", rows), &|_, _| Err("nothing is included".into())).unwrap();
         for Kernel { function, text } in kernels {

@@ -14,6 +14,7 @@ pub mod ray_tree;
 pub mod reflect;
 pub mod refract;
 pub mod report;
+pub mod samples;
 mod shade;
 pub mod stage;
 pub mod surface;

@@ -9,8 +9,25 @@ use super::exit_face::exit_face;
 use super::first_packet::first_packet;
 use super::ray::{Packet, Stuck, TwinRay, TwinSearch};
 use super::report;
-use super::triangle::triangle;
+use super::triangle::triangle as wide_triangle;
+use super::vector_arithmetic::VectorArithmetic;
+use crate::constants::Constants;
 use crate::set::Decisions;
+
+/// The distance at which a ray hits a triangle, or [`Constants::missed`], by decisions of some exactness.
+pub(super) fn triangle(
+    arithmetic: &impl VectorArithmetic,
+    decisions: Decisions,
+    constants: &Constants,
+    ray: &TwinRay,
+    vertices: &[Vector; 3],
+) -> i32 {
+    match decisions {
+        Decisions::Rounded => report::triangle(arithmetic, constants, ray, vertices),
+        Decisions::Wide => wide_triangle(arithmetic, constants, ray, vertices),
+        Decisions::Exact => exact_triangle(arithmetic, constants, ray, vertices),
+    }
+}
 
 impl<A: Arithmetic> Twin<A> {
     /// Follows a ray from its first packet until the search is over.
@@ -41,11 +58,7 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The distance at which a ray hits a triangle, or [`crate::constants::Constants::missed`].
     pub fn triangle(&self, ray: &TwinRay, vertices: &[Vector; 3]) -> i32 {
-        match self.profile.decisions() {
-            Decisions::Rounded => report::triangle(&self.arithmetic, &self.constants, ray, vertices),
-            Decisions::Wide => triangle(&self.arithmetic, &self.constants, ray, vertices),
-            Decisions::Exact => exact_triangle(&self.arithmetic, &self.constants, ray, vertices),
-        }
+        triangle(&self.arithmetic, self.profile.decisions(), &self.constants, ray, vertices)
     }
 
     /// Tests the triangles of a packet. The nearest hit has the smallest t, then the lowest index; the profile `report` tests all and

@@ -163,8 +163,7 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     let grid = Grid::new(scene, view, options.word, options.formats.position)?;
     let shift = layout.coordinate_shift(options.word);
     // Leave out first what the layout does not store, so that tree, boxes and kernels all see the same corners
-    let vertices: Vec<[i32; 3]> =
-        scene.vertices.iter().map(|&v| grid.raw(v).map(|x| stored(x, shift) << shift)).collect();
+    let vertices: Vec<[i32; 3]> = scene.vertices.iter().map(|&vertex| stored_place(&grid, layout, vertex)).collect();
     let mesh = GridMesh { vertices: &vertices, triangles: &scene.triangles };
     let unit = 1 << shift;
     let boxes = (0..mesh.count()).map(|index| Bounds::of_triangle(&mesh.vertices(index)));
@@ -226,6 +225,12 @@ impl Triangles for GridMesh<'_> {
     fn vertices(&self, index: usize) -> [[i32; 3]; 3] {
         self.triangles[index].vertices.map(|vertex| self.vertices[vertex as usize])
     }
+}
+
+/// A vertex as triangles are stored with: on the grid, and without what the layout does not store.
+pub fn stored_place(grid: &Grid, layout: Layout, vertex: Vec3) -> [i32; 3] {
+    let shift = layout.coordinate_shift(grid.word);
+    grid.raw(vertex).map(|x| stored(x, shift) << shift)
 }
 
 /// A raw coordinate as it is stored: shifted right, nearest, ties up, within 16 bits when it is shifted at all.

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use super::search::{Hit, Search, better};
+use super::tie::TIE;
 use super::triangle::{PreparedTriangle, Shapes, ShearedRay};
 use crate::model::Vec3;
 use crate::vector::AXES;
@@ -142,9 +143,9 @@ impl<'a> Hierarchy<'a> {
 }
 
 /// Distance at which the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
-/// in the test of a triangle, so that no hit is lost.
+/// what the test of a triangle calls its border, so that no hit is lost.
 fn enters(node: &BoxNode, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
-    const SLACK: f64 = 1e-12;
+    const SLACK: f64 = 4.0 * TIE;
     let (mut near, mut far) = (0.0f64, end);
     for k in AXES {
         // An origin on the face of a box that it runs along gives 0 * infinity; min and max skip it.
@@ -203,8 +204,8 @@ impl Search for Hierarchy<'_> {
         let mut best = None;
         self.walk(ray, f64::INFINITY, |leaf| {
             for &index in leaf {
-                if let Some(t) = self.triangle(index).hit(ray) {
-                    best = better(best, Hit { t, index });
+                if let Some(t) = self.shapes.hit(index, ray) {
+                    best = better(ray, best, Hit { t, index });
                 }
             }
             best.map_or(f64::INFINITY, |hit| hit.t)
@@ -215,7 +216,7 @@ impl Search for Hierarchy<'_> {
     fn is_blocked(&self, ray: &ShearedRay, end: f64) -> bool {
         let mut is_blocked = false;
         self.walk(ray, end, |leaf| {
-            is_blocked |= leaf.iter().any(|&index| self.triangle(index).hit(ray).is_some_and(|t| t < end));
+            is_blocked |= leaf.iter().any(|&index| self.shapes.hit(index, ray).is_some_and(|t| t < end));
             if is_blocked { f64::NEG_INFINITY } else { end }
         });
         is_blocked

@@ -5,6 +5,7 @@ mod hierarchy;
 mod search;
 #[cfg(test)]
 mod tests;
+mod tie;
 mod triangle;
 mod whitted;
 
@@ -17,6 +18,8 @@ use crate::model::{Picture, Scene, Vec3, View};
 use crate::vector::{exponent, largest, shifted, sub};
 use hierarchy::Hierarchy;
 use search::{Exhaustive, Search};
+use tie::Sample;
+pub use tie::Ties;
 use triangle::Shapes;
 
 /// Pixels of the largest picture that is rendered.
@@ -130,17 +133,19 @@ impl<'a> Reference<'a> {
         self.search.nearest(&triangle::ShearedRay::new(origin, direction)).is_some()
     }
 
-    /// The colour of the pixel in column `c` and row `r`, row 0 on top, and the rays that it took.
-    pub fn pixel(&self, c: u32, r: u32) -> (Vec3, RayCounts) {
+    /// The colour of the pixel in column `c` and row `r`, row 0 on top, and the rays that it took. A camera ray on an edge is decided by
+    /// `ties`; without them, as one whose direction is moved by an infinitely small amount, which all other rays are.
+    pub fn pixel(&self, c: u32, r: u32, ties: Option<&dyn Ties>) -> (Vec3, RayCounts) {
         let (origin, direction) = self.rays.ray(c, r);
-        self.world.colour(self.search.as_ref(), origin, direction)
+        let sample = ties.map(|ties| Sample { pixel: [c, r], ties });
+        self.world.colour(self.search.as_ref(), triangle::ShearedRay::new(origin, direction).of(sample))
     }
 
-    /// The whole picture, rows in parallel; the same bits for any number of threads.
-    pub fn picture(&self) -> Rendering {
+    /// The whole picture, rows in parallel; the same bits for any number of threads. `ties` as in [`Reference::pixel`].
+    pub fn picture(&self, ties: Option<&dyn Ties>) -> Rendering {
         let (width, height) = self.size;
         let row = |r: u32| {
-            let pixels = (0..width).map(|c| self.pixel(c, r));
+            let pixels = (0..width).map(|c| self.pixel(c, r, ties));
             let mut rays = RayCounts::default();
             let colours: Vec<Vec3> = pixels
                 .map(|(colour, counts)| {
@@ -162,7 +167,7 @@ impl<'a> Reference<'a> {
 /// # Errors
 /// See [`Reference::new`].
 pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
-    Ok(Reference::new(scene, view, SearchMethod::Hierarchy)?.picture())
+    Ok(Reference::new(scene, view, SearchMethod::Hierarchy)?.picture(None))
 }
 
 /// The picture of a scene, each ray tried against all triangles.
@@ -170,5 +175,5 @@ pub fn render(scene: &Scene, view: &View) -> Result<Rendering, Report> {
 /// # Errors
 /// See [`Reference::new`].
 pub fn render_exhaustively(scene: &Scene, view: &View) -> Result<Rendering, Report> {
-    Ok(Reference::new(scene, view, SearchMethod::Exhaustive)?.picture())
+    Ok(Reference::new(scene, view, SearchMethod::Exhaustive)?.picture(None))
 }

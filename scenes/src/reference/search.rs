@@ -1,6 +1,7 @@
 //! Which triangle a ray meets first, and whether it meets any: what is asked, and the answer by trying all triangles. The quick answer is in
 //! [`super::hierarchy`]; it is the same, bit for bit, because both use the same test of one triangle and the same order of hits.
 
+use super::tie::TIE;
 use super::triangle::{PreparedTriangle, Shapes, ShearedRay};
 
 /// A triangle that is hit, and the distance.
@@ -33,12 +34,16 @@ pub struct Exhaustive<'a> {
     pub indices: Vec<u32>,
 }
 
-/// The better one of two hits.
-pub fn better(best: Option<Hit>, hit: Hit) -> Option<Hit> {
-    match best {
-        Some(best) if (best.t, best.index) <= (hit.t, hit.index) => Some(best),
-        _ => Some(hit),
+/// The better one of two hits: the nearer one, and of two that double precision cannot tell apart the one that the coprocessor takes, the
+/// lower index of equal distances.
+pub fn better(ray: &ShearedRay, best: Option<Hit>, hit: Hit) -> Option<Hit> {
+    let Some(best) = best else { return Some(hit) };
+    if (hit.t - best.t).abs() > TIE * hit.t {
+        return Some(if hit.t < best.t { hit } else { best });
     }
+    let place = |index: u32| (ray.sample.and_then(|sample| sample.distance(index)), index);
+    let index = if place(best.index) <= place(hit.index) { best.index } else { hit.index };
+    Some(Hit { t: best.t.min(hit.t), index })
 }
 
 impl Search for Exhaustive<'_> {
@@ -47,11 +52,11 @@ impl Search for Exhaustive<'_> {
     }
 
     fn nearest(&self, ray: &ShearedRay) -> Option<Hit> {
-        let hit = |&index: &u32| Some(Hit { t: self.triangle(index).hit(ray)?, index });
-        self.indices.iter().filter_map(hit).fold(None, better)
+        let hit = |&index: &u32| Some(Hit { t: self.shapes.hit(index, ray)?, index });
+        self.indices.iter().filter_map(hit).fold(None, |best, hit| better(ray, best, hit))
     }
 
     fn is_blocked(&self, ray: &ShearedRay, end: f64) -> bool {
-        self.indices.iter().any(|&index| self.triangle(index).hit(ray).is_some_and(|t| t < end))
+        self.indices.iter().any(|&index| self.shapes.hit(index, ray).is_some_and(|t| t < end))
     }
 }

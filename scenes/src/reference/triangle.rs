@@ -3,29 +3,42 @@
 //!
 //! The edge functions of an edge that two triangles share are each other's exact negatives, so no ray passes between them.
 
+use super::tie::{Sample, TIE, perturbed_sign};
 use crate::model::{self, Vec3};
 use crate::vector::{cross, sub, unit};
 
 /// A ray, with the shear that makes it the z axis.
-#[derive(Clone, Copy, Debug)]
-pub struct ShearedRay {
+#[derive(Clone, Copy)]
+pub struct ShearedRay<'a> {
     /// The ray's origin.
     pub origin: Vec3,
     /// The ray's direction, of length 1.
     pub direction: Vec3,
+    /// The sample of a camera ray, where the coprocessor's answers are known.
+    pub sample: Option<Sample<'a>>,
     /// The axes in the order x, y, z of the sheared space: z is the direction's largest component.
     axes: [usize; 3],
     shear: Vec3,
 }
 
-impl ShearedRay {
+impl ShearedRay<'_> {
     /// The ray from `origin` along `direction`, which is not 0.
-    pub fn new(origin: Vec3, direction: Vec3) -> ShearedRay {
+    pub fn new(origin: Vec3, direction: Vec3) -> ShearedRay<'static> {
         let largest = |a: usize, b: usize| if direction[b].abs() > direction[a].abs() { b } else { a };
         let z = largest(largest(0, 1), 2);
         let (x, y) = ((z + 1) % 3, (z + 2) % 3);
         let shear = [direction[x] / direction[z], direction[y] / direction[z], 1.0 / direction[z]];
-        ShearedRay { origin, direction, axes: [x, y, z], shear }
+        ShearedRay { origin, direction, sample: None, axes: [x, y, z], shear }
+    }
+
+    /// This ray as the camera's through a sample.
+    pub fn of(self, sample: Option<Sample<'_>>) -> ShearedRay<'_> {
+        ShearedRay { sample, ..self }
+    }
+
+    /// 1 where the direction's largest component is positive, else -1: the sign by which edge functions in sheared space differ from those in space.
+    pub fn forward(&self) -> f64 {
+        self.direction[self.axes[2]].signum()
     }
 
     /// The point in sheared space, and how large the terms were that its x and y are differences of.
@@ -36,6 +49,22 @@ impl ShearedRay {
         let sheared = [across[0] - along[0], across[1] - along[1], self.shear[2] * p[z]];
         (sheared, [across[0].abs() + along[0].abs(), across[1].abs() + along[1].abs()])
     }
+}
+
+/// Outcome of a ray at a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Meeting {
+    /// The ray passes by.
+    Miss,
+    /// The ray meets the inside of the triangle at this distance.
+    Hit(f64),
+    /// The ray meets the border at this distance, as far as double precision can tell.
+    Border {
+        /// Distance along the ray.
+        t: f64,
+        /// True where a direction moved by an infinitely small amount passes inside.
+        is_inside: bool,
+    },
 }
 
 /// The triangles of a scene with their vertices where the rays are.
@@ -52,6 +81,18 @@ impl Shapes<'_> {
     pub fn triangle(&self, index: u32) -> PreparedTriangle {
         PreparedTriangle {
             vertices: self.triangles[index as usize].vertices.map(|vertex| self.vertices[vertex as usize]),
+        }
+    }
+
+    /// Distance t > 0 at which a ray hits a triangle; `None` also where it is seen so exactly from its edge that rounding alone decides. On the
+    /// triangle's border the coprocessor decides, for rays of which its answers are not known the rule that it decides by.
+    pub fn hit(&self, index: u32, ray: &ShearedRay) -> Option<f64> {
+        match self.triangle(index).meet(ray) {
+            Meeting::Miss => None,
+            Meeting::Hit(t) => Some(t),
+            Meeting::Border { t, is_inside } => {
+                ray.sample.map_or(is_inside, |sample| sample.distance(index).is_some()).then_some(t)
+            }
         }
     }
 
@@ -75,26 +116,58 @@ impl PreparedTriangle {
         unit(cross(sub(b, a), sub(c, a)))
     }
 
-    /// Distance t > 0 along the ray at which it meets the triangle, edges included; `None` also where the triangle is seen so exactly from
-    /// its edge that rounding alone decides.
-    pub fn hit(&self, ray: &ShearedRay) -> Option<f64> {
+    /// The ray at the triangle, in front of its origin.
+    pub fn meet(&self, ray: &ShearedRay) -> Meeting {
         let [(a, a_terms), (b, b_terms), (c, c_terms)] = self.vertices.map(|vertex| ray.sheared(vertex));
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
         let w = b[0] * a[1] - b[1] * a[0];
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-            return None;
-        }
         let determinant = u + v + w;
         // Twelve factors, each off by less than two roundings of the terms that it came from. Without this bound a ray in the plane of a
         // triangle that it misses has three edge functions of noise, and hits when they happen to have the same sign.
         let most = |k: usize| a[k].abs().max(b[k].abs()).max(c[k].abs());
         let terms = |k: usize| a_terms[k].max(b_terms[k]).max(c_terms[k]);
+        // An edge function is the distance from the edge times the edge's length. Most are larger than any edge of the triangle lets a tie be.
+        let near = TIE * (1.0 + terms(0).max(terms(1)));
+        let least = u.abs().min(v.abs()).min(w.abs());
+        let is_apart = least > near * 2.0 * (most(0) + most(1));
+        if is_apart && (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return Meeting::Miss;
+        }
         if determinant.abs() <= 32.0 * f64::EPSILON * (most(0) * terms(1) + most(1) * terms(0)) {
-            return None;
+            return Meeting::Miss;
         }
         let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
-        (t > 0.0).then_some(t)
+        if t <= 0.0 {
+            return Meeting::Miss;
+        }
+        if is_apart {
+            return Meeting::Hit(t);
+        }
+        self.at_border(ray, [(u, [c, b]), (v, [a, c]), (w, [b, a])], near, t)
+    }
+
+    /// The meeting at distance `t` with a triangle of which the ray comes near an edge. Each edge has its function and both ends in sheared
+    /// space; within `near` of it the ray is on it.
+    fn at_border(&self, ray: &ShearedRay, edges: [(f64, [Vec3; 2]); 3], near: f64, t: f64) -> Meeting {
+        let [a, b, c] = self.vertices.map(|vertex| sub(vertex, ray.origin));
+        let ends = [[c, b], [a, c], [b, a]];
+        let determinant: f64 = edges.iter().map(|edge| edge.0).sum();
+        let (mut is_on_edge, mut is_inside) = (false, true);
+        for ((function, [from, to]), [start, end]) in edges.into_iter().zip(ends) {
+            let tie = near * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs());
+            let sign = if function.abs() > tie {
+                if (function > 0.0) != (determinant > 0.0) {
+                    return Meeting::Miss;
+                }
+                continue;
+            } else {
+                perturbed_sign(ray, start, end, tie)
+            };
+            is_on_edge = true;
+            is_inside &= sign * determinant > 0.0;
+        }
+        if is_on_edge { Meeting::Border { t, is_inside } } else { Meeting::Hit(t) }
     }
 
     /// The point in which a ray meets the triangle, from the vertices and not from the distance: it lies in the triangle's plane however far

@@ -25,8 +25,8 @@ pub struct World<'a> {
 }
 
 /// A ray of the ray tree that is still to be followed.
-struct PendingRay {
-    ray: ShearedRay,
+struct PendingRay<'a> {
+    ray: ShearedRay<'a>,
     /// Product of the coefficients on the way from the eye.
     weight: f64,
     /// 0 for the camera's ray.
@@ -51,11 +51,10 @@ impl<'a> World<'a> {
 
     /// The light that comes back along a ray, and the rays that were sent. The ray tree is walked depth first on a stack of its own, so that
     /// its depth is not bounded by the thread's.
-    pub fn colour(&self, search: &dyn Search, origin: Vec3, direction: Vec3) -> (Vec3, RayCounts) {
+    pub fn colour(&self, search: &dyn Search, ray: ShearedRay) -> (Vec3, RayCounts) {
         let mut counts = RayCounts { camera: 1, ..RayCounts::default() };
         let mut colour = [0.0; 3];
-        let mut open =
-            vec![PendingRay { ray: ShearedRay::new(origin, direction), weight: 1.0, level: 0, is_inside: false }];
+        let mut open = vec![PendingRay { ray, weight: 1.0, level: 0, is_inside: false }];
         while let Some(branch) = open.pop() {
             let Some(hit) = search.nearest(&branch.ray) else {
                 colour = add(colour, scale(self.background, branch.weight));
@@ -108,7 +107,7 @@ impl<'a> World<'a> {
         material: &Material,
         point: Vec3,
         normal: Vec3,
-        open: &mut Vec<PendingRay>,
+        open: &mut Vec<PendingRay<'_>>,
         counts: &mut RayCounts,
     ) {
         let direction = branch.ray.direction;

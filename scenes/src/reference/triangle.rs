@@ -53,7 +53,7 @@ impl ShearedRay<'_> {
 
 /// Outcome of a ray at a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Meeting {
+pub enum Encounter {
     /// The ray passes by.
     Miss,
     /// The ray meets the inside of the triangle at this distance.
@@ -88,9 +88,9 @@ impl Shapes<'_> {
     /// triangle's border the coprocessor decides, for rays of which its answers are not known the rule that it decides by.
     pub fn hit(&self, index: u32, ray: &ShearedRay) -> Option<f64> {
         match self.triangle(index).meet(ray) {
-            Meeting::Miss => None,
-            Meeting::Hit(t) => Some(t),
-            Meeting::Border { t, is_inside } => {
+            Encounter::Miss => None,
+            Encounter::Hit(t) => Some(t),
+            Encounter::Border { t, is_inside } => {
                 ray.sample.map_or(is_inside, |sample| sample.distance(index).is_some()).then_some(t)
             }
         }
@@ -117,7 +117,7 @@ impl PreparedTriangle {
     }
 
     /// The ray at the triangle, in front of its origin.
-    pub fn meet(&self, ray: &ShearedRay) -> Meeting {
+    pub fn meet(&self, ray: &ShearedRay) -> Encounter {
         let [(a, a_terms), (b, b_terms), (c, c_terms)] = self.vertices.map(|vertex| ray.sheared(vertex));
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
@@ -132,24 +132,24 @@ impl PreparedTriangle {
         let least = u.abs().min(v.abs()).min(w.abs());
         let is_apart = least > near * 2.0 * (most(0) + most(1));
         if is_apart && (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
-            return Meeting::Miss;
+            return Encounter::Miss;
         }
         if determinant.abs() <= 32.0 * f64::EPSILON * (most(0) * terms(1) + most(1) * terms(0)) {
-            return Meeting::Miss;
+            return Encounter::Miss;
         }
         let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
         if t <= 0.0 {
-            return Meeting::Miss;
+            return Encounter::Miss;
         }
         if is_apart {
-            return Meeting::Hit(t);
+            return Encounter::Hit(t);
         }
         self.at_border(ray, [(u, [c, b]), (v, [a, c]), (w, [b, a])], near, t)
     }
 
-    /// The meeting at distance `t` with a triangle of which the ray comes near an edge. Each edge has its function and both ends in sheared
+    /// The encounter at distance `t` with a triangle of which the ray comes near an edge. Each edge has its function and both ends in sheared
     /// space; within `near` of it the ray is on it.
-    fn at_border(&self, ray: &ShearedRay, edges: [(f64, [Vec3; 2]); 3], near: f64, t: f64) -> Meeting {
+    fn at_border(&self, ray: &ShearedRay, edges: [(f64, [Vec3; 2]); 3], near: f64, t: f64) -> Encounter {
         let [a, b, c] = self.vertices.map(|vertex| sub(vertex, ray.origin));
         let ends = [[c, b], [a, c], [b, a]];
         let determinant: f64 = edges.iter().map(|edge| edge.0).sum();
@@ -158,7 +158,7 @@ impl PreparedTriangle {
             let tie = near * ((to[0] - from[0]).abs() + (to[1] - from[1]).abs());
             let sign = if function.abs() > tie {
                 if (function > 0.0) != (determinant > 0.0) {
-                    return Meeting::Miss;
+                    return Encounter::Miss;
                 }
                 continue;
             } else {
@@ -167,7 +167,7 @@ impl PreparedTriangle {
             is_on_edge = true;
             is_inside &= sign * determinant > 0.0;
         }
-        if is_on_edge { Meeting::Border { t, is_inside } } else { Meeting::Hit(t) }
+        if is_on_edge { Encounter::Border { t, is_inside } } else { Encounter::Hit(t) }
     }
 
     /// The point in which a ray meets the triangle, from the vertices and not from the distance: it lies in the triangle's plane however far

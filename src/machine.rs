@@ -60,9 +60,14 @@ const COMMENTS: &[(&str, &str)] = &[
     ),
     (
         "[clocks]",
-        "clocks of an operation, by class (report 6.1: 1 for add, sub, mul, div and cmp; what it does not count takes 0)",
+        "clocks of an operation, by class, a number or a law of the word's bits: \"linear\", \"square\", \"log\" (of 2, rounded up), each with \
+         a factor and a summand where there are some, such as \"linear 1/4 + 3\" (report 6.1: 1 for add, sub, mul, div and cmp; what it \
+         does not count takes 0)",
     ),
-    ("[units]", "operations of a class that run at once (report 6.1: one)"),
+    (
+        "[units]",
+        "operations of a class that run at once, a number or a law: \"inverse 96\" is as many as fit into 96 bits (report 6.1: one)",
+    ),
     ("[bus]", "the shared bus; a burst takes setup_clocks + ceil(octets / octets_per_beat) * clocks_per_beat"),
     ("bus.octets_per_beat", "octets that go over it at once (report 6.1: 1)"),
     ("bus.clocks_per_beat", "clocks for that (report 6.1: 2)"),
@@ -103,6 +108,18 @@ fn filled(comment: &str) -> String {
     comment.replace("{arbiters}", &format!("{} or {last}", first.join(", ")))
 }
 
+/// A comment behind a law: the number that it comes to. Nothing behind other keys.
+fn resolved(config: &Config, key: &str) -> String {
+    let (timing, word) = (config.timing(), config.arithmetic.word);
+    let class = |name| isa::Class::from_name(name);
+    let (law, number) = match key.split_once('.').and_then(|(table, name)| Some((table, class(name)?))) {
+        Some(("clocks", class)) => (config.clocks.0[class], timing.clocks[class]),
+        Some(("units", class)) => (config.units.0[class], timing.units[class]),
+        _ => return String::new(),
+    };
+    if law.is_grown() { format!(" # {number} for words of {word} bits") } else { String::new() }
+}
+
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
 pub fn commented(name: &str, config: &Config) -> String {
     let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| filled(text));
@@ -120,7 +137,7 @@ pub fn commented(name: &str, config: &Config) -> String {
         if let Some(comment) = comment(&key) {
             text += &format!("# {comment}\n");
         }
-        text += &format!("{line}\n");
+        text += &format!("{line}{}\n", resolved(config, &key));
     }
     text
 }

@@ -6,7 +6,7 @@ use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
 use crate::numeral::{count, grouped, percent, short};
-use crate::result::{ProcessorResult, RegionCounts, Render};
+use crate::result::{ByClass, OperationTimes, ProcessorResult, RegionCounts, Render};
 use crate::table::{row, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -128,6 +128,7 @@ pub fn processors(result: &Render) -> String {
         grouped(bus.transfers),
         grouped(bus.longest_wait),
     );
+    text += &operation_times(&result.timing);
     text += &waits(&result.cores);
     // Caches and kinds of data, where the machine has them.
     let cache = &bus.cache;
@@ -147,6 +148,22 @@ pub fn processors(result: &Render) -> String {
         text += &format!("octets: {}\n", kinds.join(", "));
     }
     text
+}
+
+/// One line on the clocks and units that a machine's laws come to; nothing for a machine of numbers alone.
+pub fn operation_times(times: &OperationTimes) -> String {
+    if !times.is_by_word {
+        return String::new();
+    }
+    let list = |counts: &ByClass, plain: u64| -> String {
+        let other = counts.0.iter().filter(|&(_, number)| number != plain);
+        other.map(|(class, number)| format!("{} {number}", class.name())).collect::<Vec<_>>().join(", ")
+    };
+    let units = match list(&times.units, 1) {
+        none if none.is_empty() => String::new(),
+        list => format!("; at once: {list}"),
+    };
+    format!("clocks of an operation on words of {} bits: {}{units}\n", times.word, list(&times.clocks, 0))
 }
 
 /// Waits of the cores for the bus: the share of no wait, then bounds that so many waits keep.

@@ -19,7 +19,7 @@ pub use text::{csv, text};
 
 use crate::failure::Failure;
 use crate::load::Load;
-use crate::result::FormatTable;
+use crate::result::{FormatTable, OperationTimes};
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
@@ -51,6 +51,8 @@ pub struct Curve {
     pub formats: Option<FormatTable>,
     /// Clock rate in hertz.
     pub clock_hz: u64,
+    /// Clocks and units of operations.
+    pub timing: OperationTimes,
     /// Demand of a pixel with one core: of the core, and of the bus, messages and the main processor's share included.
     pub demand: PixelDemand,
     /// C / M.
@@ -176,6 +178,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
         arbiter: config.bus.arbiter.name().to_owned(),
         formats: None,
         clock_hz: config.clock_hz,
+        timing: OperationTimes::new(config),
         demand,
         quotient: demand.quotient(),
         closed_form: demand.saturation(),

@@ -2,6 +2,7 @@
 
 use super::{CoresResult, Curve, Point};
 use crate::numeral::grouped;
+use crate::summary::operation_times;
 use crate::table::{row, table};
 
 /// The tables of all machines.
@@ -20,11 +21,12 @@ fn one(scaling: &CoresResult, curve: &Curve) -> String {
         rows.push(cells(point, is_knee));
     }
     format!(
-        "{}: {} pixels on machine `{}`, arbiter {}\n{}{}",
+        "{}: {} pixels on machine `{}`, arbiter {}\n{}{}{}",
         scaling.scene,
         grouped(scaling.pixels),
         curve.machine,
         curve.arbiter,
+        operation_times(&curve.timing),
         table(rows),
         verdict(scaling, curve),
     )

@@ -6,6 +6,7 @@ mod hexadecimal;
 #[cfg(feature = "cli")]
 mod loss_table;
 mod losses;
+mod times;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -29,6 +30,7 @@ pub use hexadecimal::hexadecimal;
 #[cfg(feature = "cli")]
 pub use loss_table::loss_table;
 pub use losses::{Loss, losses};
+pub use times::OperationTimes;
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-render-1";
@@ -106,6 +108,8 @@ pub struct Render {
     pub seconds: f64,
     /// Seconds a pixel.
     pub pixel_seconds: f64,
+    /// Clocks and units of operations.
+    pub timing: OperationTimes,
     /// Method of the run: `replayed` (pixels ran by themselves, and what they did was put on the machine's clock) or
     /// `stepped` (everything happened in the order of the clock). Nothing else depends on it.
     pub method: &'static str,
@@ -325,6 +329,7 @@ impl Render {
             clocks: frame.clocks.0,
             seconds: frame.seconds(job.machine.clock_hz),
             pixel_seconds: frame.seconds(job.machine.clock_hz) / drawing.words.len().max(1) as f64,
+            timing: OperationTimes::new(&job.machine),
             // How the host did it, which changes nothing else.
             method: frame.method.name(),
             stepped_because: frame.method.reason(),

@@ -1,17 +1,17 @@
 //! The machine as a file describes it: every key with its unit and where its default comes from.
 
 mod file;
+pub mod law;
 
-use std::collections::BTreeMap;
-
+use isa::Counts;
 use isa::number::{Modes, Overflow, Quantization};
-use isa::{Class, Counts};
 use serde::{Deserialize, Serialize};
 
 use super::arbiter::ArbiterKind;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::timing::Timing;
 use crate::semantics::Watching;
+pub use law::{ClassClocks, ClassUnits};
 
 /// Most cores that a machine may have.
 pub const MOST_CORES: u32 = 256;
@@ -39,9 +39,9 @@ pub struct Config {
     pub step_limit: u64,
     /// Word and modes.
     pub arithmetic: ArithmeticConfig,
-    /// Clocks of an operation, by class; 1 for add, sub, mul, div and cmp, 0 for the rest. Report 6.1.
+    /// Clocks of an operation, by class, as numbers or by the word; 1 for add, sub, mul, div and cmp, 0 for the rest. Report 6.1.
     pub clocks: ClassClocks,
-    /// Operations that run at once, by class; 1.
+    /// Operations that run at once, by class, as numbers or by the word; 1.
     pub units: ClassUnits,
     /// The shared bus.
     pub bus: BusConfig,
@@ -132,53 +132,6 @@ macro_rules! mode_name {
 
 mode_name!(quantization_name Quantization);
 mode_name!(overflow_name Overflow);
-
-/// One number a class, written as a table of the classes that differ from the default.
-macro_rules! class_table {
-    ($(#[doc = $doc:literal])* $type:ident $field:ident) => {
-        $(#[doc = $doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-        #[serde(try_from = "BTreeMap<String, u64>", into = "BTreeMap<String, u64>")]
-        pub struct $type(pub Counts);
-
-        impl Default for $type {
-            fn default() -> $type {
-                $type(Timing::default().$field)
-            }
-        }
-
-        impl TryFrom<BTreeMap<String, u64>> for $type {
-            type Error = String;
-
-            fn try_from(table: BTreeMap<String, u64>) -> Result<$type, String> {
-                let mut counts = Timing::default().$field;
-                for (name, number) in table {
-                    let names = || Class::ALL.iter().map(|class| format!("`{}`", class.name())).collect::<Vec<_>>();
-                    let class = Class::from_name(&name)
-                        .ok_or_else(|| format!("unknown class `{name}`, expected one of {}", names().join(", ")))?;
-                    counts[class] = number;
-                }
-                Ok($type(counts))
-            }
-        }
-
-        impl From<$type> for BTreeMap<String, u64> {
-            fn from(table: $type) -> BTreeMap<String, u64> {
-                table.0.iter().map(|(class, number)| (class.name().to_owned(), number)).collect()
-            }
-        }
-    };
-}
-
-class_table! {
-    /// Clocks of an operation of each class.
-    ClassClocks clocks
-}
-
-class_table! {
-    /// Operations of each class that run at once.
-    ClassUnits units
-}
 
 /// The shared bus.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -287,9 +240,17 @@ impl Default for MainConfig {
 }
 
 impl Config {
-    /// Times of operations.
+    /// Times of operations, for words of the machine's length.
     pub fn timing(&self) -> Timing {
-        Timing { clocks: self.clocks.0, units: self.units.0 }
+        let word = self.arithmetic.word;
+        // An inverse law may come to no unit at all; a class always has one.
+        let units = Counts(self.units.0.at(word).0.map(|units| units.max(1)));
+        Timing { clocks: self.clocks.0.at(word), units }
+    }
+
+    /// Some clocks or units depend on the word.
+    pub fn is_timed_by_word(&self) -> bool {
+        self.clocks.0.is_grown() || self.units.0.is_grown()
     }
 
     /// True where work items do the same on both machines, in the same clocks of computing: only cores, bus, caches and
@@ -301,14 +262,14 @@ impl Config {
             buffer_octets,
             step_limit,
             arithmetic,
-            clocks,
-            units,
+            clocks: _,
+            units: _,
             bus: _,
             cache: _,
             main: _,
         } = self;
         (buffer_octets, step_limit) == (&other.buffer_octets, &other.step_limit)
             && arithmetic == &other.arithmetic
-            && (clocks, units) == (&other.clocks, &other.units)
+            && self.timing() == other.timing()
     }
 }

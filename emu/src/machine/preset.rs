@@ -2,6 +2,7 @@
 
 use isa::Class;
 
+use super::config::law::{Growth, Law};
 use super::config::{BusConfig, CacheConfig, Config};
 
 /// A machine that is known by name.
@@ -43,6 +44,21 @@ pub const PRESETS: &[Preset] = &[
         description: "the report's, with a private cache of 4 KiB for tree nodes in each core",
         make: || Config { cache: CacheConfig { octets: 4096, ..CacheConfig::default() }, ..Config::default() },
     },
+    Preset {
+        name: "bit_serial",
+        description: "the report's, with operations that take a clock a bit of the word",
+        make: bit_serial,
+    },
+    Preset {
+        name: "combinational",
+        description: "the report's, with a clock a level of logic, at five times its rate: add, sub and cmp log2 of the word, mul twice that, div the word",
+        make: combinational,
+    },
+    Preset {
+        name: "counted_all",
+        description: "the report's, with a clock also for moves, logic, jumps, addresses and words of the buffer",
+        make: counted_all,
+    },
 ];
 
 /// Two clocks before a burst, the report's access time, are paid once in 64 octets instead of for each one.
@@ -51,7 +67,40 @@ fn wide32() -> Config {
         BusConfig { octets_per_beat: 4, clocks_per_beat: 1, setup_clocks: 2, burst_octets: 64, ..BusConfig::default() };
     let mut config = Config { bus, ..Config::default() };
     for class in [Class::Add, Class::Sub, Class::Mul] {
-        config.units.0[class] = 3;
+        config.units.0[class] = 3.into();
+    }
+    config
+}
+
+/// A bit a clock: a serial adder takes as long as the word, a multiplication is a masked step for each bit, as in the report, and a
+/// division a quotient bit a clock.
+fn bit_serial() -> Config {
+    let mut config = Config::default();
+    for &class in Class::ALL.iter().filter(|class| class.is_elementary()) {
+        config.clocks.0[class] = Law::of(Growth::Linear);
+    }
+    config
+}
+
+/// Clocks are levels of logic: a parallel-prefix adder has one for each doubling of the word, a multiplier a tree of partial products and
+/// such an adder behind it, a divider a row for each bit of the quotient. Clock and bus keep the report's times: an addition of 32 bits
+/// takes 10 ns, an octet 20 ns.
+fn combinational() -> Config {
+    let bus = BusConfig { clocks_per_beat: 10, ..BusConfig::default() };
+    let mut config = Config { clock_hz: 500_000_000, bus, ..Config::default() };
+    for class in [Class::Add, Class::Sub, Class::Cmp] {
+        config.clocks.0[class] = Law::of(Growth::Log);
+    }
+    config.clocks.0[Class::Mul] = Law::times(Growth::Log, 2);
+    config.clocks.0[Class::Div] = Law::of(Growth::Linear);
+    config
+}
+
+/// A clock for whatever the core does by itself. Requests and octets stay without, since the bus accounts for them.
+fn counted_all() -> Config {
+    let mut config = Config::default();
+    for class in [Class::Move, Class::Logic, Class::Jump, Class::Local, Class::Address] {
+        config.clocks.0[class] = 1.into();
     }
     config
 }

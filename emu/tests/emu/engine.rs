@@ -4,6 +4,7 @@ use emu::code::Code;
 use emu::engine::{EngineKind, HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
+use emu::machine::preset::PRESETS;
 use emu::octets::{Memory, POISON};
 use emu::registers::Registers;
 use emu::tally::Losses;
@@ -49,7 +50,7 @@ fn sums_of_long_times_are_right_on_all_engines() {
     for clocks in [1, 300, 600, 1000] {
         let mut config = Config::default();
         for class in Class::ALL.iter().filter(|class| class.is_elementary()) {
-            config.clocks.0[*class] = clocks;
+            config.clocks.0[*class] = clocks.into();
         }
         let program = program(|p| {
             p.constant(9, 4);
@@ -72,6 +73,43 @@ fn sums_of_long_times_are_right_on_all_engines() {
         // Four times 100 additions and the 61 operations of a hit; what counts the loops subtracts and compares.
         assert_eq!(run.state.elementary, 4 * (100 + 61 + 2));
         assert_eq!(run.clocks.0, run.state.elementary * clocks);
+    }
+}
+
+#[test]
+fn clocks_by_the_word_are_the_same_on_all_engines() {
+    let program = program(|p| {
+        p.constant(9, 40);
+        let top = p.here();
+        p.emit(Op::vscale, &[6, 7, 9, 3])
+            .emit(Op::vdiv, &[6, 6, 9, 2])
+            .emit(Op::mov, &[1, 9])
+            .emit(Op::andi, &[2, 1, 3]);
+        p.emit(Op::isubi, &[9, 9, 1]);
+        p.branch(Op::bne, &[9, 0], top);
+        p.emit(Op::halt, &[]);
+    });
+    // A pass of the loop: three products, three quotients, a move, an and, a subtraction, a comparison.
+    let a_pass = |name: &str, word: u64| match name {
+        "bit_serial" => 8 * word,
+        "combinational" => {
+            let log = if word > 16 { 5 } else { 4 };
+            3 * 2 * log + 3 * word + 2 * log
+        }
+        "counted_all" => 8 + 2,
+        _ => unreachable!("it is none of these"),
+    };
+    for preset in PRESETS.iter().filter(|preset| ["bit_serial", "combinational", "counted_all"].contains(&preset.name))
+    {
+        for word in [16, 24, 32] {
+            let mut config = preset.config();
+            config.arithmetic.word = word;
+            let mut registers = Registers::default();
+            registers.set_vector(7, [900, -30, 17]);
+            let run = run_with(&config, &program, registers);
+            let around = run.clocks.0 - 40 * a_pass(preset.name, word.into());
+            assert!(around <= 3, "{} {word}: {} clocks beside the loop", preset.name, around);
+        }
     }
 }
 

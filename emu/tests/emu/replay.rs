@@ -92,6 +92,26 @@ fn every_preset_and_arbiter_on_one_to_sixteen_cores() {
     }
 }
 
+#[test]
+fn clocks_by_the_word_are_replayed_as_they_are_stepped() {
+    let (core, main) = (wander(3, 31, 31), dispatch(25));
+    let isa = Isa::base();
+    for preset in PRESETS {
+        for word in [16, 24, 32] {
+            let mut config = preset.config();
+            config.arithmetic.word = word;
+            let machines: Vec<Config> = [1, 3, 8].map(|cores| Config { cores, ..config.clone() }).to_vec();
+            let frames = emu::run_all(&setup(&machines[0], &isa, &core, &main), &machines, &memory(), &mut |_| {});
+            for (config, frame) in machines.iter().zip(frames) {
+                let frame = frame.unwrap_or_else(|failure| panic!("{failure}"));
+                let alone = both(config, &core, &main);
+                assert!(frame == alone, "{} {word}\n{frame:#?}\n{alone:#?}", preset.name);
+                assert_eq!(frame.method, Method::Replayed);
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 80, rng_seed: RngSeed::Fixed(6), ..ProptestConfig::default() })]
 

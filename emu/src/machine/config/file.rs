@@ -7,6 +7,7 @@ use isa::Class;
 use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 use toml::de::{DeTable, DeValue};
 
+use super::law::Law;
 use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_OCTETS};
 use crate::machine::arbiter::ArbiterKind;
 
@@ -65,8 +66,13 @@ impl Config {
         check("step_limit", self.step_limit, 1, 1 << 62);
         check("arithmetic.word", self.arithmetic.word.into(), 8, 32);
         for &class in Class::ALL {
-            check(&format!("clocks.{}", class.name()), self.clocks.0[class], 0, MOST_CLOCKS);
-            check(&format!("units.{}", class.name()), self.units.0[class], 1, MOST_CLOCKS);
+            // A number of no units is a mistake; a law that comes to none leaves the class its one.
+            if let Law::Constant(units) = self.units.0[class] {
+                check(&format!("units.{}", class.name()), units, 1, MOST_CLOCKS);
+            }
+            if let Law::Constant(clocks) = self.clocks.0[class] {
+                check(&format!("clocks.{}", class.name()), clocks, 0, MOST_CLOCKS);
+            }
         }
         check("bus.octets_per_beat", self.bus.octets_per_beat, 1, MOST_CLOCKS);
         check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
@@ -87,6 +93,7 @@ impl Config {
         check("cache.line_octets", self.cache.line_octets.into(), 1, MOST_BUFFER_OCTETS.into());
         check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("main.step_limit", self.main.step_limit, 1, 1 << 62);
+        messages.extend(self.laws_out_of_range());
         for (key, octets) in [("buffer_octets", self.buffer_octets), ("cache.octets", self.cache.octets)] {
             let all = u64::from(self.cores) * u64::from(octets);
             // Each core's own key is fine; what is too much is a host's memory for all of them.
@@ -98,6 +105,22 @@ impl Config {
             }
         }
         messages
+    }
+
+    /// Laws that come to too much for some word, whichever the machine has now, since an option may give it another one.
+    fn laws_out_of_range(&self) -> Vec<(String, Diagnostic)> {
+        let tables = [("clocks", &self.clocks.0), ("units", &self.units.0)];
+        let laws =
+            tables.into_iter().flat_map(|(name, table)| table.iter().map(move |(class, law)| (name, class, law)));
+        let too_large = laws.filter_map(|(name, class, law)| {
+            let key = format!("{name}.{}", class.name());
+            let word = (8..=32).max_by_key(|&word| law.at(word)).filter(|_| law.is_grown())?;
+            let number = Some(law.at(word)).filter(|&number| number > MOST_CLOCKS)?;
+            let message =
+                format!("`{key}` is `{law}`, {number} for words of {word} bits, but may be at most {MOST_CLOCKS}");
+            Some((key, Diagnostic::error(message).hint("take a smaller factor or summand")))
+        });
+        too_large.collect()
     }
 
     /// The machine as a file with every key.
@@ -146,6 +169,7 @@ fn plain(message: &str) -> String {
 mod tests {
     use isa::number::Quantization;
 
+    use super::super::law::Growth;
     use super::*;
     use crate::code::quantity::{Clocks, Octets};
 
@@ -157,7 +181,7 @@ mod tests {
     fn what_a_file_leaves_out_is_the_reports() {
         assert_eq!(parse(""), Ok(Config::default()));
         let config = parse("cores = 8\n[clocks]\ndiv = 16\n[bus]\noctets_per_beat = 4\n").expect("it is right");
-        assert_eq!((config.cores, config.clocks.0[Class::Div], config.clocks.0[Class::Mul]), (8, 16, 1));
+        assert_eq!((config.cores, config.clocks.0[Class::Div], config.clocks.0[Class::Mul]), (8, 16.into(), 1.into()));
         assert_eq!(config.bus.length(Octets(31)), Clocks(16));
         assert_eq!(Config::default().bus.length(Octets(31)), Clocks(62));
     }
@@ -166,7 +190,9 @@ mod tests {
     fn the_effective_machine_reads_back_as_itself() {
         let mut config = Config::default();
         config.arithmetic.quantization = Quantization::TrnZero;
-        config.units.0[Class::Mul] = 3;
+        config.units.0[Class::Mul] = 3.into();
+        config.units.0[Class::Add] = Law::times(Growth::Inverse, 96);
+        config.clocks.0[Class::Mul] = Law::Grown { growth: Growth::Linear, times: 1, by: 4, plus: 2 };
         config.main.traffic = false;
         assert_eq!(parse(&config.text()), Ok(config));
         assert_eq!(parse(&Config::default().text()), Ok(Config::default()));
@@ -179,6 +205,20 @@ mod tests {
             ("\n[bus]\nclocks_per_bet = 3", "m.toml:3:1", "did you mean `clocks_per_beat`?"),
             ("[bus]\narbiter = \"round-robbin\"", "m.toml:2:11", "did you mean `round-robin`?"),
             ("[clocks]\nmull = 3", "m.toml", "did you mean `mul`?"),
+            ("[clocks]\nmul = \"liner\"", "m.toml:2:7", "did you mean `linear`?"),
+            (
+                "[clocks]\nadd = 1\nmul = -3",
+                "m.toml:3:7",
+                "a whole number from 0 or a law such as \"linear\" is expected, not number `-3`",
+            ),
+            ("[clocks]\nmul = 0.5", "m.toml:2:7", "or a law"),
+            (
+                "[clocks]\nmul = \"square 2000\"",
+                "m.toml:2:7",
+                "2048000 for words of 32 bits, but may be at most 1000000",
+            ),
+            ("[clocks]\nmul = \"linear 2 3\"", "m.toml:2:7", "no whole number from 1"),
+            ("[units]\nmul = 0", "m.toml:2:7", "the nearest possible value is 1"),
             ("[arithmetic]\nquantization = \"RNG\"", "m.toml:2:16", "did you mean `RND`?"),
             ("cores = \"four\"", "m.toml:1:9", ""),
             ("cores = ", "m.toml:1", ""),

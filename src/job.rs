@@ -14,6 +14,7 @@ use scenes::layout::Layout;
 use scenes::model::{Scene, View};
 
 use crate::machine;
+use crate::settings::FileSettings;
 
 /// Results of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,11 +25,22 @@ pub enum Detail {
     Totals,
 }
 
+/// Name by which a scene was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneSource {
+    /// File, or name of a generated scene.
+    pub name: String,
+    /// Mesh that was named beside it.
+    pub mesh: Option<PathBuf>,
+}
+
 /// Everything that decides a picture and what it costs.
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The scene that is drawn.
     pub scene: Scene,
+    /// Name by which the scene was found.
+    pub source: SceneSource,
     /// Camera, size, light and depth of the picture.
     pub view: View,
     /// Structures of global memory; `None` for those that the set of kernels is made for.
@@ -41,6 +53,8 @@ pub struct Job {
     pub formats: Overrides,
     /// The instructions that there are.
     pub isa: Isa,
+    /// Files from which some of them were loaded.
+    pub extensions: Vec<FileSettings>,
     /// Which kernels draw it.
     pub kernels: KernelOptions,
     /// Name of the machine.
@@ -51,6 +65,8 @@ pub struct Job {
     pub engine: EngineKind,
     /// Results beside colours, counts and clocks.
     pub detail: Detail,
+    /// True where the picture is measured against double precision.
+    pub error: bool,
     /// True where losses of results are counted.
     pub flags: bool,
     /// Likely mistakes in the scene's files.
@@ -65,6 +81,7 @@ impl Job {
         let view = View::new(scene.size);
         let MemoryOptions { kd_depth, kd_method, formats, .. } = MemoryOptions::default();
         Job {
+            source: SceneSource { name: scene.name.clone(), mesh: None },
             scene,
             view,
             layout: None,
@@ -72,11 +89,13 @@ impl Job {
             kd_method,
             formats,
             isa: Isa::base(),
+            extensions: Vec::new(),
             kernels: KernelOptions::default(),
             machine_name: machine::DEFAULT.to_owned(),
             machine: Config::default(),
             engine: EngineKind::default(),
             detail: Detail::Functions,
+            error: true,
             flags: false,
             warnings: Report::default(),
             files: Vec::new(),

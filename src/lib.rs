@@ -21,6 +21,7 @@ pub mod manual;
 pub mod numeral;
 pub mod profiles;
 pub mod result;
+pub mod settings;
 pub mod skips;
 pub mod stress;
 #[cfg(feature = "cli")]

@@ -5,9 +5,12 @@ use std::path::Path;
 use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::preset::PRESETS;
+use isa::Class;
 use messages::{Diagnostic, Report, did_you_mean};
 
 use crate::files;
+use crate::settings::MachineSettings;
+use crate::settings::apply::explained;
 
 /// Name of the machine that runs when the user names none.
 pub const DEFAULT: &str = "report";
@@ -15,11 +18,17 @@ pub const DEFAULT: &str = "report";
 /// Octets of the largest machine file: a reader of TOML takes many times as much memory, and all keys are 10 KiB.
 const LARGEST: u64 = 256 << 10;
 
-/// A machine by the name of a preset, or from a TOML file, with the name that results show.
+/// A machine by the name of a preset, from a TOML file, or as it stands in settings (in braces), with the name that results show.
 ///
 /// # Errors
 /// A name that is neither, and what is wrong in the file.
 pub fn find(name: &str) -> Result<(String, Config), Report> {
+    // A machine in braces is one of a result's settings.
+    if name.trim_start().starts_with('{') {
+        let machine: MachineSettings = serde_json::from_str(name).map_err(|error| explained(&error.to_string()))?;
+        machine.config.check()?;
+        return Ok((machine.name, machine.config));
+    }
     // A preset wins over a file of its name, so that the name means the same in every folder.
     if let Some(preset) = PRESETS.iter().find(|preset| preset.name == name) {
         return Ok((preset.name.to_owned(), preset.config()));
@@ -111,13 +120,23 @@ fn filled(comment: &str) -> String {
 /// A comment behind a law: the number that it comes to. Nothing behind other keys.
 fn resolved(config: &Config, key: &str) -> String {
     let (timing, word) = (config.timing(), config.arithmetic.word);
-    let class = |name| isa::Class::from_name(name);
+    let class = |name| Class::from_name(name);
     let (law, number) = match key.split_once('.').and_then(|(table, name)| Some((table, class(name)?))) {
         Some(("clocks", class)) => (config.clocks.0[class], timing.clocks[class]),
         Some(("units", class)) => (config.units.0[class], timing.units[class]),
         _ => return String::new(),
     };
     if law.is_grown() { format!(" # {number} for words of {word} bits") } else { String::new() }
+}
+
+/// Description of a key of a machine file, or of a group of keys: its meaning, unit and range.
+pub fn comment(key: &str) -> Option<String> {
+    let group = format!("[{key}]");
+    let found = COMMENTS.iter().find(|(known, _)| *known == key || *known == group);
+    // Classes of operations mean the same in each section.
+    let class =
+        || key.split_once('.').and_then(|(_, name)| Class::from_name(name)).map(|class| class.doc().trim().to_owned());
+    found.map(|(_, text)| filled(text)).or_else(class)
 }
 
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.

@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers as people read and write them.
 
 /// A number with commas between its thousands.
 pub fn grouped(number: u64) -> String {
@@ -40,6 +40,32 @@ pub fn count(number: u64, singular: &str, plural: &str) -> String {
     format!("{} {}", grouped(number), if number == 1 { singular } else { plural })
 }
 
+/// Whole numbers from `least` to `most`: single ones and ranges, between commas: `1,4-8`, `1..4`, `1..=4`, ranges with both ends.
+///
+/// # Errors
+/// Anything else, and ranges that go down.
+pub fn numbers(text: &str, least: u32, most: u32, what: &str) -> Result<Vec<u32>, String> {
+    let number = |text: &str| match text.trim().parse::<u32>() {
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        _ => Err(format!("`{}` is no {what} from {least} to {most}", text.trim())),
+    };
+    let mut numbers = Vec::new();
+    for part in text.split(',') {
+        let range = part.split_once("..").map(|(first, last)| (first, last.trim_start_matches('=')));
+        match range.or_else(|| part.split_once('-').filter(|(first, _)| !first.trim().is_empty())) {
+            None => numbers.push(number(part)?),
+            Some((first, last)) => {
+                let (first, last) = (number(first)?, number(last)?);
+                if first > last {
+                    return Err(format!("`{part}` goes down"));
+                }
+                numbers.extend(first..=last);
+            }
+        }
+    }
+    Ok(numbers)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,5 +79,15 @@ mod tests {
         assert_eq!(shorter, ["0", "9999", "10.0k", "99.9k", "100k", "999k", "1.00M", "12.3M", "18.4E"]);
         assert_eq!((percent(1, 8), percent(0, 0)), ("12.5 %".into(), "0.0 %".into()));
         assert_eq!((count(1, "light", "lights"), count(0, "light", "lights")), ("1 light".into(), "0 lights".into()));
+    }
+
+    #[test]
+    fn lists_have_numbers_and_ranges() {
+        let cores = |text: &str| numbers(text, 1, 256, "number of cores");
+        assert_eq!(cores("1..4,8, 2"), Ok(vec![1, 2, 3, 4, 8, 2]));
+        assert_eq!((cores("1-3"), cores("1..=3"), cores("16")), (Ok(vec![1, 2, 3]), Ok(vec![1, 2, 3]), Ok(vec![16])));
+        for text in ["", "0", "257", "4..2", "4-2", "1..", "1-", "-1", "a", "1,,2", "1..999", "1-2-3"] {
+            assert!(cores(text).is_err(), "{text}");
+        }
     }
 }

@@ -10,7 +10,6 @@ use serde::Serialize;
 use super::figures::{Pixel, derive};
 use super::scene::OnScene;
 use super::{Measurement, figures};
-use crate::result::json;
 
 /// Version of [`Annexes`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-annex-1";
@@ -188,11 +187,6 @@ impl Annexes {
             derived: Derivation::new(measured, scenes),
             errata: printed::errata().iter().map(Erratum::new).collect(),
         }
-    }
-
-    /// The text that `--json` prints.
-    pub fn json(&self) -> String {
-        json(self)
     }
 }
 

@@ -1,20 +1,24 @@
 //! Which machine runs.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use emu::engine::EngineKind;
+use emu::machine::arbiter::ArbiterKind;
+use messages::{Diagnostic, Report};
 use scenes::layout::Layout;
 
-/// Options of the machine.
+use super::ArithmeticArguments;
+use crate::settings::{MachineSettings, Settings, key};
+
+/// Options of the machine and of what is in its memory.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Machine")]
 pub struct MachineArguments {
-    /// Machine: a preset's name or a TOML file; `lancer machine` shows them.
-    #[arg(long, value_name = "NAME|FILE", default_value = "report")]
-    pub machine: String,
-    /// Number of cores, 1 to 256 [default: the machine's, 4].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub cores: Option<u32>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub keys: MachineKeyArguments,
     /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = layout())]
     pub layout: Option<Layout>,
@@ -23,8 +27,77 @@ pub struct MachineArguments {
     pub engine: EngineKind,
 }
 
+/// Options of every command that takes one machine.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Machine")]
+pub struct MachineKeyArguments {
+    /// Machine: a preset's name or a TOML file; `lancer machine` shows them.
+    #[arg(long, value_name = "NAME|FILE", default_value = "report")]
+    pub machine: String,
+    /// Number of cores, 1 to 256 [default: the machine's, 4].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub cores: Option<u32>,
+    /// Arbiter of the bus [default: the machine's, round-robin].
+    #[arg(long, value_name = "NAME", value_parser = arbiter())]
+    pub arbiter: Option<ArbiterKind>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub sets: SetArguments,
+}
+
+/// Changes of single keys.
+#[derive(Args, Clone, Debug, Default)]
+pub struct SetArguments {
+    /// Changes any key of the settings, after all other options, such as bus.octets_per_beat=4; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE", help_heading = "Settings", allow_hyphen_values = true)]
+    pub sets: Vec<String>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub settings: SettingsArguments,
+}
+
+/// A file of settings.
+#[derive(Args, Clone, Debug, Default)]
+pub struct SettingsArguments {
+    /// Settings that the other options change: a TOML file, or any result as JSON (`-` for standard input).
+    #[arg(long, value_name = "FILE", help_heading = "Settings")]
+    pub settings: Option<PathBuf>,
+}
+
+impl MachineKeyArguments {
+    /// The machine with what options say otherwise; changes of single keys are not made yet.
+    ///
+    /// # Errors
+    /// See [`MachineSettings::find`].
+    pub fn chosen(&self, arithmetic: &ArithmeticArguments) -> Result<MachineSettings, Report> {
+        let mut machine = MachineSettings::find(&self.machine)?;
+        let config = &mut machine.config;
+        config.cores = self.cores.unwrap_or(config.cores);
+        config.bus.arbiter = self.arbiter.unwrap_or(config.bus.arbiter);
+        arithmetic.adjust(config);
+        Ok(machine)
+    }
+
+    /// The machine alone, with all changes, for a command that has no other settings.
+    ///
+    /// # Errors
+    /// See [`MachineSettings::find`]; changes of keys that are none of the machine's.
+    pub fn machine(&self, arithmetic: &ArithmeticArguments) -> Result<MachineSettings, Report> {
+        for set in &self.sets.sets {
+            let name = set.split('=').next().unwrap_or_default();
+            let key = key::resolve(name)?;
+            if !key.starts_with("machine") {
+                let message = format!("`{name}` is no key of the machine, and this command has no other keys");
+                return Err(Diagnostic::error(message).into());
+            }
+        }
+        let settings = Settings { machine: self.chosen(arithmetic)?, ..Settings::default() };
+        Ok(settings.with(&self.sets.sets)?.machine)
+    }
+}
+
 /// The engine is chosen.
-const AUTO: &str = "auto";
+const AUTO: &str = crate::settings::named::AUTO;
 
 /// Name of an engine that is no more; whoever asks for it is told which one to take.
 const LOCKSTEP: &str = "lockstep";
@@ -43,4 +116,11 @@ pub fn engine() -> impl TypedValueParser<Value = EngineKind> {
 pub fn layout() -> impl TypedValueParser<Value = Layout> {
     let names = PossibleValuesParser::new(Layout::ALL.iter().map(|layout| layout.name()));
     names.map(|name| name.parse().expect("the parser lets only names pass"))
+}
+
+/// Names of the arbiters.
+pub fn arbiter() -> impl TypedValueParser<Value = ArbiterKind> {
+    let names = PossibleValuesParser::new(ArbiterKind::ALL.map(ArbiterKind::name));
+    let find = |name: String| ArbiterKind::ALL.into_iter().find(|kind| kind.name() == name);
+    names.map(move |name| find(name).expect("the parser lets only names pass"))
 }

@@ -12,11 +12,11 @@ mod value;
 mod view;
 
 pub use effort::EffortArguments;
-pub use extension::{ExtensionArguments, extend};
+pub use extension::ExtensionArguments;
 pub use job::JobArguments;
 pub use kernel::{KernelArguments, plain};
-pub use machine::{MachineArguments, engine, layout};
-pub use numbers::NumberArguments;
+pub use machine::{MachineArguments, MachineKeyArguments, SetArguments, SettingsArguments, arbiter, engine, layout};
+pub use numbers::{ArithmeticArguments, NumberArguments};
 pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, positive, rectangle, setting, size, ungrouped, whole};
-pub use view::{CameraKind, ViewArguments};
+pub use view::ViewArguments;

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use emu::machine::Config;
 use isa::number::{Overflow, Quantization};
 
 use super::overrides;
@@ -10,6 +11,18 @@ use super::overrides;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Numbers")]
 pub struct NumberArguments {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub arithmetic: ArithmeticArguments,
+    /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
+    #[arg(long = "format", value_name = "QUANTITY=BITS", value_delimiter = ',', value_parser = overrides::check)]
+    pub formats: Vec<String>,
+}
+
+/// Options of the word and of the modes.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Numbers")]
+pub struct ArithmeticArguments {
     /// Bits of a word, 8 to 32 [default: the machine's, 32].
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(8..=32))]
     pub word: Option<u32>,
@@ -20,9 +33,16 @@ pub struct NumberArguments {
     /// [default: the machine's, SAT].
     #[arg(long, value_name = "MODE", value_parser = overflow)]
     pub overflow: Option<Overflow>,
-    /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
-    #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
-    pub formats: Vec<String>,
+}
+
+impl ArithmeticArguments {
+    /// Changes what the options say otherwise than the machine.
+    pub fn adjust(&self, config: &mut Config) {
+        let arithmetic = &mut config.arithmetic;
+        arithmetic.word = self.word.unwrap_or(arithmetic.word);
+        arithmetic.quantization = self.rounding.unwrap_or(arithmetic.quantization);
+        arithmetic.overflow = self.overflow.unwrap_or(arithmetic.overflow);
+    }
 }
 
 fn rounding() -> impl TypedValueParser<Value = Quantization> {

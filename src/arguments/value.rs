@@ -4,14 +4,13 @@ use std::str::FromStr;
 
 use kernels::build::Crop;
 
+use crate::settings::LONGEST;
+
 /// Width and height in pixels.
 pub type Size = (u32, u32);
 
 /// A part of a picture, as four numbers.
 pub type Rectangle = Crop;
-
-/// Largest width or height of a picture in pixels.
-const LONGEST: u32 = 16_384;
 
 /// `N` finite numbers between commas.
 ///

@@ -1,17 +1,9 @@
 //! Options of camera, size and light.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::value::{self, Rectangle, Size};
-
-/// A camera by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum CameraKind {
-    /// Parallel rays along -z, centred on the scene's box.
-    Orthographic,
-    /// Rays from one eye.
-    Perspective,
-}
+use crate::settings::CameraKind;
 
 /// Options of the view.
 #[derive(Args, Clone, Debug)]

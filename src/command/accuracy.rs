@@ -14,10 +14,12 @@ use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::invocation::{CommandSettings, scene_hashes};
 use crate::accuracy::{self, Choices, MeasuredVariant};
-use crate::arguments::{self, Size};
+use crate::arguments::{self, SettingsArguments, Size};
 use crate::failure::{Exit, Failure};
-use crate::numeral::short;
+use crate::numeral::{numbers, short};
+use crate::result::WithSettings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, input, result};
@@ -45,9 +47,9 @@ pub struct AccuracyArguments {
     /// Size of the pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "64x48")]
     size: Size,
-    /// Bits of a word, 8 to 32.
-    #[arg(long, value_name = "BITS,..", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(8..=32), default_value = "32,28,24,20,16")]
-    words: Vec<u32>,
+    /// Bits of a word, 8 to 32: numbers and ranges such as 16-24.
+    #[arg(long, value_name = "BITS,..", value_parser = words, default_value = "32,28,24,20,16")]
+    words: Vec<Vec<u32>>,
     /// Sets of kernels.
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = profile, default_value = "ray,vector,report")]
     profiles: Vec<KernelSet>,
@@ -57,15 +59,17 @@ pub struct AccuracyArguments {
     /// Structures of global memory.
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = layout, default_value = "wide,report")]
     layouts: Vec<Layout>,
-    /// Levels of secondary rays.
-    #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(0..=100), default_value = "5,2")]
-    bounces: Vec<u32>,
+    /// Levels of secondary rays: numbers and ranges.
+    #[arg(long, value_name = "N,..", value_parser = bounces, default_value = "5,2")]
+    bounces: Vec<Vec<u32>>,
     /// Weights that a secondary ray must exceed, in [0, 1].
     #[arg(long, value_name = "W,..", value_delimiter = ',', value_parser = weight, default_value = "0,0.0078125")]
     cutoffs: Vec<f64>,
     /// Differences of a component up to which the corners around a pixel agree, so that it is interpolated, in [0, 1]; or `none`.
     #[arg(long, value_name = "D,..", value_delimiter = ',', value_parser = difference, default_value = "none,0.01")]
     interpolate: Vec<CornerAgreement>,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Table as comma-separated values.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -83,6 +87,14 @@ pub struct AccuracyArguments {
 /// Difference up to which corners agree; none when every pixel has its ray.
 #[derive(Clone, Copy, Debug)]
 struct CornerAgreement(Option<f64>);
+
+fn words(text: &str) -> Result<Vec<u32>, String> {
+    numbers(text, 8, 32, "number of bits")
+}
+
+fn bounces(text: &str) -> Result<Vec<u32>, String> {
+    numbers(text, 0, 100, "number of levels")
+}
 
 fn difference(text: &str) -> Result<CornerAgreement, String> {
     match text {
@@ -141,21 +153,25 @@ struct Refused {
 }
 
 /// Draws and prints.
-pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &AccuracyArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     for target in [&arguments.csv, &arguments.svg].into_iter().flatten() {
         files::check_target(target)?;
     }
     let choice = Choices {
         profiles: arguments.profiles.clone(),
-        words: arguments.words.clone(),
+        words: arguments.words.concat(),
         roundings: arguments.roundings.clone(),
         layouts: arguments.layouts.clone(),
-        bounces: arguments.bounces.clone(),
+        bounces: arguments.bounces.concat(),
         cutoffs: arguments.cutoffs.clone(),
         interpolate: arguments.interpolate.iter().map(|agreement| agreement.0).collect(),
     };
     let variants = choice.variants().ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
-    let (mut measured, mut refused) = (Vec::new(), Vec::new());
+    let (mut measured, mut refused, mut read) = (Vec::new(), Vec::new(), Vec::new());
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
@@ -176,6 +192,7 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
             bar.inc(1);
         }
         bar.finish_and_clear();
+        read.push(loaded.scene.clone());
     }
     accuracy::rank(&mut measured);
     let mut files = Vec::new();
@@ -191,7 +208,11 @@ pub(super) fn execute(arguments: &AccuracyArguments, terminal: &mut Terminal) ->
         variants: measured,
         refused,
     };
-    terminal.print(&if arguments.json { result::json(&results) } else { text(&results) })?;
+    let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&results, settings)),
+        false => text(&results),
+    })?;
     Ok(Exit::Done)
 }
 

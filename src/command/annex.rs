@@ -2,15 +2,17 @@
 
 use clap::Args;
 
+use super::invocation::{CommandSettings, scene_hashes};
 use super::render;
 use crate::annex::result::Annexes;
 use crate::annex::scene::{OnScene, job};
 use crate::annex::text::{self, Style};
-use crate::arguments::{self, Size};
+use crate::arguments::{self, SettingsArguments, Size};
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
+use crate::result::WithSettings;
 use crate::terminal::Terminal;
-use crate::{annex, input};
+use crate::{annex, input, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,6 +37,8 @@ pub struct AnnexArguments {
     /// Size of the scenes' pictures, in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
     size: Size,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Prints everything as JSON.
     #[arg(long, conflicts_with_all = ["csv", "markdown"])]
     json: bool,
@@ -50,12 +54,17 @@ pub struct AnnexArguments {
 }
 
 /// Measures and prints.
-pub(super) fn execute(arguments: &AnnexArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &AnnexArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let measured = annex::measure()?;
-    let mut scenes = Vec::new();
+    let (mut scenes, mut read) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
+        read.push(loaded.scene.clone());
         let job = job(loaded.scene, arguments.size);
         let drawing = render::draw(&job, Comparison::None, terminal)?;
         scenes.push(OnScene::new(&job, &drawing));
@@ -63,7 +72,10 @@ pub(super) fn execute(arguments: &AnnexArguments, terminal: &mut Terminal) -> Re
     let annexes = Annexes::new(&measured, &scenes);
     let style = if arguments.markdown { Style::Markdown } else { Style::Text };
     terminal.print(&match arguments {
-        AnnexArguments { json: true, .. } => annexes.json(),
+        AnnexArguments { json: true, .. } => {
+            let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
+            result::json(&WithSettings::new(&annexes, settings))
+        }
         AnnexArguments { csv: true, .. } => text::csv(&annexes),
         AnnexArguments { errata: true, .. } => text::errata(&annexes, style),
         _ => text::annexes(&annexes, style),

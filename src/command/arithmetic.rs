@@ -8,8 +8,12 @@ use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::invocation::CommandSettings;
+use crate::arguments::SettingsArguments;
 use crate::failure::{Exit, Failure};
 use crate::numeral::{count, grouped};
+use crate::result::WithSettings;
+use crate::settings::hash;
 use crate::terminal::Terminal;
 use crate::{files, result};
 
@@ -37,7 +41,7 @@ Exit codes: 0 all agree, 1 a line is no vector, 4 a result differs.";
 /// The arithmetic by itself: fixed-point numbers of IEEE 1666 (SystemC).
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  lancer arithmetic check vectors.csv")]
-pub struct ArithmeticArguments {
+pub struct CheckedArithmeticArguments {
     #[command(subcommand)]
     command: ArithmeticCommand,
 }
@@ -60,6 +64,8 @@ struct ArithmeticCheckArguments {
     /// Most mismatches that are listed one by one.
     #[arg(long, value_name = "N", default_value = MOST_LISTED)]
     most: usize,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Prints the result as JSON.
     #[arg(long)]
     json: bool,
@@ -106,13 +112,21 @@ pub(super) struct CheckedFile {
 }
 
 /// Executes the subcommand.
-pub(super) fn execute(arguments: &ArithmeticArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &CheckedArithmeticArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     match &arguments.command {
-        ArithmeticCommand::Check(arguments) => check(arguments, terminal),
+        ArithmeticCommand::Check(arguments) => check(arguments, given, terminal),
     }
 }
 
-fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+fn check(
+    arguments: &ArithmeticCheckArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let source = files::source(&arguments.file)?;
     let (vectors, report) = conformance::parse(&source);
     if vectors.is_empty() && !report.has_errors() {
@@ -132,7 +146,11 @@ fn check(arguments: &ArithmeticCheckArguments, terminal: &mut Terminal) -> Resul
     if report.has_errors() && checked.mismatches == 0 {
         return Err(report.into());
     }
-    terminal.print(&if arguments.json { result::json(&checked) } else { text(&checked) })?;
+    let settings = given.clone().with_hash(hash::texts([source.text.as_str()]));
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&checked, settings)),
+        false => text(&checked),
+    })?;
     match (report.has_errors(), checked.mismatches) {
         (true, _) => Err(report.into()),
         (false, 0) => Ok(Exit::Done),

@@ -10,10 +10,12 @@ use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::arguments::{self, Size};
+use super::invocation::{CommandSettings, scene_hashes};
+use crate::arguments::{self, SettingsArguments, Size};
 use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
 use crate::job::Job;
+use crate::result::WithSettings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, input, result};
@@ -50,6 +52,8 @@ pub struct BenchArguments {
     /// Host threads.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "1")]
     threads: u32,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
@@ -83,14 +87,18 @@ pub(super) struct Benches {
 }
 
 /// Measures and prints.
-pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &BenchArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     if let Some(path) = &arguments.svg {
         files::check_target(path)?;
     }
     let threads = arguments.threads as usize;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Diagnostic::error(format!("there are no {threads} threads: {error}")))?;
-    let mut measured = Vec::new();
+    let (mut measured, mut read) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
@@ -103,6 +111,7 @@ pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Re
             measured.extend(benchmark::measure(&job, arguments.runs, || bar.inc(1))?);
             bar.finish_and_clear();
         }
+        read.push(loaded.scene);
     }
     if let Some(path) = &arguments.svg {
         files::write(path, benchmark::svg(&measured).map_err(Diagnostic::error)?.as_bytes())?;
@@ -111,7 +120,11 @@ pub(super) fn execute(arguments: &BenchArguments, terminal: &mut Terminal) -> Re
     let BenchArguments { runs, threads, .. } = *arguments;
     let features = HostSimd::best().name();
     let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured };
-    terminal.print(&if arguments.json { result::json(&benches) } else { text(&benches) })?;
+    let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&benches, settings)),
+        false => text(&benches),
+    })?;
     Ok(Exit::Done)
 }
 

@@ -3,18 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use emu::engine::EngineKind;
 use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
+use emu::machine::config::MOST_CORES;
 use scenes::layout::Layout;
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use crate::arguments::JobArguments;
-use crate::arguments::{self, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments};
+use crate::arguments::{
+    self, EffortArguments, JobArguments, KernelArguments, MachineArguments, MachineKeyArguments, NumberArguments,
+    SetArguments, ViewArguments,
+};
 use crate::cores::{self, CoresResult};
 use crate::failure::{Exit, Failure};
 use crate::job::{Job, result_name};
 use crate::load::{ANNEX, Load};
+use crate::numeral::numbers;
+use crate::result::WithSettings;
+use crate::settings::{MachineSettings, Settings};
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -44,15 +51,17 @@ pub struct CoresArguments {
     /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Numbers of cores; one core is always among them.
+    /// Numbers of cores and ranges, such as 1-4,8; one core is always among them; may be repeated.
     #[arg(long, value_name = "LIST", value_parser = core_list, default_value = "1..8,12,16")]
-    cores: CoreList,
-    /// Machine: a preset's name or a TOML file; may be repeated.
-    #[arg(long = "machine", value_name = "NAME|FILE", default_value = machine::DEFAULT)]
-    machines: Vec<String>,
-    /// Arbiter instead of the machine's; may be repeated.
-    #[arg(long = "arbiter", value_name = "NAME", value_parser = arbiter())]
+    cores: Vec<Vec<u32>>,
+    /// Machines between commas: presets' names or TOML files; may be repeated.
+    #[arg(long = "machine", value_name = "NAME|FILE,..", value_parser = machine_list, default_value = machine::DEFAULT)]
+    machines: Vec<Vec<String>>,
+    /// Arbiters instead of the machine's, between commas; may be repeated.
+    #[arg(long = "arbiter", value_name = "NAME,..", value_delimiter = ',', value_parser = arguments::arbiter())]
     arbiters: Vec<ArbiterKind>,
+    #[command(flatten)]
+    sets: SetArguments,
     /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = arguments::layout())]
     layout: Option<Layout>,
@@ -75,38 +84,28 @@ pub struct CoresArguments {
     effort: EffortArguments,
 }
 
-/// Numbers of cores, the fewest first.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct CoreList(Vec<u32>);
-
-/// Numbers and ranges between commas: `1..4,8`.
-fn core_list(text: &str) -> Result<CoreList, String> {
-    let number = |text: &str| match text.trim().parse::<u32>() {
-        Ok(cores) if (1..=256).contains(&cores) => Ok(cores),
-        _ => Err(format!("`{}` is no number of cores from 1 to 256", text.trim())),
-    };
-    let mut cores = Vec::new();
-    for part in text.split(',') {
-        match part.split_once("..") {
-            None => cores.push(number(part)?),
-            Some((first, last)) => {
-                let (first, last) = (number(first)?, number(last.trim_start_matches('='))?);
-                if first > last {
-                    return Err(format!("`{part}` goes down"));
-                }
-                cores.extend(first..=last);
-            }
-        }
-    }
-    cores.sort_unstable();
-    cores.dedup();
-    Ok(CoreList(cores))
+/// Settings of a measurement: a picture's, with all machines and all numbers of cores.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(super) struct CoresSettings {
+    /// The picture's, on the first machine.
+    #[serde(flatten)]
+    job: Settings,
+    /// Numbers of cores.
+    cores: Vec<u32>,
+    /// The machines, key by key, whatever their numbers of cores.
+    machines: Vec<MachineSettings>,
 }
 
-fn arbiter() -> impl TypedValueParser<Value = ArbiterKind> {
-    let names = PossibleValuesParser::new(ArbiterKind::ALL.map(ArbiterKind::name));
-    let find = |name: String| ArbiterKind::ALL.into_iter().find(|kind| kind.name() == name);
-    names.map(move |name| find(name).expect("the parser lets only names pass"))
+fn core_list(text: &str) -> Result<Vec<u32>, String> {
+    numbers(text, 1, MOST_CORES, "number of cores")
+}
+
+/// Machines between commas; a file or a machine in braces may have commas in it.
+fn machine_list(text: &str) -> Result<Vec<String>, String> {
+    match text.starts_with('{') || Path::new(text).exists() {
+        true => Ok(vec![text.to_owned()]),
+        false => Ok(text.split(',').map(|name| name.trim().to_owned()).collect()),
+    }
 }
 
 /// Measures, writes and prints.
@@ -116,9 +115,9 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
     }
-    let machines = arguments.machines.iter().map(PathBuf::from);
+    let machines = arguments.machines.iter().flatten().map(PathBuf::from);
     files::check_spared(targets.into_iter().flatten(), machines).map_err(Failure::usage)?;
-    let scaling = match arguments.scene == ANNEX && !Path::new(ANNEX).exists() {
+    let (scaling, settings) = match arguments.scene == ANNEX && !Path::new(ANNEX).exists() {
         true => annex(arguments, terminal)?,
         false => picture(arguments, terminal)?,
     };
@@ -128,7 +127,10 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         files.push((path, cores::svg(&scaling)?));
     }
     files::write_all(&files)?;
-    terminal.print(&if arguments.json { result::json(&scaling) } else { cores::text(&scaling) })?;
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&scaling, settings)),
+        false => cores::text(&scaling),
+    })?;
     Ok(Exit::Done)
 }
 
@@ -145,23 +147,26 @@ fn with_arbiters(arguments: &CoresArguments, name: &str, config: &Config) -> Vec
     arguments.arbiters.iter().map(with).collect()
 }
 
-fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<CoresResult, Failure> {
+fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult, CoresSettings), Failure> {
     let mut machines = Vec::new();
-    for name in &arguments.machines {
-        let (name, mut config) = machine::find(name)?;
-        config.main.traffic = false;
-        machines.extend(with_arbiters(arguments, &name, &config));
+    for name in arguments.machines.iter().flatten() {
+        let mut settings = job(arguments, name).settings()?;
+        settings.machine.config.main.traffic = false;
+        machines.extend(with_arbiters(arguments, &settings.machine.name, &settings.machine.config));
     }
-    measure(ANNEX, &Load::annex()?, &machines, arguments, terminal)
+    let scaling = measure(ANNEX, &Load::annex()?, &machines, arguments, terminal)?;
+    let mut job = Settings::default();
+    ANNEX.clone_into(&mut job.scene.name);
+    Ok((scaling, settings(arguments, job, machines)))
 }
 
-fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<CoresResult, Failure> {
-    let jobs = arguments.machines.iter().map(|machine| job(arguments, machine).job());
+fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult, CoresSettings), Failure> {
+    let jobs = arguments.machines.iter().flatten().map(|machine| job(arguments, machine).job());
     let jobs = jobs.collect::<Result<Vec<Job>, Failure>>()?;
     let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()].into_iter().flatten();
     files::check_spared(targets, jobs.iter().flat_map(|job| &job.files)).map_err(Failure::usage)?;
     terminal.show(&jobs[0].warnings);
-    let mut whole: Option<CoresResult> = None;
+    let (mut whole, mut all): (Option<CoresResult>, Vec<(String, Config)>) = (None, Vec::new());
     // Machines with words of the same length share the picture in memory and the programs.
     for alike in jobs.chunk_by(|one, other| one.machine.arithmetic.word == other.machine.arithmetic.word) {
         let (load, _) = Load::picture(&alike[0])?;
@@ -169,17 +174,33 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<CoresResul
         let machines = alike.iter().flat_map(|job| with_arbiters(arguments, &job.machine_name, &job.machine));
         let machines: Vec<(String, Config)> = machines.collect();
         let scaling = measure(&result_name(&alike[0].scene), &load, &machines, arguments, terminal)?;
+        all.extend(machines);
         match &mut whole {
             Some(whole) => whole.machines.extend(scaling.machines),
             None => whole = Some(scaling),
         }
     }
-    whole.ok_or_else(|| messages::Diagnostic::error("no machine was named").into())
+    let whole = whole.ok_or_else(|| messages::Diagnostic::error("no machine was named"))?;
+    Ok((whole, settings(arguments, Settings::of(&jobs[0]), all)))
+}
+
+fn settings(arguments: &CoresArguments, job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
+    let machines = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
+    CoresSettings { job, cores: cores_of(arguments), machines }
+}
+
+/// The numbers of cores, the fewest first.
+fn cores_of(arguments: &CoresArguments) -> Vec<u32> {
+    let mut cores: Vec<u32> = arguments.cores.iter().flatten().copied().collect();
+    cores.sort_unstable();
+    cores.dedup();
+    cores
 }
 
 fn job(arguments: &CoresArguments, machine: &str) -> JobArguments {
-    let CoresArguments { scene, mesh, layout, view, kernels, numbers, effort, .. } = arguments.clone();
-    let machine = MachineArguments { machine: machine.to_owned(), cores: None, layout, engine: EngineKind::default() };
+    let CoresArguments { scene, mesh, layout, view, kernels, numbers, effort, sets, .. } = arguments.clone();
+    let keys = MachineKeyArguments { machine: machine.to_owned(), cores: None, arbiter: None, sets };
+    let machine = MachineArguments { keys, layout, engine: EngineKind::default() };
     JobArguments { scene, mesh, view, kernels, machine, numbers, effort }
 }
 
@@ -192,21 +213,7 @@ fn measure(
     terminal: &Terminal,
 ) -> Result<CoresResult, Failure> {
     let bar = terminal.progress("pixels", u64::from(load.build.crop.width) * u64::from(load.build.crop.height));
-    let scaling = cores::measure(scene, load, machines, &arguments.cores.0, &mut |done| bar.set_position(done));
+    let scaling = cores::measure(scene, load, machines, &cores_of(arguments), &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     scaling
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lists_of_cores() {
-        assert_eq!(core_list("1..4,8, 2"), Ok(CoreList(vec![1, 2, 3, 4, 8])));
-        assert_eq!(core_list("16"), Ok(CoreList(vec![16])));
-        for text in ["", "0", "257", "4..2", "1..", "a", "1,,2", "1..999"] {
-            assert!(core_list(text).is_err(), "{text}");
-        }
-    }
 }

@@ -11,6 +11,7 @@ mod demo;
 mod disassemble;
 mod explain;
 mod extension;
+pub mod invocation;
 mod machine;
 mod manual;
 mod profiles;
@@ -25,6 +26,7 @@ mod stress;
 mod trace;
 
 use clap::{Parser, Subcommand};
+use invocation::CommandSettings;
 
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
@@ -68,7 +70,7 @@ enum Command {
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
-    Arithmetic(arithmetic::ArithmeticArguments),
+    Arithmetic(arithmetic::CheckedArithmeticArguments),
     Manual(manual::ManualArguments),
     Extension(extension::ExtensionsArguments),
     Explain(explain::ExplainArguments),
@@ -76,28 +78,28 @@ enum Command {
     Completions(completions::CompletionsArguments),
 }
 
-/// Executes a command line.
+/// Executes a command line, of which `given` are the settings.
 ///
 /// # Errors
 /// Whatever keeps the command from doing its work.
-pub fn execute(arguments: &Lancer, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Terminal) -> Result<Exit, Failure> {
     match &arguments.command {
         None => demo::execute(arguments.size, terminal),
         Some(Command::Render(arguments)) => render::execute(arguments, terminal),
-        Some(Command::Run(arguments)) => run::execute(arguments, terminal),
+        Some(Command::Run(arguments)) => run::execute(arguments, given, terminal),
         Some(Command::Assemble(arguments)) => assemble::execute(arguments, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
-        Some(Command::Annex(arguments)) => annex::execute(arguments, terminal),
-        Some(Command::Scene(arguments)) => scene::execute(arguments, terminal),
-        Some(Command::Profiles(arguments)) => profiles::execute(arguments, terminal),
+        Some(Command::Annex(arguments)) => annex::execute(arguments, given, terminal),
+        Some(Command::Scene(arguments)) => scene::execute(arguments, given, terminal),
+        Some(Command::Profiles(arguments)) => profiles::execute(arguments, given, terminal),
         Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
-        Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, terminal),
-        Some(Command::Bench(arguments)) => bench::execute(arguments, terminal),
-        Some(Command::Stress(arguments)) => stress::execute(arguments, terminal),
-        Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, terminal),
+        Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
+        Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
+        Some(Command::Stress(arguments)) => stress::execute(arguments, given, terminal),
+        Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, given, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),
         Some(Command::Extension(arguments)) => extension::execute(arguments, terminal),
         Some(Command::Explain(arguments)) => explain::execute(arguments, terminal),

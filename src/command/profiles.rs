@@ -2,13 +2,15 @@
 
 use clap::Args;
 
-use crate::arguments::{self, Size};
+use super::invocation::{CommandSettings, scene_hashes};
+use crate::arguments::{self, ArithmeticArguments, MachineKeyArguments, Size};
 use crate::failure::{Exit, Failure};
 use crate::numeral::short;
 use crate::profiles::{self, Profiles, Ratio};
+use crate::result::WithSettings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
-use crate::{input, machine, result};
+use crate::{input, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,17 +34,22 @@ pub struct ProfilesArguments {
     /// Size of the pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
     size: Size,
-    /// Machine: a preset or a TOML file, see `lancer machine`.
-    #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
-    machine: String,
+    #[command(flatten)]
+    machine: MachineKeyArguments,
+    #[command(flatten)]
+    arithmetic: ArithmeticArguments,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
 }
 
 /// Draws and prints.
-pub(super) fn execute(arguments: &ProfilesArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let machine = machine::find(&arguments.machine)?;
+pub(super) fn execute(
+    arguments: &ProfilesArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
+    let machine = arguments.machine.machine(&arguments.arithmetic)?;
     let mut scenes = Vec::new();
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
@@ -50,10 +57,15 @@ pub(super) fn execute(arguments: &ProfilesArguments, terminal: &mut Terminal) ->
         scenes.push(loaded.scene);
     }
     let bar = terminal.progress("pictures", (scenes.len() * kernels::KernelSet::ALL.len()) as u64);
-    let profiles = profiles::measure(&scenes, arguments.size, &machine, &|| bar.inc(1));
+    let profiles =
+        profiles::measure(&scenes, arguments.size, &(machine.name.clone(), machine.config.clone()), &|| bar.inc(1));
     bar.finish_and_clear();
     let profiles = profiles?;
-    terminal.print(&if arguments.json { result::json(&profiles) } else { text(&profiles) })?;
+    let settings = given.clone().with_machine(&machine).with_scenes(&scene_hashes(&arguments.scenes, &scenes));
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&profiles, settings)),
+        false => text(&profiles),
+    })?;
     Ok(Exit::Done)
 }
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
+use messages::Diagnostic;
 
 use crate::arguments::JobArguments;
 use crate::drawing::{self, Comparison, Drawing};
@@ -40,6 +41,9 @@ pub struct RenderArguments {
     /// Prints the results as JSON instead of tables.
     #[arg(long, help_heading = "Results")]
     json: bool,
+    /// Writes the results as JSON beside the picture too: NAME.json for NAME.png.
+    #[arg(long, help_heading = "Results")]
+    sidecar: bool,
     /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
     #[arg(long, help_heading = "Results")]
     flags: bool,
@@ -65,8 +69,12 @@ fn picture(text: &str) -> Result<PathBuf, String> {
 /// Draws, writes and prints.
 pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let start = Instant::now();
-    let mut job = arguments.job.job()?;
-    job.flags = arguments.flags;
+    let mut settings = arguments.job.settings()?;
+    settings.results.flags |= arguments.flags;
+    settings.results.error &= !arguments.no_error;
+    // A map of errors is nothing without them.
+    settings.results.error |= arguments.error.is_some();
+    let job = arguments.job.job_of(&settings)?;
     let load = start.elapsed();
     terminal.show(&job.warnings);
     // One pixel is looked at in the tables; it must not replace the picture.
@@ -75,20 +83,26 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
         true => Some(PathBuf::from(format!("{}.png", result_name(&job.scene)))),
         false => arguments.output.clone(),
     };
-    let targets = [&output, &arguments.heat, &arguments.error].map(|path| path.as_deref());
+    let sidecar = output.as_ref().filter(|_| arguments.sidecar).map(|output| output.with_extension("json"));
+    if arguments.sidecar && sidecar.is_none() {
+        let message = Diagnostic::error("there is no picture to write the results beside");
+        return Err(Failure::usage(message.hint("name one with `-o FILE`")));
+    }
+    let targets = [&output, &arguments.heat, &arguments.error, &sidecar].map(|path| path.as_deref());
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
     files::check_spared(targets.into_iter().flatten(), &job.files).map_err(Failure::usage)?;
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
     }
-    let comparison = if arguments.no_error { Comparison::None } else { Comparison::Reference };
+    let comparison = if job.error { Comparison::Reference } else { Comparison::None };
     let drawing = draw(&job, comparison, terminal)?;
     terminal.show(&drawing.warnings);
     let mut result = Render::new(&job, &drawing);
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
-    let [output, heat, error] = targets;
+    let [output, heat, error, sidecar] = targets;
     let mut files = maps(&drawing, heat, error);
     files.extend(output.map(|output| (output, format(output).encode(&drawing.picture))));
+    files.extend(sidecar.map(|sidecar| (sidecar, result.json().into_bytes())));
     files::write_all(&files)?;
     match arguments.json {
         true => terminal.print(&result.json())?,

@@ -11,13 +11,15 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
 
 use super::assemble::{self, SourceArguments};
+use super::invocation::CommandSettings;
 use super::run_arguments::{Dump, RegisterValue, memory_file, memory_size};
 use super::run_result::RunResult;
-use crate::arguments::{self, ExtensionArguments};
+use crate::arguments::{self, ArithmeticArguments, ExtensionArguments, MachineKeyArguments};
 use crate::failure::{Exit, Failure};
-use crate::files::program::LoadedFile;
+use crate::files::program::{LoadedFile, ProgramFile};
+use crate::result::WithSettings;
 use crate::terminal::Terminal;
-use crate::{files, machine, result};
+use crate::{files, result, settings};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,9 +66,10 @@ pub struct RunArguments {
     /// Instructions that the program may take [default: the machine's, 100,000,000].
     #[arg(long, value_name = "N", value_parser = arguments::positive)]
     max_steps: Option<u64>,
-    /// Machine: a preset's name or a TOML file.
-    #[arg(long, value_name = "NAME|FILE", default_value = machine::DEFAULT)]
-    machine: String,
+    #[command(flatten)]
+    machine: MachineKeyArguments,
+    #[command(flatten)]
+    arithmetic: ArithmeticArguments,
     /// Engine that executes the program; only the host's time depends on it. auto: the fastest that suits.
     #[arg(long, value_name = "NAME", value_parser = arguments::engine(), default_value = "auto")]
     engine: EngineKind,
@@ -76,8 +79,13 @@ pub struct RunArguments {
 }
 
 /// Assembles, runs and prints.
-pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let (machine_name, config) = machine::find(&arguments.machine)?;
+pub(super) fn execute(
+    arguments: &RunArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
+    let machine = arguments.machine.machine(&arguments.arithmetic)?;
+    let config = &machine.config;
     let isa = arguments.extensions.isa()?;
     let memory = memory(arguments)?;
     let program = program(arguments, &isa, terminal)?;
@@ -90,16 +98,19 @@ pub(super) fn execute(arguments: &RunArguments, terminal: &mut Terminal) -> Resu
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
         has_profile: true,
         has_losses: arguments.flags,
-        ..OneCore::new(&config, &isa, &program)
+        ..OneCore::new(config, &isa, &program)
     };
     let wish = Wish { kind: arguments.engine, ..Wish::default() };
     let run = one_core::run_with(&one_core, Memory::new(memory), wish)?;
     let file = arguments.file.display().to_string();
     let code = Code::new(&program, &isa, config.timing());
     let flags = arguments.flags.then(|| result::losses(&code, &run.tally));
-    let shown = RunResult::new(file, machine_name, &run, flags, &arguments.dumps)?;
+    let shown = RunResult::new(file, machine.name.clone(), &run, flags, &arguments.dumps)?;
     match arguments.json {
-        true => terminal.print(&result::json(&shown))?,
+        true => {
+            let settings = given.clone().with_machine(&machine).with_hash(hash(arguments, &program)?);
+            terminal.print(&result::json(&WithSettings::new(&shown, settings)))?
+        }
         false => terminal.print(&shown.text())?,
     }
     match &run.trap {
@@ -130,6 +141,16 @@ fn program(arguments: &RunArguments, isa: &Isa, terminal: &Terminal) -> Result<P
         return Err(Failure::usage(Diagnostic::error(message).hint("give them to `lancer assemble`")));
     }
     Ok(program)
+}
+
+/// SHA-256 of all that the run reads: the program's words, buffer and first word, and the files in memory.
+fn hash(arguments: &RunArguments, program: &Program) -> Result<String, Failure> {
+    let entry = program.entry.to_le_bytes().to_vec();
+    let mut parts = vec![ProgramFile::Binary.encode(program), program.buffer.clone(), entry];
+    for (_, path) in &arguments.files {
+        parts.push(files::read(path)?);
+    }
+    Ok(settings::hash::parts(parts.iter().map(Vec::as_slice)))
 }
 
 /// Global memory at the start.

@@ -10,6 +10,10 @@ use serde_json::Value;
 use super::accuracy::{self, AccuracyResults};
 use super::arithmetic::{self, CheckedFile};
 use super::bench::{self, Benches};
+use super::cores::CoresSettings;
+use super::extension::compare::CompareSettings;
+use super::extension::suggest::SuggestSettings;
+use super::invocation::CommandSettings;
 use super::run_result::{self, RunResult};
 use super::stress::{self, Catalogue};
 use crate::annex;
@@ -18,7 +22,8 @@ use crate::cores::{self, CoresResult};
 use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
 use crate::profiles::{self, Profiles};
-use crate::result::{self, Render};
+use crate::result::{self, Render, WithSettings};
+use crate::settings::Settings;
 use crate::skips::{self, SkipsResult};
 use crate::terminal::Terminal;
 
@@ -46,24 +51,44 @@ struct Known {
 }
 
 const SCHEMAS: &[Known] = &[
-    Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: schema_of::<Annexes> },
+    Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: printed::<Annexes, CommandSettings> },
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
-    Known { name: run_result::SCHEMA, command: "lancer run --json", make: schema_of::<RunResult> },
-    Known { name: cores::SCHEMA, command: "lancer cores --json", make: schema_of::<CoresResult> },
-    Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: schema_of::<Profiles> },
-    Known { name: skips::SCHEMA, command: "lancer skips --json", make: schema_of::<SkipsResult> },
-    Known { name: info::SCHEMA, command: "lancer scene info --json", make: schema_of::<SceneInfo> },
-    Known { name: accuracy::SCHEMA, command: "lancer accuracy --json", make: schema_of::<AccuracyResults> },
-    Known { name: stress::SCHEMA, command: "lancer stress --json", make: schema_of::<Catalogue> },
-    Known { name: extension::SCHEMA, command: "lancer extension compare --json", make: schema_of::<ExtensionResult> },
+    Known { name: run_result::SCHEMA, command: "lancer run --json", make: printed::<RunResult, CommandSettings> },
+    Known { name: cores::SCHEMA, command: "lancer cores --json", make: printed::<CoresResult, CoresSettings> },
+    Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: printed::<Profiles, CommandSettings> },
+    Known { name: skips::SCHEMA, command: "lancer skips --json", make: printed::<SkipsResult, Settings> },
+    Known { name: info::SCHEMA, command: "lancer scene info --json", make: printed::<SceneInfo, CommandSettings> },
+    Known {
+        name: accuracy::SCHEMA,
+        command: "lancer accuracy --json",
+        make: printed::<AccuracyResults, CommandSettings>,
+    },
+    Known { name: stress::SCHEMA, command: "lancer stress --json", make: printed::<Catalogue, CommandSettings> },
+    Known {
+        name: extension::SCHEMA,
+        command: "lancer extension compare --json",
+        make: printed::<ExtensionResult, CompareSettings>,
+    },
     Known {
         name: extension::SUGGESTION_SCHEMA,
         command: "lancer extension suggest --json",
-        make: schema_of::<extension::SuggestionResult>,
+        make: printed::<extension::SuggestionResult, SuggestSettings>,
     },
-    Known { name: bench::SCHEMA, command: "lancer bench --json", make: schema_of::<Benches> },
-    Known { name: arithmetic::SCHEMA, command: "lancer arithmetic check --json", make: schema_of::<CheckedFile> },
+    Known { name: bench::SCHEMA, command: "lancer bench --json", make: printed::<Benches, CommandSettings> },
+    Known {
+        name: arithmetic::SCHEMA,
+        command: "lancer arithmetic check --json",
+        make: printed::<CheckedFile, CommandSettings>,
+    },
 ];
+
+/// Schema of a result as commands print it, with version and settings.
+fn printed<R: JsonSchema, S: JsonSchema>() -> Schema {
+    let mut schema = schema_of::<WithSettings<R, S>>();
+    let description = schema_of::<R>().get("description").cloned().unwrap_or_default();
+    schema.insert("description".to_owned(), description);
+    schema
+}
 
 fn schema_of<T: JsonSchema>() -> Schema {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>()

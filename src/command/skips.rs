@@ -6,7 +6,8 @@ use messages::Diagnostic;
 use crate::arguments::JobArguments;
 use crate::failure::{Exit, Failure};
 use crate::numeral::short;
-use crate::result;
+use crate::result::{self, WithSettings};
+use crate::settings::Settings;
 use crate::skips::{self, SkipResult, SkipsResult};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
@@ -49,7 +50,11 @@ pub(super) fn execute(arguments: &SkipsArguments, terminal: &mut Terminal) -> Re
     let savings = skips::measure(&job, &|| bar.inc(1));
     bar.finish_and_clear();
     let savings = savings?;
-    terminal.print(&if arguments.json { result::json(&savings) } else { text(&savings) })?;
+    terminal.print(&if arguments.json {
+        result::json(&WithSettings::new(&savings, Settings::of(&job)))
+    } else {
+        text(&savings)
+    })?;
     let is_kept = savings.rows.iter().all(|saving| saving.is_identical || !saving.claims_identity);
     Ok(if is_kept { Exit::Done } else { Exit::Tolerance })
 }

@@ -9,8 +9,11 @@ use messages::{Diagnostic, Report};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::invocation::CommandSettings;
+use crate::arguments::SettingsArguments;
 use crate::failure::{Exit, Failure};
 use crate::numeral::grouped;
+use crate::result::WithSettings;
 use crate::stress::{self, CASES, Case, CatalogueSize, TrialTally};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
@@ -59,6 +62,8 @@ pub struct StressArguments {
     /// Lists the cases instead of trying them.
     #[arg(long, conflicts_with_all = ["json", "resume"])]
     list: bool,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
@@ -142,7 +147,11 @@ pub(super) struct Catalogue {
 }
 
 /// Tries the cases.
-pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &StressArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let size = if arguments.full { CatalogueSize::Full } else { arguments.size };
     let chosen: Vec<&Case> = match arguments.cases.is_empty() {
         true => CASES.iter().collect(),
@@ -173,7 +182,8 @@ pub(super) fn execute(arguments: &StressArguments, terminal: &mut Terminal) -> R
     }
     let passes = verdicts.iter().all(|verdict| verdict.passes);
     if arguments.json {
-        terminal.print(&result::json(&Catalogue { schema: SCHEMA, size: size.name(), passes, cases: verdicts }))?;
+        let catalogue = Catalogue { schema: SCHEMA, size: size.name(), passes, cases: verdicts };
+        terminal.print(&result::json(&WithSettings::new(catalogue, given.clone())))?;
     }
     Ok(if passes { Exit::Done } else { Exit::Tolerance })
 }

@@ -11,13 +11,13 @@ use messages::Diagnostic;
 
 use crate::arguments::{JobArguments, ungrouped};
 use crate::failure::{Exit, Failure};
+use crate::files;
 use crate::job::result_name;
 use crate::load::{ANNEX, Load};
 use crate::numeral::{grouped, percent};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::trace::{TracedScene, perfetto, wave};
-use crate::{files, machine as machines};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -114,12 +114,11 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
 fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load, Config, u32, Vec<PathBuf>), Failure> {
     let mut job = arguments.job.clone();
     if job.scene == ANNEX && !Path::new(ANNEX).exists() {
-        let (_, mut config) = machines::find(&job.machine.machine)?;
+        let mut config = job.settings()?.machine.config;
         config.main.traffic = false;
-        config.cores = job.machine.cores.unwrap_or(config.cores);
         let load = Load::annex()?;
         let width = load.build.crop.width;
-        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.machine)]));
+        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.keys.machine)]));
     }
     job.view.pixel = None;
     let job = job.job()?;

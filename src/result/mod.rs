@@ -6,6 +6,7 @@ mod hexadecimal;
 #[cfg(feature = "cli")]
 mod loss_table;
 mod losses;
+mod provenance;
 mod times;
 
 use std::borrow::Cow;
@@ -25,11 +26,13 @@ use serde::{Serialize, Serializer};
 
 use crate::drawing::Drawing;
 use crate::job::{Job, result_name};
+use crate::settings::{Settings, VERSION};
 pub use hash::{image_hash, run_hash};
 pub use hexadecimal::hexadecimal;
 #[cfg(feature = "cli")]
 pub use loss_table::loss_table;
 pub use losses::{Loss, losses};
+pub use provenance::WithSettings;
 pub use times::OperationTimes;
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
@@ -76,6 +79,10 @@ pub struct Render {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
+    /// Version of this program.
+    pub version: &'static str,
+    /// Settings that give the result again: `--settings` reads them.
+    pub settings: Settings,
     /// Name of the scene.
     pub scene: String,
     /// Name of the kernels' profile.
@@ -312,6 +319,8 @@ impl Render {
         let crop = [drawing.crop.column, drawing.crop.row, drawing.crop.width, drawing.crop.height];
         let mut result = Render {
             schema: SCHEMA,
+            version: VERSION,
+            settings: settings(job, drawing),
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
             machine: job.machine_name.clone(),
@@ -379,6 +388,13 @@ impl Render {
     pub fn json(&self) -> String {
         json(self)
     }
+}
+
+/// The settings of a drawing: those of its job, with what was measured.
+fn settings(job: &Job, drawing: &Drawing) -> Settings {
+    let mut settings = Settings::of(job);
+    settings.results.error = drawing.reference.is_some();
+    settings
 }
 
 /// A result as JSON with two blanks of indentation and a line feed at its end.

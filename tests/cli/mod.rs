@@ -14,5 +14,6 @@ mod render;
 mod scene;
 mod schema;
 pub mod session;
+mod settings;
 mod streams;
 mod trace;

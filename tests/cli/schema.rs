@@ -61,7 +61,7 @@ fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
     }
     for (keyword, argument) in part.as_object().unwrap_or_else(|| panic!("{path}: {part} is no schema")) {
         match keyword.as_str() {
-            "$schema" | "title" | "description" | "$defs" | "format" => {}
+            "$schema" | "title" | "description" | "$defs" | "format" | "default" => {}
             "$ref" => {
                 let name = argument.as_str().unwrap().strip_prefix("#/$defs/").unwrap();
                 found.extend(wrong(root, &root["$defs"][name], value, path));
@@ -120,6 +120,8 @@ fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
                     }
                 }
             }
+            // `properties` is stricter here.
+            "additionalProperties" if *argument == Value::Bool(false) => {}
             "additionalProperties" => {
                 for (key, value) in value.as_object().into_iter().flatten() {
                     found.extend(wrong(root, argument, value, &format!("{path}.{key}")));

@@ -6,8 +6,7 @@ use clap::Args;
 use isa::{Class, Counts, Isa};
 use messages::Report;
 
-use crate::arguments;
-use crate::extension::findings;
+use crate::extension::{extend, findings};
 use crate::failure::{Exit, Failure};
 use crate::numeral::count;
 use crate::terminal::Terminal;
@@ -37,7 +36,7 @@ pub struct CheckArguments {
 pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut isa = Isa::base();
     for path in &arguments.files {
-        let loaded = arguments::extend(&mut isa, path)?;
+        let (loaded, _) = extend(&mut isa, path)?;
         let warnings: Vec<_> = loaded.iter().flat_map(|loaded| findings(&isa, loaded)).collect();
         let number = warnings.len() as u64;
         terminal.show(&Report(warnings));

@@ -4,12 +4,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 use isa::table::Op;
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use crate::arguments::JobArguments;
-use crate::arguments::{self, EffortArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments};
-use crate::extension::compare;
+use crate::arguments::{
+    EffortArguments, JobArguments, KernelArguments, MachineArguments, NumberArguments, ViewArguments,
+};
+use crate::extension::{compare, extend};
 use crate::failure::{Exit, Failure};
-use crate::result;
+use crate::result::{self, WithSettings};
+use crate::settings::{FileSettings, Settings, hash};
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -53,6 +57,16 @@ pub struct CompareArguments {
     effort: EffortArguments,
 }
 
+/// Settings of a comparison: a picture's with the extension's kernels, and the extension.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct CompareSettings {
+    /// The picture's.
+    #[serde(flatten)]
+    job: Settings,
+    /// File of the extension.
+    extension: FileSettings,
+}
+
 /// Draws, compares and prints.
 pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let job = JobArguments {
@@ -68,15 +82,18 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
     terminal.show(&extended.warnings);
     let mut plain = extended.clone();
     plain.kernels.replaced.clear();
-    let loaded = arguments::extend(&mut extended.isa, &arguments.file)?;
+    let (loaded, texts) = extend(&mut extended.isa, &arguments.file)?;
     let ops: Vec<Op> = loaded.iter().map(|loaded| loaded.op).collect();
     let file = arguments.file.display().to_string();
+    let hash = Some(hash::texts(texts.iter().map(|text| text.text.as_str())));
+    let settings =
+        CompareSettings { job: Settings::of(&extended), extension: FileSettings { file: file.clone(), hash } };
     let bar = terminal.progress("pictures", 3);
     let comparison = compare(file, &ops, &plain, &extended, &mut || bar.inc(1));
     bar.finish_and_clear();
     let comparison = comparison?;
     terminal.print(&match (arguments.json, arguments.markdown) {
-        (true, _) => result::json(&comparison),
+        (true, _) => result::json(&WithSettings::new(&comparison, settings)),
         (_, true) => comparison.markdown(),
         _ => comparison.text(),
     })?;

@@ -1,8 +1,8 @@
 //! `lancer extension`: instructions of a user's own, and what they are worth.
 
 mod check;
-mod compare;
-mod suggest;
+pub(super) mod compare;
+pub(super) mod suggest;
 
 use clap::{Args, Subcommand};
 

@@ -6,6 +6,8 @@ use asm::extension;
 use clap::Args;
 use isa::table::Op;
 use messages::{Diagnostic, Source};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::arguments::JobArguments;
 use crate::command::render;
@@ -14,7 +16,8 @@ use crate::extension::{SuggestionResult, Suggestions, compare, suggest};
 use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::numeral::{grouped, percent};
-use crate::result;
+use crate::result::{self, WithSettings};
+use crate::settings::Settings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 
@@ -46,6 +49,16 @@ pub struct SuggestArguments {
     output: PathBuf,
 }
 
+/// Settings of suggestions: a picture's, and how many there may be.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct SuggestSettings {
+    /// The picture's.
+    #[serde(flatten)]
+    job: Settings,
+    /// Most instructions.
+    most: u64,
+}
+
 /// Draws, looks, writes and compares.
 pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut plain = arguments.job.job()?;
@@ -58,11 +71,13 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     }
     let path = |end: &str| arguments.output.with_file_name(format!("{file}{end}"));
     files::check_target(&path(".isa"))?;
+    let settings = SuggestSettings { job: Settings::of(&plain), most: arguments.most };
+    let json = |result: SuggestionResult| result::json(&WithSettings::new(result, settings));
     let drawing = render::draw(&plain, Comparison::None, terminal)?;
     let suggestions = suggest(&plain, &drawing, &file, arguments.most as usize);
     if suggestions.found.is_empty() {
         terminal.print(&match arguments.json {
-            true => result::json(&SuggestionResult::new(&plain, &suggestions, Vec::new(), None)),
+            true => json(SuggestionResult::new(&plain, &suggestions, Vec::new(), None)),
             false => "no sequence of instructions would save anything\n".to_owned(),
         })?;
         return Ok(Exit::Done);
@@ -85,7 +100,7 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     let exit = if comparison.is_identical { Exit::Done } else { Exit::Tolerance };
     let names: Vec<String> = written.iter().map(|(path, _)| path.display().to_string()).collect();
     terminal.print(&match arguments.json {
-        true => result::json(&SuggestionResult::new(&plain, &suggestions, names, Some(comparison))),
+        true => json(SuggestionResult::new(&plain, &suggestions, names, Some(comparison))),
         false => format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(), names.join(", ")),
     })?;
     Ok(exit)

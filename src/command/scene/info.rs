@@ -8,9 +8,11 @@ use scenes::image::MemoryOptions;
 use scenes::info::SceneInfo;
 use scenes::layout::Layout;
 
-use crate::arguments::{TreeArguments, overrides};
+use crate::arguments::{SettingsArguments, TreeArguments, overrides};
+use crate::command::invocation::{CommandSettings, scene_hashes};
 use crate::failure::{Exit, Failure};
 use crate::numeral::{count, grouped};
+use crate::result::WithSettings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{input, result};
@@ -44,6 +46,8 @@ pub struct InfoArguments {
     /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
     #[arg(long = "format", value_name = "QUANTITY=BITS", value_parser = overrides::check)]
     formats: Vec<String>,
+    #[command(flatten)]
+    settings: SettingsArguments,
     /// Prints the facts as JSON.
     #[arg(long)]
     json: bool,
@@ -55,7 +59,11 @@ fn layout() -> impl TypedValueParser<Value = Layout> {
 }
 
 /// Reads the scene and prints its facts.
-pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &InfoArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
     terminal.show(&loaded.warnings);
     let options = MemoryOptions {
@@ -66,7 +74,11 @@ pub(super) fn execute(arguments: &InfoArguments, terminal: &mut Terminal) -> Res
         formats: overrides::collect(&arguments.formats),
     };
     let facts = SceneInfo::new(&loaded.scene, &options)?;
-    terminal.print(&if arguments.json { result::json(&facts) } else { text(&facts) })?;
+    let hashes = scene_hashes(std::slice::from_ref(&arguments.scene), std::slice::from_ref(&loaded.scene));
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&facts, given.clone().with_scenes(&hashes))),
+        false => text(&facts),
+    })?;
     Ok(Exit::Done)
 }
 

@@ -4,6 +4,7 @@ mod convert;
 mod generate;
 mod info;
 
+use super::invocation::CommandSettings;
 use clap::{Args, Subcommand};
 
 use scenes::model::Scene;
@@ -34,10 +35,14 @@ enum SceneCommand {
 }
 
 /// Executes one of the commands.
-pub(super) fn execute(arguments: &SceneArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &SceneArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     match &arguments.command {
         SceneCommand::Generate(arguments) => generate::execute(arguments, terminal),
-        SceneCommand::Info(arguments) => info::execute(arguments, terminal),
+        SceneCommand::Info(arguments) => info::execute(arguments, given, terminal),
         SceneCommand::Convert(arguments) => convert::execute(arguments, terminal),
     }
 }

@@ -1,0 +1,25 @@
+//! A result with what it came from: the version of this program and all settings.
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::settings::VERSION;
+
+/// A result with the version and the settings that give it again.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct WithSettings<R, S> {
+    /// The result.
+    #[serde(flatten)]
+    pub result: R,
+    /// Version of this program.
+    pub version: &'static str,
+    /// Settings that give the result again: `--settings` reads them.
+    pub settings: S,
+}
+
+impl<R, S> WithSettings<R, S> {
+    /// A result of this version.
+    pub fn new(result: R, settings: S) -> WithSettings<R, S> {
+        WithSettings { result, version: VERSION, settings }
+    }
+}

@@ -1,5 +1,5 @@
 //! Cost of an extension instruction on the host, as a body, as a meaning in Rust, and written out as instructions of the table:
-//! `cargo bench --bench extension`. All three do the same in a loop, on the fast engine and on the interpreter.
+//! `cargo bench --bench extension`. All three do the same in a loop, in native code and on the interpreter.
 
 use std::hint::black_box;
 

@@ -1,7 +1,7 @@
 //! One loop of ray-triangle tests, 4096 triangles a ray, by the engines and by native code: `cargo bench --bench intersection`. Numbers are
 //! Q16.16 and each result is rounded, in the textbook form that leaves a test early (branchy), with one combined rejection (lean), and with
 //! the ray-triangle instruction, whose native twin is exact. All give the same checksum; they take turns, and medians are printed. Words
-//! behind `--` choose forms and engines: `rtri fast`.
+//! behind `--` choose forms and engines: `rtri lancer`.
 
 use std::time::Instant;
 
@@ -276,7 +276,7 @@ fn main() {
         };
         let mut contenders: Vec<Contender> = vec![
             Contender { name: "native".into(), run: Box::new(natively), times: Vec::new() },
-            Contender { name: "fast".into(), run: Box::new(engine(EngineKind::Fast)), times: Vec::new() },
+            Contender { name: "lancer".into(), run: Box::new(engine(EngineKind::Native)), times: Vec::new() },
             Contender { name: "checked".into(), run: Box::new(engine(EngineKind::Checked)), times: Vec::new() },
         ];
         let names: Vec<String> = contenders.iter().map(|contender| contender.name.clone()).collect();

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use emu::code::Code;
 use emu::engine::Choice;
 use emu::machine::{self, RunOutcome};
-use emu::profile::Profile;
+use emu::profile::{Profile, ProfileLevel};
 use kernels::build::{Build, Crop};
 use kernels::twin::samples::Samples;
 use messages::{Diagnostic, Report};
@@ -131,10 +131,14 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let crop = load.build.crop;
     let built = Instant::now();
     // Run the machine, with the reference beside it on a thread of its own.
-    let has_profile = job.detail == Detail::Functions;
+    let profile = match job.detail {
+        Detail::Totals => ProfileLevel::None,
+        Detail::Functions => ProfileLevel::Totals,
+        Detail::Extremes => ProfileLevel::Extremes,
+    };
     let (has_losses, engine) = (job.flags, job.engine);
     let options =
-        machine::RunOptions { has_profile, has_items: true, has_losses, engine, ..machine::RunOptions::default() };
+        machine::RunOptions { profile, has_items: true, has_losses, engine, ..machine::RunOptions::default() };
     let setup = load.setup(&job.machine, options);
     let engine = setup.engine();
     let samples = Samples::new(&job.scene, &image, job.kernels.profile, job.machine.arithmetic.modes());
@@ -146,7 +150,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     let (frame, run) = frame;
     let mut frame = frame?;
     // Totals of functions take time while running; without them only exclusive counts are known.
-    if !has_profile {
+    if profile == ProfileLevel::None {
         let code = |program| Code::new(program, &load.isa, job.machine.timing());
         frame.profile = Some(Profile::exclusive(&code(&load.build.cores), &frame.tally));
         frame.main_profile = Some(Profile::exclusive(&code(&load.build.main), &frame.main_tally));

@@ -19,7 +19,9 @@ use crate::settings::FileSettings;
 /// Results of a picture beside its colours, counts and clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detail {
-    /// Totals of functions and regions, which take time.
+    /// Totals of functions and regions, and least and most of one call, which take time.
+    Extremes,
+    /// Totals of functions and regions.
     Functions,
     /// Nothing more.
     Totals,

@@ -4,7 +4,7 @@ use crate::code::octets::Memory;
 use crate::engine::Task;
 use crate::machine::schedule;
 use crate::machine::{Config, RunFailure, RunOutcome, Setup, check, on_arithmetic};
-use crate::profile::RunObserver;
+use crate::profile::Observer;
 use crate::replay;
 use crate::semantics::Watch;
 
@@ -86,7 +86,7 @@ struct StepTask<'a> {
 impl Task for StepTask<'_> {
     type Result = Result<RunOutcome, RunFailure>;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         schedule::run::<T, O>(self.setup, self.memory, arithmetic, self.progress)
     }
 }
@@ -100,7 +100,7 @@ struct RunTask<'a> {
 impl Task for RunTask<'_> {
     type Result = Vec<Result<RunOutcome, RunFailure>>;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         replay::run::<T, O>(self.setups, self.memory, arithmetic, self.progress)
     }
 }

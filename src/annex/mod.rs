@@ -10,7 +10,7 @@ pub mod text;
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
-use emu::profile::{Profile, RegionProfile};
+use emu::profile::{Profile, ProfileLevel, RegionProfile};
 use isa::{Class, Counts, Isa, Program};
 use kernels::annex::{Row, rows};
 use messages::{Diagnostic, Report};
@@ -82,7 +82,8 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
         // A row without a search is met by its first run.
         tried.push(Try { number, calls });
         if row.search.as_ref().is_none_or(|search| search.calls == calls) {
-            let RegionProfile { calls, least, most, .. } = *find(&row.region)?;
+            let RegionProfile { calls, extremes, .. } = *find(&row.region)?;
+            let (least, most) = extremes.map_or((Counts::ZERO, Counts::ZERO), |found| (found.least, found.most));
             return Ok(Measurement { row, calls, least, most, program, tried });
         }
     }
@@ -93,7 +94,7 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
 /// Runs a driver.
 fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure> {
     let config = Config::default();
-    let one_core = OneCore { has_profile: true, ..OneCore::new(&config, isa, program) };
+    let one_core = OneCore { profile: ProfileLevel::Extremes, ..OneCore::new(&config, isa, program) };
     let run = one_core::run(&one_core, Memory::new(memory))?;
     match run.trap {
         Some(trap) => Err(emu::machine::RunFailure::from(trap).into()),

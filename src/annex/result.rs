@@ -204,12 +204,13 @@ impl RowResult {
         let on_scene = |scene: &OnScene| {
             let region = scene.regions.get(number)?.as_ref()?;
             let mean = |class| region.inclusive[class] as f64 / region.calls as f64;
+            let extremes = region.extremes?;
             Some(SceneRow {
                 scene: scene.scene.clone(),
                 calls: region.calls,
                 mean: by_name(measurement, mean),
-                least: region.least_elementary,
-                most: region.most_elementary,
+                least: extremes.least_elementary,
+                most: extremes.most_elementary,
             })
         };
         let search = row.search.as_ref().map(|search| SearchResult {

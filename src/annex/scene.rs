@@ -5,7 +5,7 @@ use kernels::KernelSet;
 use kernels::annex::rows;
 
 use crate::drawing::Drawing;
-use crate::job::{Job, result_name};
+use crate::job::{Detail, Job, result_name};
 use scenes::model::Scene;
 
 /// The rows' regions on a scene, and what a pixel took.
@@ -32,6 +32,7 @@ pub fn job(scene: Scene, size: (u32, u32)) -> Job {
     let mut job = Job::new(scene);
     job.view.size = size;
     job.kernels.profile = KernelSet::Report;
+    job.detail = Detail::Extremes;
     job
 }
 

@@ -99,15 +99,15 @@ impl MachineKeyArguments {
 /// The engine is chosen.
 const AUTO: &str = crate::settings::named::AUTO;
 
-/// Name of an engine that is no more; whoever asks for it is told which one to take.
-const LOCKSTEP: &str = "lockstep";
+/// Names of engines that are no more: whoever asks for the first gets the fastest one, whoever asks for the second is told to.
+const OTHERS: [&str; 2] = ["fast", "lockstep"];
 
 /// Names of the engines.
 pub fn engine() -> impl TypedValueParser<Value = EngineKind> {
     let names = [AUTO].into_iter().chain(EngineKind::ALL.map(EngineKind::name)).map(PossibleValue::new);
-    let names = PossibleValuesParser::new(names.chain([PossibleValue::new(LOCKSTEP).hide(true)]));
-    names.try_map(|name| match name == LOCKSTEP {
-        true => Err("lock-step was removed, because it was slower than `fast`; use `--engine fast`"),
+    let names = PossibleValuesParser::new(names.chain(OTHERS.map(|name| PossibleValue::new(name).hide(true))));
+    names.try_map(|name| match name == OTHERS[1] {
+        true => Err("lock-step was removed, because it was slower; use `--engine native`"),
         false => Ok(EngineKind::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default()),
     })
 }

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use emu::code::Code;
 use emu::engine::EngineKind;
 use emu::machine::{RunOptions, Setup};
+use emu::profile::ProfileLevel;
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::SceneFeatures;
@@ -36,10 +37,6 @@ pub enum Runner {
     NativeClocks,
     /// Native code with clocks and the totals of functions: all that `render` asks for.
     NativeAll,
-    /// Work items one after the other, counted by runs.
-    Fast,
-    /// Counted, with the clocks of the machine.
-    FastClocks,
     /// The interpreter, counted.
     Checked,
     /// The profile's functions in Rust, on the same tree and the same rays.
@@ -50,16 +47,8 @@ pub enum Runner {
 
 impl Runner {
     /// All, in the order of results.
-    pub const ALL: [Runner; 8] = [
-        Runner::Native,
-        Runner::NativeClocks,
-        Runner::NativeAll,
-        Runner::Fast,
-        Runner::FastClocks,
-        Runner::Checked,
-        Runner::Twin,
-        Runner::Reference,
-    ];
+    pub const ALL: [Runner; 6] =
+        [Runner::Native, Runner::NativeClocks, Runner::NativeAll, Runner::Checked, Runner::Twin, Runner::Reference];
 
     /// Name in tables.
     pub const fn name(self) -> &'static str {
@@ -67,8 +56,6 @@ impl Runner {
             Runner::Native => "native",
             Runner::NativeClocks => "native, clocks",
             Runner::NativeAll => "native, all",
-            Runner::Fast => "fast",
-            Runner::FastClocks => "fast, clocks",
             Runner::Checked => "checked",
             Runner::Twin => "native twin",
             Runner::Reference => "native f64",
@@ -83,7 +70,7 @@ pub struct BenchResult {
     pub scene: String,
     /// The kernel set.
     pub profile: &'static str,
-    /// Runner that computed it: `native`, `native-clocks`, `native-all`, `fast`, `fast-clocks`, `checked`, `twin` or `reference`.
+    /// Runner that computed it: `native`, `native-clocks`, `native-all`, `checked`, `twin` or `reference`.
     #[schemars(with = "String")]
     pub runner: Runner,
     /// Bits of a word and fraction bits of each quantity.
@@ -117,7 +104,7 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
         let count = emu::count(setup, &load.memory)?;
         count.map_err(|reason| Diagnostic::error(format!("the frame cannot be counted: {reason}")).into())
     };
-    let counted = count(&setup(EngineKind::Fast))?;
+    let counted = count(&setup(EngineKind::Native))?;
     let code = Code::new(&load.build.cores, &load.isa, job.machine.timing());
     let instructions = counted.tally.instructions();
     let pixels = u64::from(crop.width) * u64::from(crop.height);
@@ -137,12 +124,14 @@ pub fn measure(job: &Job, runs: u32, mut after_run: impl FnMut()) -> Result<Vec<
                 Runner::Native => timed(|| count(&setup(EngineKind::Native)).map(drop))?,
                 Runner::NativeClocks => clocked(&setup(EngineKind::Native))?,
                 Runner::NativeAll => {
-                    let options = RunOptions { engine: EngineKind::Native, has_profile: true, ..RunOptions::default() };
+                    let options = RunOptions {
+                        engine: EngineKind::Native,
+                        profile: ProfileLevel::Totals,
+                        ..RunOptions::default()
+                    };
                     clocked(&load.setup(&job.machine, options))?
                 }
-                Runner::Fast => timed(|| count(&setup(EngineKind::Fast)).map(drop))?,
                 Runner::Checked => timed(|| count(&setup(EngineKind::Checked)).map(drop))?,
-                Runner::FastClocks => clocked(&setup(EngineKind::Fast))?,
                 Runner::Twin => timed(|| twin(&image, &features, &crop, job, modes))?,
                 Runner::Reference => timed(|| {
                     (0..crop.height).into_par_iter().for_each(|row| {

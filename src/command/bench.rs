@@ -31,8 +31,8 @@ Examples:
 
 /// Measures how fast the engines compute pictures, beside native code.
 ///
-/// All take turns, and ratios are those of medians. `native`, `fast` and `checked` compute and count the cores' work,
-/// `native, clocks` and `fast, clocks` put it on the machine's clocks as well, `native, all` measures functions too, as `render` does. The native twin is the profile's functions in Rust on the same tree and the same
+/// All take turns, and ratios are those of medians. `native` and `checked` compute and count the cores' work, `native, clocks` puts it
+/// on the machine's clocks as well, `native, all` measures functions too, as `render` does. The native twin is the profile's functions in Rust on the same tree and the same
 /// rays, native f64 the reference picture in double precision.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -80,7 +80,7 @@ pub(super) struct Benches {
     runs: u32,
     /// Host threads.
     threads: u32,
-    /// Vector instructions of the host that the fast engine uses: baseline or avx2.
+    /// Vector instructions of the host that native code uses: baseline or avx2.
     features: &'static str,
     /// Measurements, scene by scene.
     measured: Vec<BenchResult>,

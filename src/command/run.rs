@@ -7,6 +7,7 @@ use emu::code::Code;
 use emu::engine::{EngineKind, Wish};
 use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
+use emu::profile::ProfileLevel;
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
 
@@ -96,7 +97,7 @@ pub(super) fn execute(
     let one_core = OneCore {
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
-        has_profile: true,
+        profile: ProfileLevel::Totals,
         has_losses: arguments.flags,
         ..OneCore::new(config, &isa, &program)
     };

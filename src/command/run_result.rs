@@ -32,7 +32,7 @@ pub struct RunResult {
     pub program: String,
     /// Name of the machine.
     pub machine: String,
-    /// Engine that was chosen: native (which leaves what runs briefly to fast), fast or checked.
+    /// Engine that was chosen: native (which leaves what runs briefly to the interpreter) or checked.
     pub engine: &'static str,
     /// Reason for which a faster engine that was wanted was not chosen; `None` where it did.
     pub engine_because: Option<&'static str>,

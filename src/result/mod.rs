@@ -122,7 +122,7 @@ pub struct Render {
     pub method: &'static str,
     /// Reason for which the frame was not replayed; `None` when it was.
     pub stepped_because: Option<&'static str>,
-    /// Engine that was chosen for the cores' program: native (which leaves what runs briefly to fast), fast or checked. Nothing else depends on it.
+    /// Engine that was chosen for the cores' program: native (which leaves what runs briefly to the interpreter) or checked. Nothing else depends on it.
     pub engine: &'static str,
     /// Reason for which a faster engine that was wanted was not chosen; `None` where it did.
     pub engine_because: Option<&'static str>,

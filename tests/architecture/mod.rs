@@ -149,7 +149,7 @@ fn files_speak_of_the_project_alone() {
 }
 
 #[test]
-fn no_source_is_unsafe_but_the_fast_engines() {
+fn no_source_is_unsafe_but_the_engines() {
     let word = concat!("un", "safe");
     let is_there = |line: &str| {
         let code = line.split("//").next().unwrap_or_default();
@@ -259,7 +259,7 @@ fn wings_of_the_emulator_use_those_before_them() {
 
 #[test]
 fn imports_are_found_wherever_they_stand() {
-    let text = "use crate::code::Slot;\nuse crate::{engine::{Plan, fast}, run};\nlet a = crate::machine::Bus; // crate::comment\n\
+    let text = "use crate::code::Slot;\nuse crate::{engine::{Plan, native}, run};\nlet a = crate::machine::Bus; // crate::comment\n\
                 use super::super::replay::Feed; $crate::semantics";
     assert_eq!(roots(&without_comments(text), 2), ["code", "engine", "run", "machine", "replay"]);
     assert_eq!(roots("use super::run::Host;", 3), [""; 0]);

@@ -266,7 +266,7 @@ fn random_settings(lot: &mut SplitMix64) -> Settings {
     config.main.traffic = lot.below(2) == 0;
     config.clocks.0[isa::Class::Div] =
         if lot.below(4) == 0 { "linear 1/4 + 3".parse().unwrap() } else { lot.below(20).into() };
-    settings.engine = one(lot, &[EngineKind::default(), EngineKind::Fast, EngineKind::Checked]);
+    settings.engine = one(lot, &[EngineKind::default(), EngineKind::Checked]);
     settings.results.error = lot.below(3) != 0;
     settings.results.flags = lot.below(3) == 0;
     settings

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use asm::extension::load;
 use emu::engine::EngineKind;
 use emu::machine::{RunOptions, RunOutcome};
+use emu::profile::ProfileLevel;
 use kernels::{Function, KernelSet};
 use lancer::job::Job;
 use lancer::load::Load;
@@ -81,8 +82,13 @@ fn all_ways_to_run_an_example_agree() {
         }
         let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{}: {failure:?}", folder.display()));
         let run = |engine, steps: bool| -> RunOutcome {
-            let options =
-                RunOptions { engine, is_eager: true, has_profile: true, has_items: true, ..RunOptions::default() };
+            let options = RunOptions {
+                engine,
+                is_eager: true,
+                profile: ProfileLevel::Totals,
+                has_items: true,
+                ..RunOptions::default()
+            };
             let setup = load.setup(&job.machine, options);
             let run = if steps { emu::step } else { emu::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
@@ -93,7 +99,7 @@ fn all_ways_to_run_an_example_agree() {
             "{}",
             folder.display()
         );
-        let frame = run(EngineKind::Fast, false);
+        let frame = run(EngineKind::Native, false);
         assert_eq!(frame.method.name(), "replayed");
         let stepped = run(EngineKind::Checked, true);
         for engine in EngineKind::ALL {

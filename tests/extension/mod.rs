@@ -16,6 +16,7 @@ use emu::engine::{HostSimd, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::octets::Memory;
+use emu::profile::ProfileLevel;
 use emu::registers::Registers;
 use isa::{Isa, Program};
 use messages::Source;
@@ -34,23 +35,24 @@ pub fn program(text: &str, isa: &Isa) -> Program {
     assembled.unwrap_or_else(|report| panic!("{report}\n{text}")).program
 }
 
-/// A run on one core of the default machine, the same on the fast engine and on the interpreter.
+/// A run on one core of the default machine, the same in native code and on the interpreter.
 pub fn run_with(program: &Program, isa: &Isa, registers: Registers, step_limit: u64) -> OneCoreRun {
     let config = Config::default();
-    let run = |has_profile, wish| {
+    let run = |profile, wish| {
         let one_core =
-            OneCore { registers: registers.clone(), step_limit, has_profile, ..OneCore::new(&config, isa, program) };
+            OneCore { registers: registers.clone(), step_limit, profile, ..OneCore::new(&config, isa, program) };
         one_core::run_with(&one_core, Memory::new((0..=255).collect()), wish).expect("the machine is the default one")
     };
-    let checked = run(true, Wish::CHECKED);
-    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        for has_profile in [true, false] {
-            let fast = run(has_profile, Wish::fast(features));
+    let checked = run(ProfileLevel::Extremes, Wish::CHECKED);
+    for simd in HostSimd::ALL.into_iter().filter(|simd| simd.is_present()) {
+        for level in [ProfileLevel::Extremes, ProfileLevel::None] {
+            let native = run(level, Wish { simd, ..Wish::native() });
             let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone());
-            assert!(parts(&fast) == parts(&checked), "{}\n{fast:#?}\n{checked:#?}", features.name());
-            assert_eq!(fast.trap, checked.trap, "{}", features.name());
-            assert_eq!(fast.profile, checked.profile.clone().filter(|_| has_profile), "{}", features.name());
-            assert!(fast.memory == checked.memory, "{}", features.name());
+            assert!(parts(&native) == parts(&checked), "{}\n{native:#?}\n{checked:#?}", simd.name());
+            assert_eq!(native.trap, checked.trap, "{}", simd.name());
+            let wanted = checked.profile.clone().filter(|_| level != ProfileLevel::None);
+            assert_eq!(native.profile, wanted, "{}", simd.name());
+            assert!(native.memory == checked.memory, "{}", simd.name());
         }
     }
     checked

@@ -1,6 +1,5 @@
 //! The one rule of who may run what: engines in order, best first, each of which says itself what it does not do.
 
-use super::fast::Fast;
 use super::host::HostSimd;
 use super::native::Native;
 use super::state::{CoreId, Pause, State};
@@ -9,7 +8,7 @@ use super::{AddOctets, Engine, Refusal, Stopped, TimedLink, Timeless, interprete
 use crate::code::Code;
 use crate::code::tally::Tally;
 use crate::code::trap::Fault;
-use crate::profile::RunObserver;
+use crate::profile::{Observer, ProfileLevel, Profiler};
 use crate::semantics::{Computes, Link, Watch};
 
 /// A program to execute, and what has to be known of it.
@@ -25,8 +24,8 @@ pub struct Demand<'a> {
     pub buffer_octets: u32,
     /// Dependence on the number of cores is to be found out.
     pub follows_cores: bool,
-    /// Functions and regions are measured.
-    pub has_profile: bool,
+    /// Detail in which functions and regions are measured.
+    pub profile: ProfileLevel,
     /// Time at which the machine answers.
     pub answers: Answers,
 }
@@ -35,7 +34,8 @@ impl<'a> Demand<'a> {
     /// A program on a core that may have to wait for each answer, of which nobody wants to know more than counts.
     pub fn new(code: &'a Code<'a>, wish: Wish, computes: Computes, buffer_octets: u32) -> Demand<'a> {
         let answers = Answers::WhenReady;
-        Demand { code, wish, computes, buffer_octets, follows_cores: false, has_profile: false, answers }
+        let profile = ProfileLevel::None;
+        Demand { code, wish, computes, buffer_octets, follows_cores: false, profile, answers }
     }
 }
 
@@ -65,11 +65,6 @@ pub struct Wish {
 impl Wish {
     /// The interpreter.
     pub const CHECKED: Wish = Wish { kind: EngineKind::Checked, simd: HostSimd::Baseline, is_eager: false };
-
-    /// The fast engine with these vector instructions at most.
-    pub const fn fast(simd: HostSimd) -> Wish {
-        Wish { kind: EngineKind::Fast, simd, is_eager: false }
-    }
 
     /// Native code, also for what runs briefly.
     pub fn native() -> Wish {
@@ -131,18 +126,17 @@ macro_rules! engines {
                 }
             }
 
-            #[inline(always)]
-            fn run<T: Watch, L: TimedLink, O: RunObserver>(
+            fn run<T: Watch>(
                 &mut self,
                 core: CoreId,
                 state: &mut State,
                 arithmetic: &T,
-                link: &mut L,
+                link: &mut dyn TimedLink,
                 taint: &mut Taint,
-                observer: &mut O,
+                profiler: Option<&mut Profiler>,
             ) -> Stopped {
                 match self {
-                    $(Ready::$kind(engine) => engine.run(core, state, arithmetic, link, taint, observer),)*
+                    $(Ready::$kind(engine) => engine.run(core, state, arithmetic, link, taint, profiler),)*
                 }
             }
 
@@ -164,9 +158,9 @@ macro_rules! engines {
                 }
             }
 
-            fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+            fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets, profiler: Option<&mut Profiler>) {
                 match self {
-                    $(Ready::$kind(engine) => engine.fold(tally, add_octets),)*
+                    $(Ready::$kind(engine) => engine.fold(tally, add_octets, profiler),)*
                 }
             }
         }
@@ -176,8 +170,6 @@ macro_rules! engines {
 engines! {
     /// Code generated for the host: [`super::native`].
     Native(Native) "native";
-    /// One work item after the other, a run of instructions at a time: [`super::fast`].
-    Fast(Fast) "fast";
 }
 
 impl Default for EngineKind {
@@ -214,7 +206,7 @@ impl EngineRunner<'_> {
     }
 
     /// As [`interpreter::run`], but passes of words that were executed quickly come into the tally by [`EngineRunner::fold`].
-    pub fn run<T: Watch, O: RunObserver>(
+    pub fn run<T: Watch, O: Observer>(
         &mut self,
         core: CoreId,
         state: &mut State,
@@ -224,9 +216,8 @@ impl EngineRunner<'_> {
         observer: &mut O,
     ) -> Pause {
         loop {
-            // Links of stepped machines are called through a table: they wait for the machine after each request anyway.
-            let timed: &mut &mut dyn TimedLink = &mut (&mut Timeless(&mut *link) as _);
-            match self.run_ahead(core, state, arithmetic, timed, &mut Taint::default(), observer) {
+            let timed = &mut Timeless(&mut *link);
+            match self.run_ahead(core, state, arithmetic, timed, &mut Taint::default(), observer.profiler()) {
                 Some(Stopped::Halt) => return Pause::Halt,
                 Some(Stopped::Wait) => return Pause::Wait,
                 Some(Stopped::Fault(fault)) => return Pause::Fault(fault),
@@ -234,9 +225,8 @@ impl EngineRunner<'_> {
             }
             // The interpreter goes on as long as the engine likes.
             let before = state.steps + state.inner_steps;
-            let patience = self.ready.as_ref().map_or(u64::MAX, |ready| ready.patience(core, state));
             // Patience is a step limit of its own. The engine is asked again only if that one was met, not the machine's.
-            let limit = before.saturating_add(patience);
+            let limit = before.saturating_add(self.patience(core, state));
             let patient = CoreId { step_limit: core.step_limit.min(limit), ..core };
             let pause = interpreter::run(self.code, patient, state, arithmetic, link, tally, observer);
             self.interpreted(state.steps + state.inner_steps - before);
@@ -253,25 +243,29 @@ impl EngineRunner<'_> {
         }
     }
 
+    /// Steps that the interpreter is to take before the engine is asked again; no end of them where there is none.
+    pub(crate) fn patience(&self, core: CoreId, state: &State) -> u64 {
+        self.ready.as_ref().map_or(u64::MAX, |ready| ready.patience(core, state))
+    }
+
     /// As far as an engine comes that is faster than the interpreter, as [`Engine::run`]; `None` where there is none.
-    #[inline]
-    pub(crate) fn run_ahead<T: Watch, L: TimedLink, O: RunObserver>(
+    pub(crate) fn run_ahead<T: Watch>(
         &mut self,
         core: CoreId,
         state: &mut State,
         arithmetic: &T,
-        link: &mut L,
+        link: &mut dyn TimedLink,
         taint: &mut Taint,
-        observer: &mut O,
+        profiler: Option<&mut Profiler>,
     ) -> Option<Stopped> {
-        Some(self.ready.as_mut()?.run(core, state, arithmetic, link, taint, observer))
+        Some(self.ready.as_mut()?.run(core, state, arithmetic, link, taint, profiler))
     }
 
-    /// Adds the passes of words that were executed quickly to a tally of the program, and the octets of reads that the link was not told of, and
-    /// forgets them.
-    pub fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+    /// Adds the passes of words that were executed quickly to a tally of the program and to its profile, and the octets of reads that the link
+    /// was not told of, and forgets them.
+    pub fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets, profiler: Option<&mut Profiler>) {
         if let Some(ready) = &mut self.ready {
-            ready.fold(tally, add_octets);
+            ready.fold(tally, add_octets, profiler);
         }
     }
 }

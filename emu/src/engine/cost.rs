@@ -2,7 +2,7 @@
 
 use crate::code::OutcomeCost;
 
-/// The numbers of a [`Cost`]: where each begins, and its bits. The sign of all is the [`FLAG`].
+/// The numbers of a [`Cost`]: where each begins, and its bits.
 const STEPS: (u32, u32) = (0, 15);
 const INNER: (u32, u32) = (15, 15);
 pub(super) const CLOCKS: (u32, u32) = (30, 17);
@@ -33,11 +33,6 @@ impl Cost {
     /// An instruction or a step of a body, whatever else it takes.
     pub(super) fn step(is_inner: bool) -> Cost {
         Cost(1 << if is_inner { INNER.0 } else { STEPS.0 })
-    }
-
-    /// So many instructions and steps of bodies, which must fit.
-    pub(super) fn of_steps(steps: u64, inner: u64) -> Cost {
-        Cost(steps << STEPS.0 | inner << INNER.0)
     }
 
     pub(super) fn plus(self, more: Cost) -> Cost {
@@ -89,6 +84,3 @@ impl Cost {
         self.part(ELEMENTARY)
     }
 }
-
-/// The bit that no cost has: a run has to be looked at before it begins.
-pub const FLAG: u64 = 1 << 63;

@@ -2,7 +2,7 @@
 
 use isa::number::Nearest32;
 
-use crate::profile::{Profiler, RunObserver, Unobserved};
+use crate::profile::{Observer, ProfileLevel, Profiler, Unobserved};
 use crate::semantics::{Watch, Watching};
 
 /// Work that is the same on every arithmetic and for every observer, but compiled for each of them.
@@ -11,12 +11,12 @@ pub trait Task {
     type Result;
 
     /// Does the work.
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result;
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result;
 }
 
 /// Does work on the default arithmetic, or on the one given, with a profile or without.
-pub fn dispatch<W: Task>(watching: Option<Watching>, has_profile: bool, task: W) -> W::Result {
-    match (watching, has_profile) {
+pub fn dispatch<W: Task>(watching: Option<Watching>, profile: ProfileLevel, task: W) -> W::Result {
+    match (watching, profile != ProfileLevel::None) {
         (None, true) => task.run::<_, Profiler>(&Nearest32),
         (None, false) => task.run::<_, Unobserved>(&Nearest32),
         (Some(watching), true) => task.run::<_, Profiler>(&watching),

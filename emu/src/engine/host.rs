@@ -40,17 +40,8 @@ impl HostSimd {
         self == HostSimd::Baseline
     }
 
-    /// The best of this host that is not above it.
-    pub fn present(self) -> Present {
-        Present(self.min(HostSimd::best()))
-    }
-
     /// The best of this host.
     pub fn best() -> HostSimd {
         HostSimd::ALL.into_iter().rfind(|features| features.is_present()).unwrap_or(HostSimd::Baseline)
     }
 }
-
-/// Vector instructions that this host has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Present(pub(super) HostSimd);

@@ -4,7 +4,6 @@
 mod choose;
 mod cost;
 mod dispatch;
-pub mod fast;
 mod host;
 pub mod interpreter;
 #[cfg(feature = "native")]
@@ -19,7 +18,7 @@ mod taint;
 
 pub use choose::{Answers, Choice, Demand, EngineKind, EngineRunner, Wish, choose};
 pub use dispatch::{Task, dispatch};
-pub use host::{HostSimd, Present};
+pub use host::HostSimd;
 pub use plan::Plan;
 pub use quick::{NotedRead, Quick};
 pub use state::{CoreId, Pause, State};
@@ -28,7 +27,7 @@ pub(crate) use taint::{Taint, TaintObserver};
 use crate::code::octets::Buffer;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
-use crate::profile::RunObserver;
+use crate::profile::Profiler;
 use crate::semantics::{Link, Message, Watch, methods};
 
 /// Reason for which an engine does not run a program, as the end of a sentence.
@@ -50,16 +49,16 @@ pub trait Engine<'a>: Sized {
     ///
     /// Afterwards `state` is that before the instruction at its program counter, with all registers, the buffer, steps, clocks and elementary
     /// operations up to there, as if the interpreter had come to it; only `halt` has been executed. `taint` is what the item knows of the
-    /// cores, brought up to date where the demand says that it is followed. The observer is told as [`RunObserver`] says, the link before each
-    /// request of when that is made.
-    fn run<T: Watch, L: TimedLink, O: RunObserver>(
+    /// cores, brought up to date where the demand says that it is followed. The calls that are open are those of the profiler, which there is
+    /// where the demand asks for a profile; the link is told before each request of when that is made.
+    fn run<T: Watch>(
         &mut self,
         core: CoreId,
         state: &mut State,
         arithmetic: &T,
-        link: &mut L,
+        link: &mut dyn TimedLink,
         taint: &mut Taint,
-        observer: &mut O,
+        profiler: Option<&mut Profiler>,
     ) -> Stopped;
 
     /// Steps that the interpreter is to take before the engine is asked again, where it has left something to the interpreter.
@@ -75,8 +74,9 @@ pub trait Engine<'a>: Sized {
         None
     }
 
-    /// Adds the passes of all runs since the last call to a tally of the program, and octets of reads that no link was told of.
-    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets);
+    /// Adds the passes of all runs since the last call to a tally of the program and to its profiler, and octets of reads that no link was told
+    /// of.
+    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets, profiler: Option<&mut Profiler>);
 }
 
 /// The machine as a work item sees it.

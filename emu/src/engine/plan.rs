@@ -1,11 +1,9 @@
 //! A program cut into runs: where each ends, and what it takes. What the instructions do is not known here. Words, and what
 //! bodies of extensions have beside them, stand in one [`Order`]; where there are no bodies, a place in it is a word.
 
-use std::ops::Range;
-
 use isa::{Fields, InstructionDef, Kind, Op};
 
-use super::cost::{Cost, FLAG};
+use super::cost::Cost;
 use crate::code::layout::{Order, Stage};
 use crate::code::registers::Registers;
 use crate::code::{Code, OutcomeCost, Slot};
@@ -13,7 +11,6 @@ use crate::engine::taint::TaintEffect;
 
 /// A decoded word, or a step of a body, laid out for an engine that looks at one after the other.
 #[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
 pub struct Step {
     /// Place of the row in the table, [`Step::HOP`], [`Step::UNIT`], or [`Step::BAILOUT`].
     pub row: u8,
@@ -27,15 +24,10 @@ pub struct Step {
     pub exit: u32,
     /// Slot of the step; of a hop that to which it leads.
     pub slot: u32,
-    /// Of a control row: what the exit that falls through and the run behind it take, then the same of the other exit, where its target is
-    /// known; what has to be looked at has the [`FLAG`].
-    pub edges: [u64; 2],
     /// The place to which a control row branches; one behind the program where that is not known.
     pub target: u32,
     /// Number of the instruction whose meaning is in Rust.
     pub unit: u16,
-    /// Cost of the run that begins here, with the [`FLAG`] where it has to be looked at.
-    pub cost: u64,
 }
 
 impl Step {
@@ -50,18 +42,6 @@ impl Step {
 /// Number of a pass that belongs to no exit of the program: that through a hop.
 const NO_PASS: u32 = u32::MAX;
 
-/// A table by [`Step::row`]: what stands last is for all numbers behind it as well.
-pub(super) const fn padded<T: Copy, const N: usize>(rows: [T; N]) -> [T; 256] {
-    const { assert!(N <= 256 && N > Op::BUILT_IN.len()) };
-    let mut padded = [rows[N - 1]; 256];
-    let mut row = 0;
-    while row < N {
-        padded[row] = rows[row];
-        row += 1;
-    }
-    padded
-}
-
 /// A program as runs. A run begins anywhere and ends behind a control row, or at the end of the program.
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
@@ -72,7 +52,6 @@ pub struct Plan<'a> {
     before: Vec<Cost>,
     /// By exit: the pass of the program.
     passes: Vec<u32>,
-    has_inner_steps: bool,
     /// Number of words.
     pub words: u32,
     /// Places of words are their numbers.
@@ -80,12 +59,10 @@ pub struct Plan<'a> {
     /// By exit: what it adds to the cost of its run; 0 where all exits of the slot take the same.
     extra: Vec<Cost>,
     effects: Vec<TaintEffect>,
-    /// The steps, and one behind them; then, where registers may hold the number of cores, the same for an item in which one does.
+    /// The steps, and one behind them.
     steps: Vec<Step>,
     /// By place: the end of the run that begins there, behind the next control row or in front of the end of the program.
     run_ends: Vec<u32>,
-    /// Number of places up to here that matter to the taint: while no register holds the number of cores, and while one does.
-    asking: [Vec<u32>; 2],
 }
 
 impl<'a> Plan<'a> {
@@ -159,24 +136,12 @@ impl<'a> Plan<'a> {
                 return None;
             }
         }
-        // Count the places that have to be looked at for the number of cores
-        // Sums again, so that a run is asked for by two numbers: it matters where they differ.
         let effect = |stage: &Stage| match stage {
             Stage::Slot(slot) => TaintEffect::new(code, *slot),
             Stage::Hop(_) => TaintEffect::default(),
         };
         let effects: Vec<TaintEffect> = stages.iter().map(effect).collect();
-        let held = effects.iter().fold(0, |held, effect| held | effect.counts());
-        let counted = |matters: &dyn Fn(&TaintEffect) -> bool| {
-            let places = effects.iter().scan(0, |sum, effect| {
-                *sum += u32::from(matters(effect));
-                Some(*sum)
-            });
-            std::iter::once(0).chain(places).collect()
-        };
-        let asking = [counted(&TaintEffect::asks), counted(&|effect| effect.asks() || effect.touches(held))];
         // Lay out a step for each place
-        let has_inner_steps = most.iter().any(|most| most.inner_steps() != 0);
         let words = code.words();
         // Steps need the plan's own sums and ends, so they come when those are in place.
         let mut plan = Plan {
@@ -185,51 +150,17 @@ impl<'a> Plan<'a> {
             order,
             before: sums,
             passes,
-            has_inner_steps,
             words,
             extra,
             effects,
             steps: Vec::new(),
             run_ends,
-            asking,
         };
-        plan.lay_out(&firsts, held != 0);
+        plan.steps = (0..).zip(&firsts).map(|(place, &first)| plan.new_step(place, first)).collect();
         Some(plan)
     }
 
-    /// Plan for those who do not ask what depends on the number of cores.
-    pub fn regardless_of_cores(mut self) -> Plan<'a> {
-        self.asking.iter_mut().for_each(|sums| sums.fill(0));
-        // The flags of costs depend on `asking`, so the steps are laid out a second time.
-        let firsts: Vec<usize> = self.steps().iter().map(|step| step.exit as usize).collect();
-        self.lay_out(&firsts, false);
-        self
-    }
-
-    fn lay_out(&mut self, firsts: &[usize], is_twofold: bool) {
-        let ways = if is_twofold { &[false, true][..] } else { &[false] };
-        let plan = &*self;
-        let steps =
-            |&is_held: &bool| (0..).zip(firsts).map(move |(place, &first)| plan.new_step(place, first, is_held));
-        self.steps = ways.iter().flat_map(steps).collect();
-    }
-
-    /// True where there are steps that are no instructions.
-    #[inline]
-    pub fn has_inner_steps(&self) -> bool {
-        self.has_inner_steps
-    }
-
-    /// Cost of a run, with the [`FLAG`] where it has to be looked at; `is_held` where a register holds the number of cores.
-    fn flagged_cost(&self, place: u32, is_held: bool) -> u64 {
-        match place <= self.end() {
-            true if self.asks(&(place..self.run_end(place)), is_held) => FLAG | self.run_cost(place).0,
-            true => self.run_cost(place).0,
-            false => FLAG,
-        }
-    }
-
-    fn new_step(&self, place: u32, first: usize, is_held: bool) -> Step {
+    fn new_step(&self, place: u32, first: usize) -> Step {
         let code = self.code;
         let slot = self.order.slot(place);
         let mut step = Step {
@@ -239,29 +170,20 @@ impl<'a> Plan<'a> {
             fields: Fields::default(),
             exit: first as u32,
             slot,
-            edges: [FLAG; 2],
             target: self.end() + 1,
             unit: 0,
-            cost: self.flagged_cost(place, is_held),
         };
         // Behind the last place stands a step that hands over to the interpreter, which traps there.
         let Some(&stage) = self.order.stages().get(place as usize) else { return step };
         let target = target(code, &self.order, stage);
         step.target = target.unwrap_or(self.end() + 1);
         if let Stage::Hop(_) = stage {
-            step.edges[1] = self.flagged_cost(step.target, is_held);
             return Step { row: Step::HOP, exits: 1, ..step };
         }
         let Some((op, row)) = code.slots()[slot as usize].op.zip(code.slot_row(slot)) else { return step };
         step.exits = row.outcomes.len() as u8;
         let extra = &self.extra[first..first + row.outcomes.len()];
         step.is_uneven = extra.iter().any(|extra| *extra != Cost::default());
-        let extra_of = |exit: usize| extra.get(exit).map_or(0, |extra| extra.0);
-        // An edge has what the outcome adds and what the run behind it takes, so that a branch costs one addition.
-        step.edges = [
-            self.flagged_cost(place + 1, is_held) + extra_of(0),
-            self.flagged_cost(step.target, is_held) + extra_of(row.outcomes.len().saturating_sub(1)),
-        ];
         // What is written to s0 goes where nobody reads it. What is read there as well is left to the interpreter, and so is what leads out.
         step.fields = code.slots()[slot as usize].fields;
         let mut is_odd = target.is_none() && branches(row);
@@ -310,13 +232,6 @@ impl<'a> Plan<'a> {
         self.passes.len()
     }
 
-    /// True where one of some places matters to the taint; `is_held` where a register holds the number of cores.
-    #[inline(always)]
-    pub fn asks(&self, places: &Range<u32>, is_held: bool) -> bool {
-        let sums = &self.asking[usize::from(is_held)];
-        sums[places.start as usize] != sums[places.end as usize]
-    }
-
     /// Taint effect of a place.
     pub fn effect(&self, place: u32) -> TaintEffect {
         self.effects[place as usize]
@@ -325,16 +240,7 @@ impl<'a> Plan<'a> {
     /// The steps by their places, and one behind them.
     #[inline(always)]
     pub fn steps(&self) -> &[Step] {
-        &self.steps[..self.before.len()]
-    }
-
-    /// Steps for an item in which a register holds the number of cores, or in which none does.
-    #[inline(always)]
-    pub fn steps_of(&self, is_held: bool) -> &[Step] {
-        match self.steps.get(self.before.len()..) {
-            Some(steps) if is_held && !steps.is_empty() => steps,
-            _ => self.steps(),
-        }
+        &self.steps
     }
 
     /// True where a run ends behind a place.
@@ -352,12 +258,6 @@ impl<'a> Plan<'a> {
     #[inline(always)]
     pub fn run_end(&self, place: u32) -> u32 {
         self.run_ends[place as usize]
-    }
-
-    /// Cost of a run, without what depends on exits.
-    #[inline(always)]
-    pub fn run_cost(&self, place: u32) -> Cost {
-        self.cost(place, self.run_end(place))
     }
 
     /// Cost of the places from one to before another one of the same run, without what depends on exits.

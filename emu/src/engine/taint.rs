@@ -5,7 +5,7 @@ use isa::{Kind, Op};
 
 use crate::code::Code;
 use crate::code::tally::Tally;
-use crate::profile::{Observer, Profile};
+use crate::profile::{Observer, Profile, ProfileLevel, Profiler};
 use crate::semantics::Motion;
 
 /// Effect of an instruction on the taint: its scalar registers, a bit each.
@@ -121,9 +121,9 @@ pub struct TaintObserver<O> {
 impl<O: Observer> Observer for TaintObserver<O> {
     const IS_ACTIVE: bool = true;
 
-    fn new(code: &Code) -> TaintObserver<O> {
+    fn new(code: &Code, level: ProfileLevel) -> TaintObserver<O> {
         let effects = (0..code.slots().len() as u32).map(|pc| TaintEffect::new(code, pc)).collect();
-        TaintObserver { inner: O::new(code), effects, taint: Taint::default() }
+        TaintObserver { inner: O::new(code, level), effects, taint: Taint::default() }
     }
 
     fn begin(&mut self, pc: u32) {
@@ -141,6 +141,10 @@ impl<O: Observer> Observer for TaintObserver<O> {
 
     fn end(&mut self) {
         self.inner.end();
+    }
+
+    fn profiler(&mut self) -> Option<&mut Profiler> {
+        self.inner.profiler()
     }
 
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile> {

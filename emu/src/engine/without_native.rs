@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 
 use super::{AddOctets, CoreId, Demand, Engine, Refusal, State, Stopped, Taint, TimedLink};
 use crate::code::tally::Tally;
-use crate::profile::RunObserver;
+use crate::profile::Profiler;
 use crate::semantics::Watch;
 
 /// Nothing: there is no such engine in this build.
@@ -19,19 +19,19 @@ impl<'a> Engine<'a> for NoNative<'a> {
         Err("this build of lancer generates no native code")
     }
 
-    fn run<T: Watch, L: TimedLink, O: RunObserver>(
+    fn run<T: Watch>(
         &mut self,
         _: CoreId,
         _: &mut State,
         _: &T,
-        _: &mut L,
+        _: &mut dyn TimedLink,
         _: &mut Taint,
-        _: &mut O,
+        _: Option<&mut Profiler>,
     ) -> Stopped {
         match self.0 {}
     }
 
-    fn fold(&mut self, _: &mut Tally, _: AddOctets) {
+    fn fold(&mut self, _: &mut Tally, _: AddOctets, _: Option<&mut Profiler>) {
         match self.0 {}
     }
 }

@@ -59,15 +59,6 @@ impl Kinds {
         }
     }
 
-    /// Adds octets where the instruction at `pc` met the same range before; else nothing happens.
-    #[inline(always)]
-    pub fn add_known(&mut self, pc: u32, address: u32, octets: u32) -> Option<()> {
-        let (start, length, kind) = self.last[pc as usize % RECENT];
-        let total = self.totals.get_mut(kind as usize).filter(|_| address.wrapping_sub(start) < length)?;
-        total.octets += Octets(octets.into());
-        Some(())
-    }
-
     /// The range around an address whose octets are of one kind, or of none: its first address, its length, and the kind.
     pub fn range(&self, address: u32) -> (u32, u32, usize) {
         let after = self.ranges.partition_point(|(range, _)| range.start <= address);
@@ -133,21 +124,19 @@ mod tests {
         #[test]
         fn each_octet_is_of_the_range_that_it_lies_in(
             borders in prop::collection::btree_set(0u32..60, 0..8), is_high: bool,
-            accesses in prop::collection::vec((0u32..70, 0u32..64, 1u32..5, any::<bool>()), 1..80),
+            accesses in prop::collection::vec((0u32..70, 0u32..64, 1u32..5), 1..80),
         ) {
             // The addresses lie at one end of all or at the other.
             let base = if is_high { u32::MAX - 69 } else { 0 };
             let borders: Vec<u32> = borders.into_iter().map(|border| base + border).collect();
             let named: Vec<_> = (0..).zip(borders.chunks_exact(2)).map(|(at, pair)| (pair[0]..pair[1], format!("kind {}", at % 2))).collect();
             let (mut kinds, mut wanted) = (Kinds::new(&named), std::collections::BTreeMap::new());
-            for (address, pc, octets, is_quick) in accesses {
+            for (address, pc, octets) in accesses {
                 let address = base + address;
                 let found = named.iter().find(|(range, _)| range.contains(&address));
                 *wanted.entry(found.map_or("other", |(_, kind)| kind)).or_insert(0) += u64::from(octets);
-                if !is_quick || kinds.add_known(pc, address, octets).is_none() {
-                    let octets = Octets(octets.into());
-                    kinds.add(pc, Some(Request::Transfer { address, octets, access: Access::Read }));
-                }
+                let octets = Octets(octets.into());
+                kinds.add(pc, Some(Request::Transfer { address, octets, access: Access::Read }));
             }
             for KindUse { kind, octets } in kinds.totals() {
                 prop_assert_eq!(octets.0, wanted.get(kind.as_str()).copied().unwrap_or(0), "{}", kind);

@@ -34,6 +34,7 @@ use trace::Window;
 use crate::code::trap::Trap;
 use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
+use crate::profile::ProfileLevel;
 use crate::semantics::{Computes, Watch};
 
 /// Setup of a run: a machine and its programs.
@@ -66,15 +67,15 @@ impl Setup<'_> {
         let watching = self.config.arithmetic.watching(self.options.has_losses);
         let computes = watching.map_or(Computes::default(), |watching| watching.computes());
         let demand = Demand::new(&code, self.options.wish(), computes, self.config.buffer_octets);
-        choose(&Demand { follows_cores: true, has_profile: self.options.has_profile, ..demand }).choice()
+        choose(&Demand { follows_cores: true, profile: self.options.profile, ..demand }).choice()
     }
 }
 
 /// Records of a run beyond counts and times, and the engine that it wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RunOptions {
-    /// Functions and regions: inclusive counts, calls, least and most a call. Costs time.
-    pub has_profile: bool,
+    /// Detail in which functions and regions are measured.
+    pub profile: ProfileLevel,
     /// Each work item.
     pub has_items: bool,
     /// Losses in the results of each instruction: [`crate::code::tally::Losses`]. Costs time.
@@ -162,7 +163,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), RunFailure> {
 
 /// Does work on the arithmetic and for the observer that a machine needs.
 pub(crate) fn on_arithmetic<W: Task>(setup: &Setup, task: W) -> W::Result {
-    dispatch(setup.config.arithmetic.watching(setup.options.has_losses), setup.options.has_profile, task)
+    dispatch(setup.config.arithmetic.watching(setup.options.has_losses), setup.options.profile, task)
 }
 
 /// Check that the data that a program wants in its buffer fit.

@@ -16,7 +16,7 @@ use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Trap};
 use crate::code::{Code, check_bodies};
 use crate::engine::{Choice, CoreId, Demand, Pause, State, Task, Wish, choose, dispatch};
-use crate::profile::{Profile, RunObserver};
+use crate::profile::{Observer, Profile, ProfileLevel};
 use crate::semantics::Watch;
 
 /// Program that runs on one core, with its machine.
@@ -31,8 +31,8 @@ pub struct OneCore<'a> {
     pub registers: Registers,
     /// Instructions that it may take.
     pub step_limit: u64,
-    /// Calls are measured.
-    pub has_profile: bool,
+    /// Detail in which calls are measured.
+    pub profile: ProfileLevel,
     /// Losses of results are counted: [`crate::code::tally::Losses`].
     pub has_losses: bool,
 }
@@ -46,7 +46,7 @@ impl<'a> OneCore<'a> {
             program,
             registers: Registers::default(),
             step_limit: config.step_limit,
-            has_profile: false,
+            profile: ProfileLevel::None,
             has_losses: false,
         }
     }
@@ -91,7 +91,7 @@ pub fn run_with(one_core: &OneCore, memory: Memory, wish: Wish) -> Result<OneCor
     check_buffer("a core", one_core.program, one_core.config.buffer_octets)?;
     check_bodies(one_core.program, one_core.isa).map_err(Diagnostic::from)?;
     let watching = one_core.config.arithmetic.watching(one_core.has_losses);
-    Ok(dispatch(watching, one_core.has_profile, OneCoreTask { one_core, memory, wish }))
+    Ok(dispatch(watching, one_core.profile, OneCoreTask { one_core, memory, wish }))
 }
 
 struct OneCoreTask<'a> {
@@ -103,18 +103,18 @@ struct OneCoreTask<'a> {
 impl Task for OneCoreTask<'_> {
     type Result = OneCoreRun;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> OneCoreRun {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> OneCoreRun {
         run_on::<T, O>(self.one_core, self.memory, arithmetic, self.wish)
     }
 }
 
-fn run_on<T: Watch, O: RunObserver>(one_core: &OneCore, memory: Memory, arithmetic: &T, wish: Wish) -> OneCoreRun {
+fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic: &T, wish: Wish) -> OneCoreRun {
     let code = Code::new(one_core.program, one_core.isa, one_core.config.timing());
     let core = CoreId { core: 0, cores: 1, step_limit: one_core.step_limit };
     let buffer_octets = one_core.config.buffer_octets;
     let demand = Demand::new(&code, wish, arithmetic.computes(), buffer_octets);
-    let runner = choose(&Demand { has_profile: O::IS_ACTIVE, ..demand });
-    let mut worker: Executor<T, O> = Executor::new(&code, core, buffer_octets, runner, arithmetic);
+    let runner = choose(&Demand { profile: one_core.profile, ..demand });
+    let mut worker: Executor<T, O> = Executor::new(&code, core, buffer_octets, runner, arithmetic, one_core.profile);
     worker.state.registers = one_core.registers.clone();
     worker.observer.begin(worker.state.pc);
     let mut processor = Processor::new(&code, core, worker);

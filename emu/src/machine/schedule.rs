@@ -19,14 +19,14 @@ use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Demand, EngineRunner, Pause, choose};
-use crate::profile::RunObserver;
+use crate::profile::{Observer, ProfileLevel};
 use crate::semantics::Watch;
 
 /// Runs a frame by stepping, on one arithmetic and with one kind of observer.
 ///
 /// # Errors
 /// A trap.
-pub fn run<T: Watch, O: RunObserver>(
+pub fn run<T: Watch, O: Observer>(
     setup: &Setup,
     memory: Memory,
     arithmetic: &T,
@@ -38,32 +38,38 @@ pub fn run<T: Watch, O: RunObserver>(
     let runner = runner_of::<T, O>(setup, &core_code, arithmetic, setup.config.buffer_octets);
     let core = |core: CoreId| {
         let buffer_octets = setup.config.buffer_octets;
-        Executor::<T, O>::new(&core_code, core, buffer_octets, runner.clone(), arithmetic)
+        let runner = runner.clone();
+        Executor::<T, O>::new(&core_code, core, buffer_octets, runner, arithmetic, level::<O>(setup))
     };
     let main = main_worker(setup, &main_code, arithmetic);
     Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()
 }
 
+/// Level of a profile that an observer takes.
+fn level<O: Observer>(setup: &Setup) -> ProfileLevel {
+    if O::IS_ACTIVE { setup.options.profile } else { ProfileLevel::None }
+}
+
 /// Runner of a program on a machine.
-fn runner_of<'a, T: Watch, O: RunObserver>(
+fn runner_of<'a, T: Watch, O: Observer>(
     setup: &Setup,
     code: &'a Code<'a>,
     arithmetic: &T,
     buffer_octets: u32,
 ) -> EngineRunner<'a> {
     let demand = Demand::new(code, setup.options.wish(), arithmetic.computes(), buffer_octets);
-    choose(&Demand { has_profile: O::IS_ACTIVE, ..demand })
+    choose(&Demand { profile: level::<O>(setup), ..demand })
 }
 
 /// Worker of the main processor, which executes its program on any machine.
-pub(crate) fn main_worker<'a, T: Watch, O: RunObserver>(
+pub(crate) fn main_worker<'a, T: Watch, O: Observer>(
     setup: &Setup,
     code: &'a Code<'a>,
     arithmetic: &'a T,
 ) -> Executor<'a, T, O> {
     let buffer_octets = setup.config.main.buffer_octets;
     let runner = runner_of::<T, O>(setup, code, arithmetic, buffer_octets);
-    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic)
+    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic, level::<O>(setup))
 }
 
 /// All processors, what they share, and what they have done so far.

@@ -10,7 +10,7 @@ use crate::code::octets::Buffer;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::engine::{Choice, CoreId, EngineRunner, Pause, State, interpreter};
-use crate::profile::{Profile, RunObserver, Unobserved};
+use crate::profile::{Observer, Profile, ProfileLevel, Unobserved};
 use crate::semantics::{Message, Watch};
 
 /// One advance of a worker: what it did, and what it waits for now.
@@ -121,7 +121,7 @@ pub struct Executor<'a, T, O> {
     pub observer: O,
 }
 
-impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
+impl<'a, T: Watch, O: Observer> Executor<'a, T, O> {
     /// A worker before its first item.
     pub fn new(
         code: &'a Code<'a>,
@@ -129,6 +129,7 @@ impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
         buffer_octets: u32,
         runner: EngineRunner<'a>,
         arithmetic: &'a T,
+        level: ProfileLevel,
     ) -> Executor<'a, T, O> {
         let initial = Buffer::new(&code.program.buffer, buffer_octets);
         Executor {
@@ -139,7 +140,7 @@ impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
             tally: Tally::new(code),
             state: State::new(code, initial.clone()),
             initial,
-            observer: O::new(code),
+            observer: O::new(code, level),
         }
     }
 
@@ -151,12 +152,12 @@ impl<'a, T: Watch, O: RunObserver> Executor<'a, T, O> {
     /// The passes of its program so far.
     pub fn take_tally(&mut self) -> Tally {
         // Its links are told of all reads.
-        self.runner.fold(&mut self.tally, &mut |_, _| {});
+        self.runner.fold(&mut self.tally, &mut |_, _| {}, self.observer.profiler());
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 }
 
-impl<T: Watch, O: RunObserver> Worker for Executor<'_, T, O> {
+impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
     type Master = PlainMaster;
 
     fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {

@@ -1,18 +1,35 @@
 //! Profiles of functions and regions: observers that are told of each instruction, and the totals that come of it.
 
-mod calls;
+mod contexts;
+mod extremes;
 mod profiler;
-
-use std::ops::Range;
+mod regions;
 
 use isa::Counts;
 
-pub use calls::Near;
+#[cfg(feature = "native")]
+pub(crate) use contexts::CallStack;
+#[cfg(feature = "native")]
+pub(crate) use extremes::{CallMeter, Near};
 pub use profiler::Profiler;
+#[cfg(feature = "native")]
+pub(crate) use regions::RegionNesting;
 
 use crate::code::Code;
 use crate::code::tally::Tally;
 use crate::semantics::Motion;
+
+/// Level of detail that is asked of a profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ProfileLevel {
+    /// No profile.
+    #[default]
+    None,
+    /// Exclusive and inclusive totals, and calls.
+    Totals,
+    /// Least and most of one call as well, for which each call is measured by itself: this takes time.
+    Extremes,
+}
 
 /// Someone who is told of each executed instruction.
 pub trait Observer {
@@ -20,7 +37,7 @@ pub trait Observer {
     const IS_ACTIVE: bool;
 
     /// For a program.
-    fn new(code: &Code) -> Self;
+    fn new(code: &Code, level: ProfileLevel) -> Self;
 
     /// A run begins at a word.
     fn begin(&mut self, pc: u32);
@@ -32,33 +49,13 @@ pub trait Observer {
     /// The run is over.
     fn end(&mut self);
 
+    /// The profiler, for engines that count by themselves; `None` where there is none.
+    fn profiler(&mut self) -> Option<&mut Profiler> {
+        None
+    }
+
     /// Profile that it found, given the passes of the same runs.
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile>;
-}
-
-/// An observer for engines that count several words at once, too: they call these instead of [`Observer::step`].
-pub trait RunObserver: Observer {
-    /// Notice that the slots at some places of the order ended, one behind the other. Passes of those with several exits, and units, are told
-    /// by [`RunObserver::pass`].
-    fn walked(&mut self, places: Range<u32>);
-
-    /// A pass through an exit: of a word with several, or with units of one that `is_only`.
-    fn pass(&mut self, exit: usize, is_only: bool, units: u32);
-
-    /// True where what stands behind a place belongs elsewhere, so that [`RunObserver::go`] is to be told when control runs on.
-    fn is_border(&self, place: u32) -> bool;
-
-    /// Control goes from one slot to another; what ended before was told.
-    fn go(&mut self, pc: u32, next: u32, motion: Motion);
-
-    /// So many operations were executed: instead of [`RunObserver::walked`] and [`RunObserver::pass`], for engines that add them up themselves.
-    fn add(&mut self, counts: &Counts);
-
-    /// Adds operations of which there are few: each class below 2^31.
-    fn add_near(&mut self, counts: &Near);
-
-    /// So many of the operations that were told of last were not executed.
-    fn take_back(&mut self, counts: &Counts);
 }
 
 /// Nobody.
@@ -68,7 +65,7 @@ pub struct Unobserved;
 impl Observer for Unobserved {
     const IS_ACTIVE: bool = false;
 
-    fn new(_: &Code) -> Unobserved {
+    fn new(_: &Code, _: ProfileLevel) -> Unobserved {
         Unobserved
     }
 
@@ -81,24 +78,6 @@ impl Observer for Unobserved {
     fn into_profile(self, _: &Code, _: &Tally) -> Option<Profile> {
         None
     }
-}
-
-impl RunObserver for Unobserved {
-    fn walked(&mut self, _: Range<u32>) {}
-
-    fn pass(&mut self, _: usize, _: bool, _: u32) {}
-
-    fn is_border(&self, _: u32) -> bool {
-        false
-    }
-
-    fn go(&mut self, _: u32, _: u32, _: Motion) {}
-
-    fn add(&mut self, _: &Counts) {}
-
-    fn add_near(&mut self, _: &Near) {}
-
-    fn take_back(&mut self, _: &Counts) {}
 }
 
 /// Cost of one function or region.
@@ -119,13 +98,20 @@ pub struct RegionProfile {
     /// Operations between entering and leaving it, all that was called included; of nested calls of itself only the
     /// outermost counts.
     pub inclusive: Counts,
-    /// Least of each class in one call, nested calls of itself being calls too; zero when there was none.
+    /// Least and most of one call; `None` where there was none, or nobody asked.
+    pub extremes: Option<Extremes>,
+}
+
+/// Least and most that one call takes, nested calls of itself being calls too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extremes {
+    /// Least of each class.
     pub least: Counts,
-    /// Most of each class in one call.
+    /// Most of each class.
     pub most: Counts,
-    /// Least elementary operations in one call.
+    /// Least elementary operations.
     pub least_elementary: u64,
-    /// Most elementary operations in one call.
+    /// Most elementary operations.
     pub most_elementary: u64,
 }
 
@@ -151,10 +137,7 @@ impl Profile {
             instructions: 0,
             exclusive: Counts::ZERO,
             inclusive: Counts::ZERO,
-            least: Counts::ZERO,
-            most: Counts::ZERO,
-            least_elementary: 0,
-            most_elementary: 0,
+            extremes: None,
         });
         let mut profile = Profile { regions: regions.collect(), ..Profile::default() };
         for pc in 0..code.words() {
@@ -180,10 +163,14 @@ impl Profile {
             region.instructions += more.instructions;
             region.exclusive += more.exclusive;
             region.inclusive += more.inclusive;
-            if more.calls != 0 {
-                region.note_extremes(more.least, more.most, more.least_elementary, more.most_elementary);
-                region.calls += more.calls;
-            }
+            region.calls += more.calls;
+            region.extremes = match (region.extremes, more.extremes) {
+                (Some(mut extremes), Some(more)) => {
+                    extremes.widen(&more);
+                    Some(extremes)
+                }
+                (extremes, more) => extremes.or(more),
+            };
         }
         self.outside += other.outside;
         self.outside_instructions += other.outside_instructions;
@@ -195,31 +182,18 @@ impl Profile {
     }
 }
 
-impl RegionProfile {
-    /// Widens least and most; before `calls` counts the calls that they come from.
-    fn note_extremes(&mut self, least: Counts, most: Counts, least_elementary: u64, most_elementary: u64) {
-        if self.calls == 0 {
-            (self.least, self.most) = (least, most);
-            (self.least_elementary, self.most_elementary) = (least_elementary, most_elementary);
-            return;
-        }
-        for (at, count) in self.least.0.iter_mut().enumerate() {
-            *count = least.0[at].min(*count);
-        }
-        for (at, count) in self.most.0.iter_mut().enumerate() {
-            *count = most.0[at].max(*count);
-        }
-        self.least_elementary = self.least_elementary.min(least_elementary);
-        self.most_elementary = self.most_elementary.max(most_elementary);
+impl Extremes {
+    /// Those of one call that takes so much.
+    pub(crate) fn of(cost: Counts) -> Extremes {
+        let elementary = cost.elementary();
+        Extremes { least: cost, most: cost, least_elementary: elementary, most_elementary: elementary }
     }
 
-    /// One call is over.
-    fn note_call(&mut self, cost: Counts, is_outermost: bool) {
-        let elementary = cost.elementary();
-        self.note_extremes(cost, cost, elementary, elementary);
-        self.calls += 1;
-        if is_outermost {
-            self.inclusive += cost;
-        }
+    /// Those of other calls as well.
+    pub(crate) fn widen(&mut self, other: &Extremes) {
+        self.least.0.iter_mut().zip(other.least.0).for_each(|(least, other)| *least = other.min(*least));
+        self.most.0.iter_mut().zip(other.most.0).for_each(|(most, other)| *most = other.max(*most));
+        self.least_elementary = self.least_elementary.min(other.least_elementary);
+        self.most_elementary = self.most_elementary.max(other.most_elementary);
     }
 }

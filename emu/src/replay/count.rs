@@ -8,7 +8,7 @@ use crate::code::tally::Tally;
 use crate::engine::{Pause, Task};
 use crate::machine::kinds::Kinds;
 use crate::machine::{RunFailure, Setup, check, on_arithmetic};
-use crate::profile::{Profile, RunObserver};
+use crate::profile::{Observer, Profile};
 use crate::semantics::Watch;
 
 /// Totals of a frame: what it computes and counts, whatever the time it takes.
@@ -44,7 +44,7 @@ struct CountTask<'a> {
 impl Task for CountTask<'_> {
     type Result = Result<FrameTotals, Reason>;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         let CountTask { setup, memory } = self;
         super::prefix(setup, memory, arithmetic)?;
         let (mut item_count, mut unfit) = (0, None);

@@ -16,7 +16,7 @@ use crate::machine::bus::Lengths;
 use crate::machine::port::Shared;
 use crate::machine::request::{Access, Request};
 use crate::machine::worker::{Advance, Executor, Played, Progress, Worker};
-use crate::profile::{Profile, RunObserver};
+use crate::profile::{Observer, Profile};
 use crate::semantics::Watch;
 
 /// A core's place in the work item that it replays.
@@ -186,7 +186,7 @@ macro_rules! each {
     };
 }
 
-impl<T: Watch, O: RunObserver> Worker for Replayer<'_, T, O> {
+impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
     type Master = BusCursor;
 
     #[inline]

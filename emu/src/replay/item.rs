@@ -1,4 +1,4 @@
-//! The links of work items that are recorded by the fast engine, and what they do.
+//! The link of work items that an engine records, and what it does.
 
 use super::budget::Budget;
 use super::recording::Segment;
@@ -104,24 +104,6 @@ impl ItemRecorder<'_> {
         Ok(())
     }
 
-    /// Keeps a read where there is a place for its segment; else nothing happens.
-    #[inline(always)]
-    fn keep_at_once(&mut self, address: u32, octets: u32) -> Option<()> {
-        let (record, RequestTime { pc, clocks }) = (&mut *self.record, self.time);
-        let request = Request::Transfer { address, octets: Octets(octets.into()), access: Access::Read };
-        let segment = Segment::new(clocks - record.before, pc, request, 0)?;
-        // A full list would have to grow, and a portion that ends would ask the budget: both take the longer way, once in a while.
-        let count = record.segments.len();
-        if count == record.segments.capacity() || (count + 1).is_multiple_of(Budget::PORTION) {
-            return None;
-        }
-        self.kinds.add_known(pc, address, octets)?;
-        record.octets += segment.octets();
-        record.before = clocks;
-        record.segments.push(segment);
-        Some(())
-    }
-
     fn keep(&mut self, request: Request) -> Result<(), Stop> {
         let record = &mut *self.record;
         let clocks = self.time.clocks - record.before;
@@ -159,27 +141,6 @@ impl Link for ItemRecorder<'_> {
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
         self.ask(Access::Read, address, 4 * words.len() as u32)?;
         Ok(self.memory.read_words(address, words)?)
-    }
-
-    #[inline(always)]
-    fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
-        let found = self.memory.peek(address, octets)?;
-        if self.record.message.is_some() {
-            return None;
-        }
-        match self.level {
-            RecordLevel::Passes => self.kinds.add_known(self.time.pc, address, octets)?,
-            RecordLevel::Segments => self.keep_at_once(address, octets)?,
-        }
-        Some(found)
-    }
-
-    #[inline(always)]
-    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        let words = self.memory.words(address)?;
-        let octets = Octets(4 * N as u64);
-        self.enter(Request::Transfer { address, octets, access: Access::Read })?;
-        Ok(words)
     }
 
     fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {

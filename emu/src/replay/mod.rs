@@ -29,7 +29,7 @@ use crate::extension;
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
 use crate::machine::{RunFailure, RunOutcome, Setup};
-use crate::profile::{RunObserver, Unobserved};
+use crate::profile::{Observer, Unobserved};
 use crate::semantics::Watch;
 use cursor::{ItemCursor, Replayer};
 use feed::{Batch, Feed};
@@ -41,7 +41,7 @@ use record::{Prefix, Recorder};
 const AHEAD: usize = 2;
 
 /// Runs machines whose work items do the same in the same clocks of computing. `progress` is told of the first one.
-pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
+pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
     memory: &Memory,
     arithmetic: &T,
@@ -82,7 +82,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 type Replayed = Result<Result<RunOutcome, RunFailure>, Reason>;
 
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
-fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
+fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
     prefix: Prefix,
     memory: &Memory,
@@ -123,7 +123,7 @@ fn replay<T: Watch + Clone + Send, O: RunObserver + Send>(
 ///
 /// # Errors
 /// Reason for which the machine does not do what was recorded; the inner error is a trap.
-fn on_clock<T: Watch, O: RunObserver>(
+fn on_clock<T: Watch, O: Observer>(
     setup: &Setup,
     memory: Memory,
     arithmetic: &T,

@@ -17,7 +17,7 @@ use crate::code::trap::{Fault, Stop};
 use crate::engine::{CoreId, Demand, Pause, State, choose};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
-use crate::profile::{Observer, Profile, RunObserver, Unobserved};
+use crate::profile::{Observer, Profile, Unobserved};
 use crate::semantics::{Link, Message, Watch};
 
 /// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
@@ -86,7 +86,7 @@ impl Link for InstantCores<'_> {
 }
 
 /// Records work items on all host threads. The recordings are in the order of the messages, whoever made them.
-fn record<T: Watch + Send, O: RunObserver + Send>(
+fn record<T: Watch + Send, O: Observer + Send>(
     recorders: &mut [Recorder<T, O>],
     work: &[(u32, Message)],
 ) -> Result<Vec<Arc<Recording>>, Reason> {
@@ -139,7 +139,7 @@ pub struct PrerunTotals {
 }
 
 /// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
-pub fn run<T: Watch + Clone + Send, O: RunObserver + Send>(
+pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     setup: &Setup,
     memory: &Memory,
     arithmetic: T,

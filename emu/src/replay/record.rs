@@ -9,12 +9,12 @@ use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::{
-    self, Answers, CoreId, Demand, EngineRunner, Pause, RequestTime, State, Stopped, TaintObserver, choose, interpreter,
+    Answers, CoreId, Demand, EngineRunner, Pause, RequestTime, State, Stopped, TaintObserver, choose, interpreter,
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
-use crate::profile::{Observer, RunObserver, Unobserved};
+use crate::profile::{Observer, ProfileLevel};
 use crate::semantics::{Link, Message, Watch};
 
 /// The link of a work item that is recorded: it says what it asks for, then gets it at once.
@@ -131,16 +131,17 @@ pub struct Recorder<'a, T, O> {
     usual: usize,
 }
 
-impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
+impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// A core that has recorded nothing.
     pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, level: RecordLevel) -> Self {
         let config = setup.config;
         let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
+        let profile = if O::IS_ACTIVE { setup.options.profile } else { ProfileLevel::None };
         // Only segments need the time, and an engine that need not keep it is faster.
         let demand = Demand {
             follows_cores: true,
-            has_profile: O::IS_ACTIVE,
+            profile,
             answers: Answers::AtOnce { keeps_time: level == RecordLevel::Segments },
             ..Demand::new(code, setup.options.wish(), arithmetic.computes(), config.buffer_octets)
         };
@@ -151,7 +152,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             state: State::new(code, initial.clone()),
             tally: Tally::new(code),
             kinds: Kinds::new(&setup.kinds),
-            observer: TaintObserver::new(code),
+            observer: TaintObserver::new(code, profile),
             code,
             memory,
             arithmetic,
@@ -160,16 +161,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         }
     }
 
-    fn run(&mut self, link: &mut CheckedLink) -> Pause {
-        interpreter::run(
-            self.code,
-            self.seat,
-            &mut self.state,
-            &self.arithmetic,
-            link,
-            &mut self.tally,
-            &mut self.observer,
-        )
+    fn run(&mut self, seat: CoreId, link: &mut CheckedLink) -> Pause {
+        interpreter::run(self.code, seat, &mut self.state, &self.arithmetic, link, &mut self.tally, &mut self.observer)
     }
 
     fn link(&self, message: Option<Message>) -> CheckedLink<'a> {
@@ -190,7 +183,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// Something else comes first.
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
         let mut link = self.link(Some(Message::new([[0; 3]])));
-        match self.run(&mut link) {
+        match self.run(self.seat, &mut link) {
             // On another core an item might begin otherwise, and its prefix take other clocks.
             _ if self.observer.taint.depends_on_core || self.observer.taint.depends_on_cores => {
                 Err("what comes before the message depends on the core")
@@ -205,7 +198,8 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
     /// The passes of all items.
     pub fn take_tally(&mut self) -> Tally {
         let kinds = &mut self.kinds;
-        self.runner.fold(&mut self.tally, &mut |kind, octets| kinds.add_octets(kind as usize, Octets(octets)));
+        let mut add_octets = |kind, octets| kinds.add_octets(kind as usize, Octets(octets));
+        self.runner.fold(&mut self.tally, &mut add_octets, self.observer.profiler());
         std::mem::replace(&mut self.tally, Tally::new(self.code))
     }
 
@@ -216,14 +210,57 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, time };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
-        // Profiles are seldom taken, so they share one function for all links; without one the link's own is compiled in.
-        match O::IS_ACTIVE {
-            false => self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, &mut Unobserved),
-            true => {
-                let link: &mut &mut dyn engine::TimedLink = &mut (&mut link as _);
-                self.runner.run_ahead(seat, state, &self.arithmetic, link, taint, observer)
+        self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, observer.profiler())
+    }
+
+    /// Goes on with the interpreter, request by request, as long as the engine likes, and refuses what an item may not do. Yields the end of
+    /// the item, if it has come to that.
+    ///
+    /// # Errors
+    /// Why the item cannot be replayed.
+    fn interpret(&mut self, record: &mut ItemRecord, budget: &Budget) -> Result<Option<Pause>, Reason> {
+        let before = self.state.steps + self.state.inner_steps;
+        let mut limit = before.saturating_add(self.runner.patience(self.seat, &self.state));
+        let mut link = CheckedLink { sent: std::mem::take(&mut record.sent), ..self.link(record.message) };
+        let end = loop {
+            let seat = CoreId { step_limit: self.seat.step_limit.min(limit), ..self.seat };
+            let pause = self.run(seat, &mut link);
+            if limit < self.seat.step_limit && pause == Pause::Fault(Fault::StepLimit(limit)) {
+                if !link.is_permitted {
+                    break None;
+                }
+                // What was asked for is recorded already, so it has to be done here.
+                limit += 1;
+                continue;
             }
-        }
+            if pause != Pause::Wait {
+                break Some(pause);
+            }
+            if let Some(reason) = link.unfit {
+                return Err(reason);
+            }
+            let request = link.request.take().ok_or(BEGINS)?;
+            if request != Request::Receive {
+                if link.message.is_some() {
+                    return Err(BEGINS);
+                }
+                let clocks = self.state.clocks - record.before;
+                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len());
+                let segment = segment.ok_or("a segment of a work item is too long")?;
+                record.octets += segment.octets();
+                self.kinds.add(self.state.pc, Some(request));
+                record.segments.push(segment);
+                // Room is taken in portions, since all host threads share one number.
+                if record.segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
+                    return Err(WITHOUT_ROOM);
+                }
+            }
+            record.before = self.state.clocks;
+            link.is_permitted = true;
+        };
+        (record.message, record.sent) = (link.message, link.sent);
+        self.runner.interpreted(self.state.steps + self.state.inner_steps - before);
+        Ok(end)
     }
 
     /// Runs a work item from reset to its end.
@@ -236,51 +273,25 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
         // Items of one scene are much alike, so the last one tells how much room this one wants.
         let segments = Vec::with_capacity(self.usual);
         let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
-        let stopped = self.run_quickly(&mut record, budget);
-        if record.is_without_room {
-            return Err(WITHOUT_ROOM);
-        }
-        let steps = self.state.steps;
-        let mut link = CheckedLink { sent: record.sent, ..self.link(record.message) };
-        let (mut segments, mut octets, mut before) = (record.segments, record.octets, record.before);
-        // Go on from there with the interpreter, request by request, and refuse what an item may not do
         let end = loop {
+            let stopped = self.run_quickly(&mut record, budget);
+            if record.is_without_room {
+                return Err(WITHOUT_ROOM);
+            }
             match stopped {
                 Some(Stopped::Halt) => break Pause::Halt,
                 Some(Stopped::Fault(fault)) => break Pause::Fault(fault),
                 _ => {}
             }
-            let pause = self.run(&mut link);
-            if pause != Pause::Wait {
-                break pause;
+            if let Some(end) = self.interpret(&mut record, budget)? {
+                break end;
             }
-            if let Some(reason) = link.unfit {
-                return Err(reason);
-            }
-            let request = link.request.take().ok_or(BEGINS)?;
-            if request != Request::Receive {
-                if link.message.is_some() {
-                    return Err(BEGINS);
-                }
-                let clocks = self.state.clocks - before;
-                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len());
-                let segment = segment.ok_or("a segment of a work item is too long")?;
-                octets += segment.octets();
-                self.kinds.add(self.state.pc, Some(request));
-                segments.push(segment);
-                // Room is taken in portions, since all host threads share one number.
-                if segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
-                    return Err(WITHOUT_ROOM);
-                }
-            }
-            before = self.state.clocks;
-            link.is_permitted = true;
         };
-        if link.message.is_some() {
+        let ItemRecord { message: rest, mut segments, octets, before, sent, .. } = record;
+        if rest.is_some() {
             return Err(BEGINS);
         }
         // Account for what was recorded, and give back room that was kept in vain
-        self.runner.interpreted(self.state.steps - steps);
         self.observer.end();
         budget.take(segments.len() % Budget::PORTION);
         self.usual = segments.len().min(Budget::PORTION);
@@ -295,7 +306,7 @@ impl<'a, T: Watch, O: RunObserver> Recorder<'a, T, O> {
             reads: reads(&segments),
             segments,
             octets,
-            sent: link.sent,
+            sent,
             last_clocks: self.state.clocks - before,
             last_pc: self.state.pc,
             end,

@@ -12,7 +12,7 @@ use super::recording::Reason;
 use crate::code::octets::Memory;
 use crate::engine::Task;
 use crate::machine::{RunFailure, RunOutcome, Setup, check, on_arithmetic};
-use crate::profile::RunObserver;
+use crate::profile::Observer;
 use crate::semantics::Watch;
 
 /// All work items of a frame.
@@ -60,7 +60,7 @@ struct RecordTask<'a> {
 impl Task for RecordTask<'_> {
     type Result = Result<Recorded, Reason>;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         let RecordTask { setup, memory } = self;
         let prefix = super::prefix(setup, memory, arithmetic)?;
         let mut batches = Vec::new();
@@ -85,7 +85,7 @@ struct ReplayTask<'a> {
 impl Task for ReplayTask<'_> {
     type Result = Result<Result<RunOutcome, RunFailure>, Reason>;
 
-    fn run<T: Watch + Clone + Send, O: RunObserver + Send>(self, arithmetic: &T) -> Self::Result {
+    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         // The channel holds all batches before anybody reads, so it must have no bound.
         let (sender, receiver) = channel();
         for batch in &self.recorded.batches {

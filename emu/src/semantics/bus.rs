@@ -5,7 +5,7 @@ use isa::number::Vector;
 use isa::table::{Done, Each};
 
 use super::BusRoom;
-use crate::code::octets::{Buffer, words_of};
+use crate::code::octets::Buffer;
 use crate::code::trap::{Fault, Stop};
 
 /// Most vectors that a message carries.
@@ -66,13 +66,6 @@ pub trait Link {
     /// # Errors
     /// An address beyond the memory, or not yet.
     fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop>;
-
-    /// Octets that a read finds, where those can be had at once; then they have been read. `None` says nothing, and then nothing has happened.
-    #[inline(always)]
-    fn peek(&mut self, address: u32, octets: u32) -> Option<&[u8]> {
-        let _ = (address, octets);
-        None
-    }
 
     /// [`Link::read`] for a number of words that is known.
     ///
@@ -141,14 +134,11 @@ macro_rules! hand_on {
         $(fn $name(&mut $link, $($argument: $kind),*) -> Result<$result, Stop> {
             $to.$name($($argument),*)
         })*
-
-        fn peek(&mut $link, address: u32, octets: u32) -> Option<&[u8]> {
-            $to.peek(address, octets)
-        }
     };
 }
 
 /// The methods of a link that refuses everything.
+#[cfg(all(test, feature = "native"))]
 macro_rules! refuse {
     ($($name:ident($($argument:ident: $kind:ty),*) -> $result:ty;)*) => {
         $(fn $name(&mut self, $(_: $kind),*) -> Result<$result, Stop> {
@@ -157,22 +147,12 @@ macro_rules! refuse {
     };
 }
 
-pub(crate) use {hand_on, methods, refuse};
+#[cfg(all(test, feature = "native"))]
+pub(crate) use refuse;
+pub(crate) use {hand_on, methods};
 
 impl<L: Link + ?Sized> Link for &mut L {
     methods! { hand_on! self => (**self); }
-}
-
-/// Part of a link that can be had at once: [`Link::peek`].
-pub(crate) struct Peek<'a, L>(pub &'a mut L);
-
-impl<L: Link> Link for Peek<'_, L> {
-    methods! { refuse! }
-
-    #[inline(always)]
-    fn words<const N: usize>(&mut self, address: u32) -> Result<[i32; N], Stop> {
-        Ok(words_of(self.0.peek(address, 4 * N as u32).ok_or(Stop::Wait)?))
-    }
 }
 
 /// Port of the bus instructions: a core's buffer and its link to the machine.

@@ -18,8 +18,10 @@ mod wide;
 use isa::number::Vector;
 use isa::table::outcome;
 
+#[cfg(all(test, feature = "native"))]
+pub(crate) use bus::refuse;
 pub use bus::{Link, Message, Port};
-pub(crate) use bus::{Peek, hand_on, methods, refuse};
+pub(crate) use bus::{hand_on, methods};
 pub use control::{End, Flow, Motion};
 pub use numbers::Numbers;
 pub use watch::{Computes, Watch, Watching};

@@ -51,10 +51,8 @@ fn both_engines_count_what_they_read() {
     let checked = count(EngineKind::Checked, None);
     assert!(checked.2.iter().all(|(kind, octets)| kind == "messages" || octets.0 > 100_000), "{:?}", checked.2);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        for engine in [EngineKind::Native, EngineKind::Fast] {
-            let found = count(engine, Some(features));
-            assert!(found == checked, "{engine:?} {features:?} {:?} {:?}", found.2, checked.2);
-        }
+        let found = count(EngineKind::Native, Some(features));
+        assert!(found == checked, "{features:?} {:?} {:?}", found.2, checked.2);
     }
 }
 
@@ -75,12 +73,10 @@ fn what_they_may_not_read_is_the_interpreters() {
         p.emit(Op::halt, &[]);
     });
     for core in [&beyond, &early] {
-        for engine in [EngineKind::Native, EngineKind::Fast] {
-            assert_eq!(end(core, engine), end(core, EngineKind::Checked));
-        }
+        assert_eq!(end(core, EngineKind::Native), end(core, EngineKind::Checked));
     }
-    let outside = end(&beyond, EngineKind::Fast).expect_err("it ends behind the memory");
+    let outside = end(&beyond, EngineKind::Native).expect_err("it ends behind the memory");
     assert!(outside.contains("2968"), "{outside}");
-    let (method, _) = end(&early, EngineKind::Fast).expect("it runs");
+    let (method, _) = end(&early, EngineKind::Native).expect("it runs");
     assert_eq!(method.reason(), Some("a work item does not begin with a message"));
 }

@@ -1,11 +1,12 @@
 //! Programs by themselves, on every engine: registers, the local buffer, times, and any words at all.
 
 use emu::code::Code;
-use emu::engine::{EngineKind, HostSimd, Wish};
+use emu::engine::{EngineKind, Wish};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
 use emu::machine::preset::PRESETS;
 use emu::octets::{Memory, POISON};
+use emu::profile::ProfileLevel;
 use emu::registers::Registers;
 use emu::tally::Losses;
 use emu::trap::Fault;
@@ -18,30 +19,23 @@ use super::builder::{Builder, program};
 
 fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCoreRun {
     let isa = Isa::base();
-    let one_core = OneCore { registers, step_limit: 500, has_profile: true, ..OneCore::new(config, &isa, program) };
+    let one_core =
+        OneCore { registers, step_limit: 500, profile: ProfileLevel::Extremes, ..OneCore::new(config, &isa, program) };
     let long = OneCore { registers: one_core.registers.clone(), step_limit: 1 << 20, ..one_core };
     let memory = || Memory::new((0..=255).collect());
-    let run = |wish| one_core::run_with(&one_core, memory(), wish).expect("the setup is right");
-    let checked = run(Wish::CHECKED);
+    let checked = one_core::run_with(&one_core, memory(), Wish::CHECKED).expect("the setup is right");
     // Native code leaves what is close to the step limit to the interpreter.
-    if checked.trap.as_ref().is_none_or(|trap| trap.kind != Fault::StepLimit(500)) {
-        let native = one_core::run_with(&long, memory(), Wish::native()).expect("the setup is right");
-        let parts =
-            |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
-        assert_eq!((parts(&native), &native.memory), (parts(&checked), &checked.memory), "native");
-        assert_eq!(native.profile, checked.profile, "native");
-        // Programs with an instruction that takes too long for the sums of runs are the interpreter's.
-        let is_too_long = native.engine.refusal == Some("an instruction takes more clocks than the sums have room for");
-        let kind = if is_too_long { EngineKind::Checked } else { EngineKind::Native };
-        assert_eq!(native.engine.kind, kind, "{:?}", native.engine.refusal);
+    if checked.trap.as_ref().is_some_and(|trap| trap.kind == Fault::StepLimit(500)) {
+        return checked;
     }
-    for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        let fast = run(Wish::fast(features));
-        let parts =
-            |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
-        assert_eq!(parts(&fast), parts(&checked), "{}", features.name());
-        assert_eq!(fast.profile, checked.profile, "{}", features.name());
-    }
+    let native = one_core::run_with(&long, memory(), Wish::native()).expect("the setup is right");
+    let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
+    assert_eq!((parts(&native), &native.memory), (parts(&checked), &checked.memory));
+    assert_eq!(native.profile, checked.profile);
+    // Programs with an instruction that takes too long for the sums of runs are the interpreter's.
+    let is_too_long = native.engine.refusal == Some("an instruction takes more clocks than the sums have room for");
+    let kind = if is_too_long { EngineKind::Checked } else { EngineKind::Native };
+    assert_eq!(native.engine.kind, kind, "{:?}", native.engine.refusal);
     checked
 }
 

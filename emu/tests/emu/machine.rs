@@ -2,6 +2,7 @@
 
 use emu::machine::{Config, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
+use emu::profile::ProfileLevel;
 use isa::{Isa, Op, Program};
 
 use super::builder::program;
@@ -52,7 +53,7 @@ pub fn worker(segments: i32, spin: i32, octets: i32) -> Program {
 
 pub fn run(config: &Config, core: &Program, main: &Program, octets: usize) -> RunOutcome {
     let isa = Isa::base();
-    let options = RunOptions { has_profile: true, has_items: true, ..RunOptions::default() };
+    let options = RunOptions { profile: ProfileLevel::Totals, has_items: true, ..RunOptions::default() };
     let setup = Setup { config, isa: &isa, core, main, kinds: vec![(0..400, "answer".to_owned())], options };
     match emu::run(&setup, Memory::new(vec![0; octets]), &mut |_| {}) {
         Ok(frame) => frame,

@@ -5,6 +5,7 @@ use emu::machine::config::{BusConfig, CacheConfig};
 use emu::machine::preset::PRESETS;
 use emu::machine::{Config, Method, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
+use emu::profile::ProfileLevel;
 use isa::{Isa, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -29,7 +30,7 @@ fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Prog
         core,
         main,
         kinds,
-        options: RunOptions { has_profile: true, has_items: true, ..RunOptions::default() },
+        options: RunOptions { profile: ProfileLevel::Totals, has_items: true, ..RunOptions::default() },
     }
 }
 

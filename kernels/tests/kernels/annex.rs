@@ -7,7 +7,7 @@ use emu::engine::{CoreId, Pause, State};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore};
 use emu::octets::{Buffer, Memory};
-use emu::profile::{Observer, Profile};
+use emu::profile::{Observer, Profile, ProfileLevel};
 use emu::semantics::{Link, Message, Motion};
 use emu::tally::Tally;
 use emu::trap::Stop;
@@ -39,13 +39,15 @@ fn searched(row: &Row, isa: &Isa) -> (Program, Vec<u8>) {
 /// Calls of a row's region by the machine's profile.
 fn profiled(row: &Row, program: &Program, memory: &[u8], isa: &Isa) -> Calls {
     let config = Config::default();
-    let one_core = OneCore { step_limit: 10_000_000, has_profile: true, ..OneCore::new(&config, isa, program) };
+    let one_core =
+        OneCore { step_limit: 10_000_000, profile: ProfileLevel::Extremes, ..OneCore::new(&config, isa, program) };
     let run = one_core::run(&one_core, Memory::new(memory.to_vec()))
         .unwrap_or_else(|report| panic!("{}", report.render(false)));
     assert!(run.trap.is_none(), "{}: {:?}", row.id, run.trap);
     let regions = run.profile.expect("a profile was asked for").regions;
     let region = regions.iter().find(|region| region.name == row.region).expect("the region is in the program");
-    Calls { calls: region.calls, least: region.least, most: region.most }
+    let extremes = region.extremes.expect("the region was entered");
+    Calls { calls: region.calls, least: extremes.least, most: extremes.most }
 }
 
 /// An executed instruction.
@@ -66,7 +68,7 @@ struct Trace<'a> {
 impl Observer for Trace<'_> {
     const IS_ACTIVE: bool = true;
 
-    fn new(_: &Code) -> Self {
+    fn new(_: &Code, _: ProfileLevel) -> Self {
         unreachable!("the test makes its own")
     }
 

@@ -4,7 +4,7 @@
 use isa::Op;
 
 use super::Recipe;
-use super::classes::Classes;
+use super::profiling::Profiling;
 use crate::engine::cost::Cost;
 use crate::engine::plan::{Plan, Step};
 
@@ -35,7 +35,7 @@ pub(super) fn asks(plan: &Plan, step: &Step) -> bool {
 
 impl Blocks {
     /// Looks at a plan.
-    pub fn new(plan: &Plan, recipe: &Recipe, classes: Option<&Classes>) -> Blocks {
+    pub fn new(plan: &Plan, recipe: &Recipe, profiling: Option<&Profiling>) -> Blocks {
         let (steps, end) = (plan.steps(), plan.end());
         let mut blocks = Blocks {
             is_join: vec![false; end as usize + 1],
@@ -69,8 +69,9 @@ impl Blocks {
                 _ => {}
             }
         }
-        // Who measures functions is told of borders at the ends of blocks.
-        for place in (1..end).filter(|&place| classes.is_some_and(|classes| classes.is_border(place - 1, place))) {
+        // Who measures each call is told of borders at the ends of blocks.
+        let is_border = |place: &u32| profiling.is_some_and(|profiling| profiling.is_border(place - 1, *place));
+        for place in (1..end).filter(is_border) {
             blocks.is_join[place as usize] = true;
         }
         blocks.watch(plan);

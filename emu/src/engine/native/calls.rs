@@ -7,11 +7,11 @@ use isa::number::Nearest32;
 use isa::table::{AnyOutcome, outcome};
 
 use super::context::Context;
+use super::operands::put;
 use super::run::NativeHost;
 use super::{Recipe, Status};
 use crate::code::registers::{Registers, read};
 use crate::engine::HostSimd;
-use crate::engine::fast::operands::put;
 use crate::engine::plan::Step;
 use crate::semantics::{
     BusRoom, IntegerRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom, Watch, Watching, WideRoom, split_operands,
@@ -23,8 +23,14 @@ pub(super) type RowCall = unsafe extern "C" fn(*mut Context, *mut Registers, *co
 /// Takes note of the units with which a row ended, as [`pure`] returned them.
 pub(super) type UnitsCall = unsafe extern "C" fn(*mut Context, *const Step, u64) -> u64;
 
-/// Tells who measures functions that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
+/// Tells who measures each call that control goes from the slot in the low half to that in the high one, by the [`Motion`] of that number.
 pub(super) type Went = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
+
+/// As [`Went`], for the calling context, which may be another one afterwards.
+pub(super) type Follow = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
+
+/// Yields the calling context of what a slot calls, 0 where that is for the interpreter; the nodes may lie elsewhere afterwards.
+pub(super) type Callee = unsafe extern "C" fn(*mut Context, u64, u64) -> u64;
 
 /// Result of a row of values that has divided by zero where that traps. It has written nothing then.
 pub(super) const STOPPED: u64 = u64::MAX;
@@ -101,6 +107,22 @@ macro_rules! row_function {
     ({ $style:ident $trait:ident $name:ident } $read:tt $written:tt) => {};
 }
 
+/// Refuses a row with several outcomes where none is counted.
+macro_rules! check_outcomes {
+    (pure $name:ident) => {};
+    (control $name:ident) => {};
+    ($style:ident $name:ident) => {
+        const _: () = assert!(
+            <outcome::$name::Outcome as AnyOutcome>::OUTCOMES == 1,
+            concat!(
+                "`",
+                stringify!($name),
+                "` has several outcomes, but native code counts one for rows of the bus and the buffer"
+            )
+        );
+    };
+}
+
 macro_rules! row_functions {
     ($($style:ident $room:ident $trait:ident $room_doc:literal {
         $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
@@ -111,6 +133,8 @@ macro_rules! row_functions {
 
             $($(split_operands! { row_function { $style $trait $name } [] [] ($($operands)*) })*)*
         }
+
+        $($(check_outcomes! { $style $name })*)*
 
         /// The function of a row that needs only values: see [`rows`].
         fn of_values<T: Watch>(op: Op) -> Option<RowCall> {
@@ -171,7 +195,7 @@ pub(super) fn pure(op: Op, recipe: &Recipe) -> RowCall {
 #[target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")]
 unsafe extern "C" fn rtri(_: *mut Context, registers: *mut Registers, step: *const Step) -> u64 {
     // SAFETY: as the function asks for. `rows::rtri` is the safe twin's.
-    let exit = unsafe { crate::engine::fast::doubles::rtri(&mut *registers, &(*step).fields) };
+    let exit = unsafe { super::doubles::rtri(&mut *registers, &(*step).fields) };
     exit.index() as u64 | u64::from(exit.units()) << 32
 }
 
@@ -193,18 +217,47 @@ pub(super) unsafe extern "C" fn add_units(context: *mut Context, step: *const St
     0
 }
 
-/// See [`Went`].
+/// The motion of a number.
+fn motion(number: u64) -> Motion {
+    [Motion::Jump, Motion::Call, Motion::Return][number as usize % 3]
+}
+
+/// Tells who measures each call where control goes: see [`Went`].
 ///
 /// # Safety
 /// The context is that of a run.
-pub(super) unsafe extern "C" fn went(context: *mut Context, ways: u64, motion: u64) -> u64 {
+pub(super) unsafe extern "C" fn went(context: *mut Context, ways: u64, number: u64) -> u64 {
     // SAFETY: as the function asks for.
     let context = unsafe { &mut *context };
     // SAFETY: the context is that of a run.
     let host = unsafe { NativeHost::of(context) };
-    let motion = [Motion::Jump, Motion::Call, Motion::Return][motion as usize % 3];
-    host.went(context, ways as u32, (ways >> 32) as u32, motion);
+    host.went(context, ways as u32, (ways >> 32) as u32, motion(number));
     0
+}
+
+/// Follows a motion to another calling context: see [`Follow`].
+///
+/// # Safety
+/// The context is that of a run.
+pub(super) unsafe extern "C" fn follow(context: *mut Context, ways: u64, number: u64) -> u64 {
+    // SAFETY: as the function asks for.
+    let context = unsafe { &mut *context };
+    // SAFETY: the context is that of a run.
+    let host = unsafe { NativeHost::of(context) };
+    host.follow(context, ways as u32, (ways >> 32) as u32, motion(number));
+    0
+}
+
+/// Finds the calling context of what a slot calls: see [`Callee`]. `caller` is the place for it in the node.
+///
+/// # Safety
+/// The context is that of a run.
+pub(super) unsafe extern "C" fn callee(context: *mut Context, slot: u64, caller: u64) -> u64 {
+    // SAFETY: as the function asks for.
+    let context = unsafe { &mut *context };
+    // SAFETY: the context is that of a run.
+    let host = unsafe { NativeHost::of(context) };
+    host.callee(context, slot as u32, caller as usize).into()
 }
 
 /// Executes an instruction with a meaning in Rust: yields the exit and [`TAKEN`], or in the high half the [`Status`] with which to leave.

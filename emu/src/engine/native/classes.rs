@@ -1,9 +1,8 @@
-//! Operations by class as generated code adds them up for those who measure functions: 32 bits a class, which are emptied in time.
+//! Operations by class as generated code adds them up for those who measure each call: 32 bits a class, which are emptied in time.
 
 use isa::{Class, Counts};
 
-use crate::code::Code;
-use crate::engine::plan::{Plan, Step};
+use crate::engine::plan::Plan;
 use crate::profile::Near;
 
 /// Number of classes.
@@ -15,25 +14,18 @@ pub(super) const LANES: usize = {
 /// Operations by class.
 pub(super) type Lanes = Near;
 
-/// Costs of the places of a program by class, and the borders of its functions and regions.
+/// Costs of the places of a program by class.
 #[derive(Clone, Debug)]
 pub(super) struct Classes {
     /// Cost of the places up to each, and up to the end, without what depends on exits.
     before: Vec<Counts>,
     /// By exit: what it adds; nothing where all exits of its row cost the same.
     pub exits: Box<[Lanes]>,
-    /// By place: the innermost region.
-    regions: Vec<Option<u16>>,
 }
 
 /// The numbers as lanes.
 pub(super) fn lanes(counts: &Counts) -> Lanes {
     std::array::from_fn(|at| counts.0.get(at).map_or(0, |&count| count as u32))
-}
-
-/// The innermost region of a slot.
-fn region(code: &Code, slot: u32) -> Option<u16> {
-    code.program.region_of.get(code.word(slot) as usize).copied().flatten()
 }
 
 impl Classes {
@@ -43,7 +35,6 @@ impl Classes {
         let cost = |exit: usize| plan.pass(exit).map_or(Counts::ZERO, |pass| plan.code.pass_cost(pass).0);
         let mut exits: Box<[Lanes]> = vec![[0; LANES]; plan.exits()].into();
         let (mut before, mut sum) = (vec![Counts::ZERO], Counts::ZERO);
-        let mut regions: Vec<Option<u16>> = Vec::with_capacity(steps.len() + 1);
         for step in steps {
             let numbers = step.exit as usize..step.exit as usize + usize::from(step.exits);
             match numbers.clone().all(|exit| cost(exit) == cost(numbers.start)) {
@@ -52,25 +43,13 @@ impl Classes {
                 false => numbers.for_each(|exit| exits[exit] = lanes(&cost(exit))),
             }
             before.push(sum);
-            // A hop is part of what stands before it.
-            let own = match step.row {
-                Step::HOP => regions.last().copied().flatten(),
-                _ => region(plan.code, step.slot),
-            };
-            regions.push(own);
         }
-        regions.push(None);
-        Classes { before, exits, regions }
+        Classes { before, exits }
     }
 
     /// Cost of the places from one to before another one, without what depends on exits.
     pub fn span(&self, from: u32, to: u32) -> Counts {
         let (from, to) = (&self.before[from as usize], &self.before[to as usize]);
         Counts(std::array::from_fn(|at| to.0[at] - from.0[at]))
-    }
-
-    /// Two places belong to different regions.
-    pub fn is_border(&self, from: u32, to: u32) -> bool {
-        self.regions[from as usize] != self.regions[to as usize]
     }
 }

@@ -1,5 +1,5 @@
-//! Memory that generated code works on beside registers and buffer: sums, counters of edges, places of reads, all at fixed offsets from one
-//! pointer.
+//! Memory that generated code works on beside registers and buffer: sums and places of reads at fixed offsets from one pointer, and counters in
+//! nodes, of which there is one a calling context where functions are measured, else one.
 
 use std::mem::offset_of;
 
@@ -20,6 +20,8 @@ pub(super) struct Context {
     pub core: i32,
     /// Number of cores.
     pub cores: i32,
+    /// The current calling context, where functions are measured: a number of [`crate::profile::Contexts`].
+    pub current: u32,
     /// Scalars that hold the number of cores, a bit each.
     pub tainted: u64,
     /// Not 0 where the item may depend on the number of cores.
@@ -42,7 +44,13 @@ pub(super) struct Context {
     pub arithmetic: *const (),
     /// The rest of the machine: see [`super::run::NativeHost`].
     pub host: *mut (),
-    /// Operations by class since they were last emptied, where functions are measured.
+    /// The nodes by calling context, where functions are measured.
+    pub nodes: *mut u64,
+    /// The place behind the newest call, where functions are measured.
+    pub calls: *mut u64,
+    /// The place at which there is no room for another call.
+    pub calls_end: *mut u64,
+    /// Operations by class since they were last emptied, where each call is measured.
     pub classes: Lanes,
     /// Reads of global memory that the link was not told of.
     pub reads: [NotedRead; NOTED],
@@ -59,6 +67,7 @@ offsets! {
     PLACE place
     CORE core
     CORES cores
+    CURRENT current
     TAINTED tainted
     DEPENDS_ON_CORES depends_on_cores
     DEPENDS_ON_CORE depends_on_core
@@ -68,62 +77,103 @@ offsets! {
     NOTED_AT noted
     NOTED_END noted_end
     BEFORE before
+    NODES nodes
+    CALLS calls
+    CALLS_END calls_end
     CLASSES classes
     READS reads
 }
 
-/// Place of the counters behind the context, in octets from its beginning.
+/// Places of counters, in octets: those of reads from the beginning of the context, the others from that of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CounterLayout {
-    /// Counts of exits that were taken: a number of 64 bits an exit.
-    pub exits: i32,
-    /// Counts of runs that were begun and that no exit leads to whose target is known: one a place.
-    pub begun: i32,
     /// Memory of reads, where they found their kind the last time: start and length of 32 bits each, and how often, a read.
-    pub sites: i32,
-    /// All of it.
-    pub octets: i32,
+    sites: i32,
+    /// The context with all of that, and the end of it, where the only node begins if functions are not measured.
+    pub frame: i32,
+    /// Counts of exits that were taken: a number of 64 bits an exit.
+    begun: i32,
+    /// Behind the counts of runs that were begun and that no exit leads to whose target is known, one a place: how often regions were entered by
+    /// ways that no other count tells.
+    entered: i32,
+    /// The contexts of callees by innermost region of the caller, 32 bits each; 0 where it is not known.
+    callees: i32,
+    /// All of a node.
+    pub node: i32,
 }
 
 impl CounterLayout {
-    /// The layout for so many exits, places and reads; `None` for a program so large that offsets do not fit 31 bits.
-    pub fn new(exits: usize, places: usize, sites: usize) -> Option<CounterLayout> {
-        let start = size_of::<Context>().next_multiple_of(8);
-        let begun = start.checked_add(exits.checked_mul(8)?)?;
-        let site = begun.checked_add(places.checked_mul(8)?)?;
-        let end = site.checked_add(sites.checked_mul(16)?)?;
+    /// The layout for so many exits, places, regions and reads; `None` for a program so large that offsets do not fit 31 bits.
+    pub fn new(exits: usize, places: usize, regions: usize, sites: usize) -> Option<CounterLayout> {
         let fit = |octets: usize| i32::try_from(octets).ok();
-        Some(CounterLayout { exits: fit(start)?, begun: fit(begun)?, sites: fit(site)?, octets: fit(end)? })
+        let site = size_of::<Context>().next_multiple_of(8);
+        let frame = site.checked_add(sites.checked_mul(16)?)?;
+        let begun = exits.checked_mul(8)?;
+        let entered = begun.checked_add(places.checked_mul(8)?)?;
+        let callees = entered.checked_add(regions.checked_mul(8)?)?;
+        let node = callees.checked_add(regions.checked_add(1)?.checked_mul(4)?)?.checked_next_multiple_of(64)?;
+        // Nodes are counted in 32 bits, and the frame has one behind it.
+        fit(frame.checked_add(node)?)?;
+        Some(CounterLayout {
+            sites: fit(site)?,
+            frame: fit(frame)?,
+            begun: fit(begun)?,
+            entered: fit(entered)?,
+            callees: fit(callees)?,
+            node: fit(node)?,
+        })
     }
 
-    /// Counter of an exit, an offset in octets.
+    /// Counter of an exit, from the beginning of a node.
     pub fn exit(&self, exit: usize) -> i32 {
-        self.exits + 8 * exit as i32
+        8 * exit as i32
     }
 
-    /// Counter of a place, an offset in octets.
+    /// Counter of a place, from the beginning of a node.
     pub fn begun(&self, place: u32) -> i32 {
         self.begun + 8 * place as i32
     }
 
-    /// A read's place, an offset in octets.
+    /// Counter of a region, from the beginning of a node.
+    pub fn entered(&self, region: u16) -> i32 {
+        self.entered + 8 * i32::from(region)
+    }
+
+    /// Context of callees, from the beginning of a node.
+    pub fn callee(&self, caller: usize) -> i32 {
+        self.callees + 4 * caller as i32
+    }
+
+    /// A read's place, from the beginning of the context.
     pub fn site(&self, site: u32) -> i32 {
         self.sites + 16 * site as i32
     }
 }
 
-/// Memory with a context in front and counters behind, as a layout says.
+/// Memory as a layout says.
 #[derive(Clone, Debug)]
 pub(super) struct ContextFrame {
+    /// The context with what stands behind it.
     octets: Box<[u64]>,
+    /// Nodes by calling context, where functions are measured. The first belongs to no context.
+    nodes: Option<Vec<u64>>,
     layout: CounterLayout,
 }
 
+/// Counters of a node.
+pub(super) struct ContextCounters<'a> {
+    pub exits: &'a mut [u64],
+    pub begun: &'a mut [u64],
+    pub entered: &'a mut [u64],
+}
+
 impl ContextFrame {
-    /// All zero.
-    pub fn new(layout: CounterLayout) -> ContextFrame {
+    /// All zero; with a node a calling context or with one.
+    pub fn new(layout: CounterLayout, has_contexts: bool) -> ContextFrame {
         const { assert!(align_of::<Context>() == 8) };
-        ContextFrame { octets: vec![0; layout.octets as usize / 8].into(), layout }
+        let octets = layout.frame + if has_contexts { 0 } else { layout.node };
+        let octets = vec![0; octets as usize / 8 + 1].into();
+        ContextFrame { octets, nodes: has_contexts.then(Vec::new), layout }
     }
 
     /// The context, from which generated code reaches the counters as well.
@@ -131,23 +181,51 @@ impl ContextFrame {
         self.octets.as_mut_ptr().cast()
     }
 
-    fn words(&mut self, from: i32, to: i32) -> &mut [u64] {
-        &mut self.octets[from as usize / 8..to as usize / 8]
+    /// The nodes, with room for one of a calling context.
+    pub fn nodes(&mut self, context: u32) -> *mut u64 {
+        let words = self.layout.node as usize / 8;
+        let Some(nodes) = &mut self.nodes else { return std::ptr::null_mut() };
+        let wanted = words * (context as usize + 1);
+        if nodes.len() < wanted {
+            nodes.resize(wanted, 0);
+        }
+        nodes.as_mut_ptr()
     }
 
-    /// Counters of exits.
-    pub fn exits(&mut self) -> &mut [u64] {
-        self.words(self.layout.exits, self.layout.begun)
+    /// Number of nodes, from which on there are none.
+    pub fn count(&self) -> u32 {
+        self.nodes.as_ref().map_or(1, |nodes| (nodes.len() / (self.layout.node as usize / 8)) as u32)
     }
 
-    /// Counters of places.
-    pub fn begun(&mut self) -> &mut [u64] {
-        self.words(self.layout.begun, self.layout.sites)
+    /// The words of a node.
+    fn node_words(&mut self, context: u32) -> &mut [u64] {
+        let words = self.layout.node as usize / 8;
+        match &mut self.nodes {
+            Some(nodes) => &mut nodes[words * context as usize..][..words],
+            None => &mut self.octets[self.layout.frame as usize / 8..][..words],
+        }
+    }
+
+    /// Counters of a node.
+    pub fn node(&mut self, context: u32) -> ContextCounters<'_> {
+        let CounterLayout { begun, entered, callees, .. } = self.layout;
+        let (exits, rest) = self.node_words(context).split_at_mut(begun as usize / 8);
+        let (begun, rest) = rest.split_at_mut((entered - begun) as usize / 8);
+        ContextCounters { exits, begun, entered: &mut rest[..(callees - entered) as usize / 8] }
+    }
+
+    /// Notes the context of calls of a context.
+    pub fn set_callee(&mut self, context: u32, caller: usize, callee: u32) {
+        let at = self.layout.callee(caller) as usize;
+        // Two of them share a word.
+        let word = &mut self.node_words(context)[at / 8];
+        let shift = 8 * (at % 8);
+        *word = *word & !(u64::from(u32::MAX) << shift) | u64::from(callee) << shift;
     }
 
     /// A read's place: start and length, and how often.
     pub fn site(&mut self, site: usize) -> &mut [u64] {
-        let start = self.layout.sites + 16 * site as i32;
-        self.words(start, start + 16)
+        let start = (self.layout.sites as usize + 16 * site) / 8;
+        &mut self.octets[start..start + 2]
     }
 }

@@ -1,16 +1,17 @@
-//! Counts of a core in generated code, and how they fold into passes and octets.
+//! Counts of a core in generated code, and how they fold into passes, calling contexts and octets.
+
+use isa::Op;
 
 use super::context::{ContextFrame, CounterLayout};
-use super::{AddOctets, Native, run};
+use super::{AddOctets, Native, blocks, run};
 use crate::code::tally::Tally;
 use crate::engine::plan::{Plan, Step};
+use crate::profile::Profiler;
 
 /// Counters of a core. Those that generated code changes stand in the frame.
 #[derive(Clone, Debug)]
 pub(super) struct Counters {
     pub frame: ContextFrame,
-    /// Counts of runs that ended before each place.
-    pub cut: Vec<u64>,
     /// Units by exit.
     pub units: Vec<u64>,
     /// Kinds of the data that each site has met last.
@@ -19,58 +20,97 @@ pub(super) struct Counters {
 
 impl Counters {
     /// Nothing yet.
-    pub fn new(layout: CounterLayout, plan: &Plan, sites: usize) -> Counters {
-        Counters {
-            frame: ContextFrame::new(layout),
-            cut: vec![0; plan.steps().len()],
-            units: vec![0; plan.exits()],
-            kinds: vec![0; sites],
-        }
+    pub fn new(layout: CounterLayout, plan: &Plan, sites: usize, has_contexts: bool) -> Counters {
+        Counters { frame: ContextFrame::new(layout, has_contexts), units: vec![0; plan.exits()], kinds: vec![0; sites] }
     }
 }
 
 impl Native<'_> {
-    /// Adds the passes to a tally of the same program, and the octets that were read inline by kind, and forgets them.
+    /// Adds the passes to a tally of the same program and to its profiler, and the octets that were read inline by kind, and forgets them.
     ///
     /// Execution counts are reconstructed by flow conservation: through a place go all that came from the place before and all that began there,
     /// less those that stopped in front of it. Of ten that begin a loop's body at place 4, whose last row at 7 is a branch that was taken six
-    /// times, four come to place 8.
-    pub(super) fn fold_counters(&mut self, tally: &mut Tally, add_octets: AddOctets) {
+    /// times, four come to place 8. Where functions are measured, this holds in each calling context by itself, and a call goes on in another one.
+    pub(super) fn fold_counters(
+        &mut self,
+        tally: &mut Tally,
+        add_octets: AddOctets,
+        mut profiler: Option<&mut Profiler>,
+    ) {
         let Native { plan, shared, counters, .. } = self;
-        let Some(counters) = counters else { return };
+        let (Some(counters), Some(Ok(code))) = (counters, shared.compiled.get()) else { return };
         let steps = &plan.steps()[..plan.end() as usize];
-        let mut begun = std::mem::replace(&mut counters.cut, vec![0; plan.steps().len()]);
-        for (begun, more) in begun.iter_mut().zip(counters.frame.begun()) {
-            *begun = std::mem::take(more).wrapping_sub(*begun);
-        }
-        let exits = counters.frame.exits();
-        // Behind instructions with a meaning in Rust a run was begun wherever they led.
-        for step in steps.iter().filter(|step| step.exits != 0 && step.row != Step::UNIT) {
-            if let Some(begun) = begun.get_mut(step.target as usize) {
-                *begun = begun.wrapping_add(exits[step.exit as usize + usize::from(step.exits) - 1]);
+        let profiling = code.profiling.as_ref();
+        let contexts = profiler.is_some().into()..counters.frame.count();
+        // Let what was taken begin runs where it leads. Behind instructions with a meaning in Rust a run was begun wherever they led.
+        for context in contexts.clone() {
+            let branches = (0..)
+                .zip(steps)
+                .filter(|(_, step)| step.exits != 0 && step.row != Step::UNIT && step.target <= plan.end());
+            for (place, step) in branches {
+                let node = counters.frame.node(context);
+                let taken = node.exits[step.exit as usize + usize::from(step.exits) - 1];
+                let is_call = blocks::op(plan, step) == Some(Op::call);
+                let mut to = context;
+                if let (Some(profiler), Some(profiling)) = (&mut profiler, profiling)
+                    && taken != 0
+                {
+                    let entered = match is_call {
+                        true => profiling.around(step.target),
+                        false => profiling.entered(place, step.target),
+                    };
+                    entered.iter().for_each(|&region| profiler.contexts.add_entered(region, taken));
+                    to = if is_call {
+                        profiler.contexts.known_callee(context, profiling.caller(place))
+                    } else {
+                        context
+                    };
+                }
+                let begun = &mut counters.frame.node(to).begun[step.target as usize];
+                *begun = begun.wrapping_add(taken);
             }
         }
-        // How often control came from the place before.
-        let mut count = 0u64;
-        for (place, (step, begun)) in (0..).zip(steps.iter().zip(&begun)) {
-            count = count.wrapping_add(*begun);
-            let Some((first, others)) = exits[step.exit as usize..][..step.exits.into()].split_first_mut() else {
-                continue;
-            };
-            *first = count - others.iter().sum::<u64>();
-            if plan.is_run_end(place) {
-                count = if plan.falls_through(place) { *first } else { 0 };
-            }
-        }
+        // Go through the places with the number of times that control came from the one before
         let passes = tally.passes_mut();
-        for (exit, (count, units)) in exits.iter_mut().zip(&mut counters.units).enumerate() {
-            let (count, units) = (std::mem::take(count), std::mem::take(units));
-            if let Some(pass) = plan.pass(exit) {
+        for context in contexts {
+            let node = counters.frame.node(context);
+            let mut count = 0u64;
+            for (place, (step, begun)) in (0..).zip(steps.iter().zip(&mut *node.begun)) {
+                count = count.wrapping_add(std::mem::take(begun));
+                let mut through = count;
+                if let Some((first, others)) = node.exits[step.exit as usize..][..step.exits.into()].split_first_mut() {
+                    *first = count.wrapping_sub(others.iter().sum());
+                    through = if plan.falls_through(place) && plan.is_run_end(place) { *first } else { count };
+                }
+                count = if plan.is_run_end(place) && !plan.falls_through(place) { 0 } else { through };
+                if let (Some(profiler), Some(profiling)) = (&mut profiler, profiling)
+                    && count != 0
+                    && place + 1 < plan.end()
+                {
+                    let entered = profiling.entered(place, place + 1).iter();
+                    entered.for_each(|&region| profiler.contexts.add_entered(region, count));
+                }
+            }
+            node.begun.fill(0);
+            for (exit, count) in node.exits.iter_mut().map(std::mem::take).enumerate().filter(|(_, count)| *count != 0)
+            {
+                let Some(pass) = plan.pass(exit) else { continue };
                 passes[pass].count += count;
+                if let Some(profiler) = &mut profiler {
+                    profiler.contexts.add_passes(context, pass, count, 0);
+                }
+            }
+            if let Some(profiler) = &mut profiler {
+                for (region, times) in (0..).zip(node.entered.iter_mut().map(std::mem::take)) {
+                    profiler.contexts.add_entered(region, times);
+                }
+            }
+        }
+        for (exit, units) in counters.units.iter_mut().map(std::mem::take).enumerate() {
+            if let Some(pass) = plan.pass(exit) {
                 passes[pass].units += units;
             }
         }
-        let Some(Ok(code)) = shared.compiled.get() else { return };
         for (site, &place) in code.site_places.iter().enumerate() {
             let count = std::mem::take(&mut counters.frame.site(site)[1]);
             if count != 0 {

@@ -8,8 +8,12 @@ mod calls;
 mod classes;
 mod context;
 mod count;
+#[cfg(target_arch = "x86_64")]
+mod doubles;
 mod executable;
 mod lower;
+mod operands;
+mod profiling;
 mod run;
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,7 +22,6 @@ use std::sync::{Arc, OnceLock};
 use cranelift_codegen::control::ControlPlane;
 use cranelift_codegen::settings::{self, Configurable, Flags};
 
-use super::fast::Fast;
 use super::host::HostSimd;
 use super::plan::{Plan, Step};
 use super::state::{CoreId, State};
@@ -26,13 +29,13 @@ use super::taint::Taint;
 use super::{AddOctets, Answers, Choice, Demand, Engine, EngineKind, NotedRead, Refusal, Stopped, TimedLink};
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
-use crate::profile::RunObserver;
+use crate::profile::{ProfileLevel, Profiler};
 use crate::semantics::{Computes, Watch};
 use blocks::Blocks;
-use classes::Classes;
 use context::{Context, CounterLayout};
 use count::Counters;
 use executable::Executable;
+use profiling::Profiling;
 
 /// Settings that code is generated for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,8 +52,8 @@ struct Recipe {
     held: Option<u64>,
     /// Time at which the machine answers.
     answers: Answers,
-    /// Functions and regions are measured.
-    has_profile: bool,
+    /// Detail in which functions and regions are measured.
+    profile: ProfileLevel,
 }
 
 impl Recipe {
@@ -63,7 +66,7 @@ impl Recipe {
             buffer_octets: demand.buffer_octets,
             held: demand.follows_cores.then(held),
             answers: demand.answers,
-            has_profile: demand.has_profile,
+            profile: demand.profile,
         }
     }
 
@@ -122,41 +125,34 @@ struct Compiled {
     site_places: Vec<u32>,
     /// By place: the end of its block.
     ends: Vec<u32>,
-    /// Costs by class, where functions are measured.
-    classes: Option<Classes>,
+    /// Functions and regions, where they are measured.
+    profiling: Option<Profiling>,
     /// Things that the code points to.
     _steps: Box<[Step]>,
     _extras: Box<[u64]>,
     _executable: Executable,
 }
 
-/// The code of a program, shared by the cores that run it. It is generated when other engines have taken about as long as that takes.
+/// The code of a program, shared by the cores that run it. It is generated when the interpreter has taken about as long as that takes.
 #[derive(Debug)]
 struct SharedCode {
     recipe: Recipe,
     compiled: OnceLock<Result<Compiled, Refusal>>,
-    /// Steps that other engines have executed of the program.
+    /// Steps that the interpreter has executed of the program.
     executed: AtomicU64,
 }
 
-/// Steps of the interpreter, for each slot of a program, that take about as long as compiling it; the fast engine takes [`QUICKER`] times as
-/// many.
-const PATIENCE: u64 = 1000;
-const QUICKER: u64 = 3;
+/// Steps of the interpreter, for each slot of a program, that take about as long as compiling it.
+const PATIENCE: u64 = 600;
 
 /// Refusal of a host that lets nobody execute what was written.
 const NO_MEMORY: Refusal = "the host gives no memory for code";
-
-/// Steps before that at which it does not matter any more: the fast engine stops in front of a run that would go beyond its limit.
-const LAST: u64 = 1 << 14;
 
 /// The native engine of one program, with what a core has counted.
 #[derive(Clone, Debug)]
 pub struct Native<'a> {
     plan: Plan<'a>,
     shared: Arc<SharedCode>,
-    /// Executes the program until it is compiled, where it suits.
-    first: Option<Box<Fast<'a>>>,
     /// Steps after which the program is compiled.
     patience: u64,
     counters: Option<Counters>,
@@ -172,47 +168,23 @@ impl<'a> Engine<'a> for Native<'a> {
             return Err(NO_MEMORY);
         }
         let plan = Plan::new(demand.code).ok_or("an instruction takes more clocks than the sums have room for")?;
-        let plan = plan.regardless_of_cores();
         let recipe = Recipe::new(demand, &plan);
         let new = || SharedCode { recipe: recipe.clone(), compiled: OnceLock::new(), executed: AtomicU64::new(0) };
         let shared = demand.code.share(|shared: &SharedCode| shared.recipe == recipe, new);
-        let first = if demand.wish.is_eager { None } else { Fast::new(demand).ok().map(Box::new) };
-        let patience = match &first {
-            _ if demand.wish.is_eager => 0,
-            None => PATIENCE * plan.slots().len() as u64,
-            Some(_) => QUICKER * PATIENCE * plan.slots().len() as u64,
-        };
-        Ok(Native { plan, shared, first, patience, counters: None })
+        let patience = if demand.wish.is_eager { 0 } else { PATIENCE * plan.slots().len() as u64 };
+        Ok(Native { plan, shared, patience, counters: None })
     }
 
-    fn run<T: Watch, L: TimedLink, O: RunObserver>(
+    fn run<T: Watch>(
         &mut self,
         core: CoreId,
         state: &mut State,
         arithmetic: &T,
-        link: &mut L,
+        link: &mut dyn TimedLink,
         taint: &mut Taint,
-        observer: &mut O,
+        profiler: Option<&mut Profiler>,
     ) -> Stopped {
-        let rest = self.shared.rest(self.patience);
-        if rest != 0
-            && let Some(first) = &mut self.first
-        {
-            // Up to the time at which compiling is worth it, from then on by what is compiled.
-            let before = state.steps + state.inner_steps;
-            let limited = CoreId { step_limit: core.step_limit.min(before.saturating_add(rest)), ..core };
-            let stopped = first.run(limited, state, arithmetic, link, taint, observer);
-            self.shared.executed.fetch_add(state.steps + state.inner_steps - before, Ordering::Relaxed);
-            if stopped != Stopped::Bailout || self.shared.rest(self.patience) > LAST {
-                return stopped;
-            }
-        }
-        let is_refused = self.shared.code(&self.plan, self.patience).is_none();
-        if is_refused && let Some(first) = &mut self.first {
-            return first.run(core, state, arithmetic, link, taint, observer);
-        }
-        let mut link: &mut dyn TimedLink = link;
-        self.run_code(core, state, arithmetic, &mut link, taint, observer)
+        self.run_code(core, state, arithmetic, link, taint, profiler)
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {
@@ -228,20 +200,16 @@ impl<'a> Engine<'a> for Native<'a> {
 
     fn replacement(&self) -> Option<Choice> {
         let refusal = self.shared.compiled.get()?.as_ref().err().copied()?;
-        let kind = if self.first.is_some() { EngineKind::Fast } else { EngineKind::Checked };
-        Some(Choice { kind, refusal: Some(refusal) })
+        Some(Choice { kind: EngineKind::Checked, refusal: Some(refusal) })
     }
 
-    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets) {
-        if let Some(first) = &mut self.first {
-            first.fold(tally, add_octets);
-        }
-        self.fold_counters(tally, add_octets);
+    fn fold(&mut self, tally: &mut Tally, add_octets: AddOctets, profiler: Option<&mut Profiler>) {
+        self.fold_counters(tally, add_octets, profiler);
     }
 }
 
 impl SharedCode {
-    /// Steps that other engines are to execute before the program is compiled; no end of them where it cannot be.
+    /// Steps that the interpreter is to execute before the program is compiled; no end of them where it cannot be.
     fn rest(&self, patience: u64) -> u64 {
         match self.compiled.get() {
             None => patience.saturating_sub(self.executed.load(Ordering::Relaxed)),
@@ -252,7 +220,7 @@ impl SharedCode {
 
     /// The code, where there is some, or it is time to generate it.
     fn code(&self, plan: &Plan, patience: u64) -> Option<&Compiled> {
-        if self.rest(patience) > LAST {
+        if self.rest(patience) != 0 {
             return None;
         }
         self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe)).as_ref().ok()
@@ -275,10 +243,11 @@ impl Compiled {
                 site_places.push(place);
             }
         }
-        let layout =
-            CounterLayout::new(plan.exits(), steps.len(), site_places.len()).ok_or("the program is too large")?;
-        let classes = recipe.has_profile.then(|| Classes::new(plan));
-        let blocks = Blocks::new(plan, recipe, classes.as_ref());
+        let profiling = Profiling::new(plan, recipe.profile);
+        let regions = profiling.as_ref().map_or(0, Profiling::regions);
+        let layout = CounterLayout::new(plan.exits(), steps.len(), regions, site_places.len());
+        let layout = layout.ok_or("the program is too large")?;
+        let blocks = Blocks::new(plan, recipe, profiling.as_ref());
         let source = lower::LowerSource {
             plan,
             steps: &steps,
@@ -287,7 +256,7 @@ impl Compiled {
             layout,
             blocks: &blocks,
             sites: &sites,
-            classes: classes.as_ref(),
+            profiling: profiling.as_ref(),
         };
         let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
         let compiled = context.compile(&*isa, &mut ControlPlane::default());
@@ -303,7 +272,7 @@ impl Compiled {
             layout,
             is_join: blocks.is_join,
             ends: blocks.end,
-            classes,
+            profiling,
             sites,
             site_places,
             _steps: steps,
@@ -353,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_cannot_be_compiled_runs_on_the_first_engine_and_says_so() {
+    fn a_program_that_cannot_be_compiled_is_interpreted_and_says_so() {
         let isa = Isa::base();
         let word = |op, operands: &[i64]| isa.encode(op, operands).expect("operands are in their ranges");
         // As many rounds as there is patience, and more.
@@ -365,7 +334,7 @@ mod tests {
         ];
         let program = Program { words, region_of: vec![], ..Program::default() };
         let buffer_octets = 64;
-        for (is_eager, kind, interpreted) in [(false, EngineKind::Fast, 0), (true, EngineKind::Checked, 60_002)] {
+        for is_eager in [false, true] {
             let code = Code::new(&program, &isa, Default::default());
             let wish = Wish { is_eager, ..Wish::native() };
             let demand = Demand::new(&code, wish, Computes::default(), buffer_octets);
@@ -379,10 +348,8 @@ mod tests {
             let mut tally = Tally::new(&code);
             let pause = runner.run(core, &mut state, &Nearest32, &mut Silent, &mut tally, &mut Unobserved);
             assert_eq!((pause, state.steps), (Pause::Halt, 60_002));
-            assert_eq!(tally.instructions(), interpreted, "by the interpreter");
-            runner.fold(&mut tally, &mut |_, _| {});
             assert_eq!(tally.instructions(), 60_002);
-            assert_eq!(runner.choice(), Choice { kind, refusal: Some(NO_MEMORY) });
+            assert_eq!(runner.choice(), Choice { kind: EngineKind::Checked, refusal: Some(NO_MEMORY) });
         }
     }
 }

@@ -3,8 +3,6 @@
 use std::any::Any;
 use std::panic::resume_unwind;
 
-use isa::Counts;
-
 use super::classes::Lanes;
 use super::context::{Context, CounterLayout, NOTED};
 use super::count::Counters;
@@ -17,45 +15,11 @@ use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
 use crate::extension::Units;
-use crate::profile::RunObserver;
+use crate::profile::{CallMeter, CallStack, Profiler};
 use crate::semantics::{Motion, Numbers, Watch};
 
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
 const AHEAD: u64 = 4 * Cost::WHOLE as u64;
-
-/// A profiler, whatever its type.
-pub(super) trait Watcher {
-    /// Adds executed operations.
-    fn add(&mut self, counts: &Counts);
-
-    /// Adds executed operations, few of each class.
-    fn add_near(&mut self, counts: &Lanes);
-
-    /// Takes back operations that were added and are not executed.
-    fn take_back(&mut self, counts: &Counts);
-
-    /// Adds executed operations, then goes from one slot to another one.
-    fn go(&mut self, counts: &Lanes, from: u32, to: u32, motion: Motion);
-}
-
-impl<O: RunObserver> Watcher for O {
-    fn add(&mut self, counts: &Counts) {
-        RunObserver::add(self, counts);
-    }
-
-    fn add_near(&mut self, counts: &Lanes) {
-        RunObserver::add_near(self, counts);
-    }
-
-    fn take_back(&mut self, counts: &Counts) {
-        RunObserver::take_back(self, counts);
-    }
-
-    fn go(&mut self, counts: &Lanes, from: u32, to: u32, motion: Motion) {
-        RunObserver::add_near(self, counts);
-        RunObserver::go(self, from, to, motion);
-    }
-}
 
 /// Cost of a run before its sums were emptied.
 #[derive(Clone, Copy, Debug)]
@@ -74,10 +38,7 @@ pub(super) struct NativeHost<'a> {
     pub link: &'a mut dyn TimedLink,
     pub numbers: Numbers<'a>,
     totals: Totals,
-    /// Units by exit.
-    counted_units: &'a mut [u64],
-    /// Memory of the sites: the kind of the data there.
-    kinds: &'a mut [u32],
+    counters: &'a mut Counters,
     sites: &'a [u32],
     layout: CounterLayout,
     reads_inline: bool,
@@ -85,7 +46,7 @@ pub(super) struct NativeHost<'a> {
     /// Payload of a panic of an instruction with a meaning in Rust.
     panic: Option<Box<dyn Any + Send>>,
     /// The profiler, where functions are measured.
-    watcher: Option<&'a mut dyn Watcher>,
+    profiler: Option<&'a mut Profiler>,
     /// The link has no room for what it was told of.
     is_full: bool,
 }
@@ -143,7 +104,7 @@ impl<'a> NativeHost<'a> {
             let at = std::ptr::from_mut(context).cast::<u8>().add(self.layout.site(site) as usize).cast::<u64>();
             std::slice::from_raw_parts_mut(at, 2)
         };
-        let old = &mut self.kinds[site as usize];
+        let old = &mut self.counters.kinds[site as usize];
         if known[1] != 0 {
             quick.add(*old, known[1] * octets);
         }
@@ -167,29 +128,81 @@ impl<'a> NativeHost<'a> {
         Status::Bailout as u64
     }
 
-    /// Hands what was added up by class to who measures functions.
+    /// The meter of each call, where there is one.
+    fn meter(&mut self) -> Option<&mut CallMeter> {
+        self.profiler.as_mut()?.meter.as_deref_mut()
+    }
+
+    /// Hands what was added up by class to who measures each call.
     fn add_classes(&mut self, context: &mut Context) {
-        if let Some(watcher) = &mut self.watcher {
-            watcher.add_near(&std::mem::take(&mut context.classes));
+        if let Some(meter) = self.meter() {
+            meter.add(&std::mem::take(&mut context.classes));
         }
     }
 
-    /// Control goes from one slot to another one.
+    /// Tells who measures each call that control goes from one slot to another one.
     pub fn went(&mut self, context: &mut Context, from: u32, to: u32, motion: Motion) {
-        if let Some(watcher) = &mut self.watcher {
-            watcher.go(&context.classes, from, to, motion);
-            context.classes = Lanes::default();
+        self.add_classes(context);
+        if let Some(meter) = self.meter() {
+            meter.go(from, to, motion);
         }
+    }
+
+    /// Follows control from one slot to another one, into another calling context.
+    pub fn follow(&mut self, context: &mut Context, from: u32, to: u32, motion: Motion) {
+        self.take_calls(context);
+        if let Some(profiler) = &mut self.profiler {
+            profiler.contexts.go(from, to, motion);
+        }
+        self.give_calls(context);
+    }
+
+    /// The calling context of what a slot calls; 0 where it has none.
+    pub fn callee(&mut self, context: &mut Context, slot: u32, caller: usize) -> u32 {
+        self.take_calls(context);
+        let current = context.current;
+        let callee = self.profiler.as_mut().and_then(|profiler| profiler.contexts.callee(slot)).unwrap_or(0);
+        if callee != 0 {
+            context.nodes = self.counters.frame.nodes(callee.max(current));
+            self.counters.frame.set_callee(current, caller, callee);
+        }
+        callee
+    }
+
+    /// Takes the open calls over from generated code.
+    fn take_calls(&mut self, context: &Context) {
+        if let Some(profiler) = &mut self.profiler {
+            let stack = profiler.contexts.stack();
+            profiler.contexts.set_stack(CallStack { top: context.calls, current: context.current, ..stack });
+        }
+    }
+
+    /// Gives the open calls to generated code, with counters for their context.
+    fn give_calls(&mut self, context: &mut Context) {
+        if let Some(profiler) = &mut self.profiler {
+            let CallStack { top, end, current, .. } = profiler.contexts.stack();
+            (context.calls, context.calls_end, context.current) = (top, end, current);
+            context.nodes = self.counters.frame.nodes(current);
+        }
+    }
+
+    /// Changes the count of runs that were begun at a place in the current calling context.
+    fn count_begun(&mut self, context: &Context, place: u32, more: i64) {
+        let begun = &mut self.counters.frame.node(context.current).begun[place as usize];
+        *begun = begun.wrapping_add_signed(more);
     }
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        if let Some(count) = self.counted_units.get_mut(exit) {
+        if let Some(count) = self.counters.units.get_mut(exit) {
             *count += u64::from(units);
         }
         let Some(pass) = self.plan.pass(exit) else { return };
-        if let Some(watcher) = &mut self.watcher {
-            watcher.add(&self.plan.code.pass_cost(pass).1.times(units.into()));
+        if let Some(profiler) = &mut self.profiler {
+            profiler.contexts.add_passes(context.current, pass, 0, units.into());
+        }
+        if let Some(meter) = self.meter() {
+            meter.add_units(pass, units);
         }
         if self.plan.code.costs()[pass].has_busy_units {
             let (clocks, elementary) = self.plan.code.unit_cost(pass, units);
@@ -242,17 +255,24 @@ impl Native<'_> {
         arithmetic: &T,
         link: &mut dyn TimedLink,
         taint: &mut Taint,
-        watcher: &mut dyn Watcher,
+        profiler: Option<&mut Profiler>,
     ) -> Stopped {
         let Native { plan, shared, patience, counters, .. } = self;
         let plan = &*plan;
         let Some(code) = shared.code(plan, *patience) else { return Stopped::Bailout };
         let is_inside = (state.pc as usize) < plan.slots().len();
         let mut place = plan.place_of(state.pc);
-        if !is_inside || !code.is_join[place as usize] || is_near_limit(core, state.steps + state.inner_steps) {
+        let is_plain = |profiler: &Profiler| profiler.contexts.is_plain();
+        let is_near_limit = |steps: u64| is_near_limit(core, steps);
+        if !is_inside || !code.is_join[place as usize] || is_near_limit(state.steps + state.inner_steps) {
             return Stopped::Bailout;
         }
-        let counters = counters.get_or_insert_with(|| Counters::new(code.layout, plan, code.site_places.len()));
+        let profiler = profiler.filter(|_| code.profiling.is_some());
+        if !profiler.as_deref().is_none_or(is_plain) {
+            return Stopped::Bailout;
+        }
+        let new = || Counters::new(code.layout, plan, code.site_places.len(), code.profiling.is_some());
+        let counters = counters.get_or_insert_with(new);
         let State { steps, inner_steps, clocks, elementary, .. } = *state;
         let (buffer_octets, before) =
             (state.buffer.start_mut(), link.quick().map(|quick| (quick.before(), quick.memory().map(<[u8]>::as_ptr))));
@@ -264,14 +284,13 @@ impl Native<'_> {
             link,
             numbers: arithmetic.numbers(),
             totals: Totals { steps, inner_steps, clocks, elementary },
-            counted_units: &mut counters.units,
-            kinds: &mut counters.kinds,
+            counters,
             sites: &code.sites,
             layout: code.layout,
             reads_inline: !shared.recipe.is_stepped(),
             fault: None,
             panic: None,
-            watcher: code.classes.is_some().then_some(watcher),
+            profiler,
             is_full: false,
         };
         {
@@ -287,14 +306,15 @@ impl Native<'_> {
             context.before = before.wrapping_sub(clocks) as i64;
             (context.noted, context.noted_end) = (0, end_of_notes(context.before));
             context.arithmetic = std::ptr::from_ref(arithmetic).cast();
+            host.give_calls(context);
             context.host = (&raw mut host).cast();
         }
         let registers = &raw mut state.registers;
         let mut is_begun = true;
         let stopped = loop {
             if std::mem::take(&mut is_begun) {
-                // SAFETY: the counter of the place lies in the frame.
-                unsafe { *context.cast::<u8>().add(code.layout.begun(place) as usize).cast::<u64>() += 1 };
+                // SAFETY: the frame has a context at its beginning, and no generated code runs now.
+                host.count_begun(unsafe { &*context }, place, 1);
             }
             // SAFETY: the code was generated for this plan and this layout; context, registers, buffer and memory live until it returns, and
             // the place is one at which it can be entered. The safe twin is `crate::engine::interpreter::run`.
@@ -306,16 +326,18 @@ impl Native<'_> {
             }
             host.empty(context);
             host.add_classes(context);
+            host.take_calls(context);
             let found = context.place;
             place = found;
-            let is_near_limit = is_near_limit(core, host.totals.steps + host.totals.inner_steps);
+            let is_near_limit = is_near_limit(host.totals.steps + host.totals.inner_steps);
             match status {
                 Status::Halt => break Stopped::Halt,
                 Status::Full if !is_near_limit && !host.is_full => continue,
                 Status::Elsewhere => {
                     place = plan.place_of(found);
                     is_begun = true;
-                    if !is_near_limit && code.is_join[place as usize] {
+                    let is_plain = host.profiler.as_deref().is_none_or(is_plain);
+                    if !is_near_limit && is_plain && code.is_join[place as usize] {
                         continue;
                     }
                     // Neither was it begun, nor was it cut.
@@ -323,12 +345,13 @@ impl Native<'_> {
                 }
                 _ => {}
             }
-            counters.cut[place as usize] += 1;
+            host.count_begun(context, place, -1);
+            let classes = code.profiling.as_ref().and_then(|profiling| profiling.classes.as_ref());
             if status != Status::Full
-                && let (Some(classes), Some(watcher)) = (&code.classes, &mut host.watcher)
+                && let (Some(classes), Some(meter)) = (classes, host.meter())
             {
                 // The rest of the block was added and is not executed. Full sums are found before a block is added.
-                watcher.take_back(&classes.span(place, code.ends[place as usize]));
+                meter.take_back(&classes.span(place, code.ends[place as usize]));
             }
             break match status {
                 Status::Wait => Stopped::Wait,

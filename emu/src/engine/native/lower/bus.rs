@@ -104,12 +104,12 @@ impl Lower<'_, '_> {
             let (away, fall) = (self.b.create_block(), self.b.create_block());
             self.b.ins().brif(taken, away, &[], fall, &[]);
             self.b.switch_to_block(away);
-            self.begin(step.target);
+            self.begin(self.place, step.target);
             self.go(self.place, step.target);
             self.b.switch_to_block(fall);
         }
         if self.source.plan.is_run_end(self.place) {
-            self.begin(self.place + 1);
+            self.begin(self.place, self.place + 1);
         }
         Continuation::Goes
     }

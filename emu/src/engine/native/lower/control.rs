@@ -137,10 +137,14 @@ impl ControlRoom for Lower<'_, '_> {
 
     fn call(&mut self, _: i32) -> Form<(Value,)> {
         let step = &self.source.steps[self.place as usize];
+        let callee = self.find_callee();
         let link = self.link();
         self.set_s(S(step.fields.d), link);
         self.take_exit(step.exit as usize);
         self.tell_motion_to(step.target, Motion::Call);
+        if let Some(callee) = callee {
+            self.open_call(callee);
+        }
         self.go_silently(self.place, step.target);
         Form::Left
     }
@@ -179,7 +183,10 @@ impl ControlRoom for Lower<'_, '_> {
         }
         for (_, place, way) in ways {
             self.b.switch_to_block(way);
-            self.begin(place);
+            match self.source.profiling {
+                Some(_) => self.close_call(place),
+                None => self.begin(place - 1, place),
+            }
             self.tell_motion_to(place, Motion::Return);
             let block = self.entries[place as usize].expect("what stands behind a call is a join");
             self.watch(place, block);

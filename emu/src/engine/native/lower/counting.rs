@@ -9,11 +9,25 @@ use crate::engine::native::Status;
 use crate::engine::native::context::{DEPENDS_ON_CORE, DEPENDS_ON_CORES, PLACE, SUMS, TAINTED};
 
 impl Lower<'_, '_> {
-    /// Adds one to a counter.
-    fn bump(&mut self, offset: i32) {
-        let count = self.b.ins().load(I64, aligned(), self.context, offset);
+    /// Adds one to a number of 64 bits.
+    fn bump_at(&mut self, base: Value, offset: i32) {
+        let count = self.b.ins().load(I64, aligned(), base, offset);
         let count = self.b.ins().iadd_imm_s(count, 1);
-        self.b.ins().store(aligned(), count, self.context, offset);
+        self.b.ins().store(aligned(), count, base, offset);
+    }
+
+    /// A counter of the node: its base and its distance from there.
+    pub fn counter(&mut self, offset: i32) -> (Value, i32) {
+        match self.node {
+            Some(node) => (self.b.use_var(node), offset),
+            None => (self.context, self.source.layout.frame + offset),
+        }
+    }
+
+    /// Adds one to a counter of the node.
+    pub fn bump(&mut self, offset: i32) {
+        let (base, offset) = self.counter(offset);
+        self.bump_at(base, offset);
     }
 
     /// A pass through an exit.
@@ -37,14 +51,19 @@ impl Lower<'_, '_> {
         self.pass_classes(exit);
     }
 
-    /// A run is begun at a place to which no exit leads whose target is known.
-    pub fn begin(&mut self, place: u32) {
+    /// A run is begun at a place to which no exit leads whose target is known; control comes from another place of the same call.
+    pub fn begin(&mut self, from: u32, place: u32) {
         self.bump(self.source.layout.begun(place));
+        if let Some(profiling) = self.source.profiling {
+            for &region in profiling.entered(from, place) {
+                self.bump(self.source.layout.entered(region));
+            }
+        }
     }
 
     /// A read was done inline at a site.
     pub fn count_read(&mut self, site: u32) {
-        self.bump(self.source.layout.site(site) + 8);
+        self.bump_at(self.context, self.source.layout.site(site) + 8);
     }
 
     pub fn add_to_sums(&mut self, more: u64) {
@@ -166,8 +185,8 @@ impl Lower<'_, '_> {
             return;
         }
         let offset = self.b.ins().ishl_imm_s(exit, 3);
-        let at = self.b.ins().iadd(self.context, offset);
-        let first = self.source.layout.exit(step.exit as usize);
+        let (base, first) = self.counter(self.source.layout.exit(step.exit as usize));
+        let at = self.b.ins().iadd(base, offset);
         let count = self.b.ins().load(I64, aligned(), at, first);
         let count = self.b.ins().iadd_imm_s(count, 1);
         self.b.ins().store(aligned(), count, at, first);

@@ -24,8 +24,8 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Switch, Variab
 use isa::{Kind, Op};
 
 use super::blocks::Blocks;
-use super::classes::Classes;
 use super::context::{CounterLayout, SUMS};
+use super::profiling::Profiling;
 use super::{Recipe, Status};
 use crate::code::registers::Registers;
 use crate::engine::plan::{Plan, Step};
@@ -71,8 +71,8 @@ pub(super) struct LowerSource<'a> {
     pub blocks: &'a Blocks,
     /// Numbers of the reads, by place.
     pub sites: &'a [u32],
-    /// Costs by class, where functions are measured; their tables live as long as the code.
-    pub classes: Option<&'a Classes>,
+    /// Functions and regions, where they are measured; its tables live as long as the code.
+    pub profiling: Option<&'a Profiling>,
 }
 
 /// A function on its way.
@@ -84,6 +84,8 @@ struct Lower<'a, 'b> {
     context: Value,
     registers: Value,
     sums: Variable,
+    /// Counters of the current calling context, where functions are measured.
+    node: Option<Variable>,
     scalars: Vec<Option<Value>>,
     vectors: Vec<Option<Value>>,
     wides: Vec<Option<Value>>,
@@ -132,6 +134,11 @@ pub(super) fn function(isa: &dyn TargetIsa, source: &LowerSource) -> Function {
     let sums = b.declare_var(I64);
     let first = b.ins().load(I64, aligned(), context, SUMS);
     b.def_var(sums, first);
+    let node = source.profiling.is_some().then(|| b.declare_var(I64));
+    if let Some(node) = node {
+        let current = profile::current_node(&mut b, context, source.layout);
+        b.def_var(node, current);
+    }
     let is_join = &source.blocks.is_join;
     let entries: Vec<Option<Block>> = is_join.iter().map(|&is_join| is_join.then(|| b.create_block())).collect();
 
@@ -149,7 +156,8 @@ pub(super) fn function(isa: &dyn TargetIsa, source: &LowerSource) -> Function {
 
     let none = || vec![None; 1 << 8];
     let (scalars, vectors, wides) = (none(), none(), none());
-    let mut lower = Lower { b, source, entries, context, registers, sums, scalars, vectors, wides, place: 0, call };
+    let mut lower =
+        Lower { b, source, entries, context, registers, sums, node, scalars, vectors, wides, place: 0, call };
     for place in (0..).take(source.blocks.is_join.len()) {
         lower.block(place);
     }
@@ -303,7 +311,7 @@ impl Lower<'_, '_> {
         isa::instructions!(dispatch);
         match is_control {
             // It ended a run without a branch, so that nothing else says that the next one was begun.
-            true if !plan.falls_through(self.place) => self.begin(self.place + 1),
+            true if !plan.falls_through(self.place) => self.begin(self.place, self.place + 1),
             true => {}
             false => self.follow(),
         }

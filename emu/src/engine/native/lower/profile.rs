@@ -1,16 +1,39 @@
-//! Profiling in generated code: it adds up operations by class, and tells of calls, returns and borders of regions.
+//! Profiling in generated code: calls and returns change the calling context, whose node has the counters. Where each call is measured,
+//! operations are added up by class as well, and calls, returns and borders of regions are told.
 
-use cranelift_codegen::ir::types::{I32X4, I64};
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::types::{I32, I32X4, I64};
 use cranelift_codegen::ir::{ConstantData, InstBuilder, Value};
+use cranelift_frontend::FunctionBuilder;
 use isa::Counts;
 
-use super::{Lower, flags};
-use crate::engine::native::calls::{self, Went};
-use crate::engine::native::classes::{LANES, Lanes, lanes};
-use crate::engine::native::context::CLASSES;
+use super::{Lower, aligned, flags};
+use crate::engine::native::Status;
+use crate::engine::native::calls::{self, Callee, Follow, Went};
+use crate::engine::native::classes::{Classes, LANES, Lanes, lanes};
+use crate::engine::native::context::{CALLS, CALLS_END, CLASSES, CURRENT, CounterLayout, NODES};
 use crate::semantics::Motion;
 
-impl Lower<'_, '_> {
+/// Address of the current calling context's node.
+pub(super) fn current_node(b: &mut FunctionBuilder, context: Value, layout: CounterLayout) -> Value {
+    let current = b.ins().load(I32, aligned(), context, CURRENT);
+    node(b, context, layout, current)
+}
+
+/// Address of a calling context's node.
+fn node(b: &mut FunctionBuilder, context: Value, layout: CounterLayout, number: Value) -> Value {
+    let number = b.ins().uextend(I64, number);
+    let offset = b.ins().imul_imm_s(number, i64::from(layout.node));
+    let nodes = b.ins().load(I64, aligned(), context, NODES);
+    b.ins().iadd(nodes, offset)
+}
+
+impl<'a> Lower<'a, '_> {
+    /// Costs by class, where each call is measured.
+    fn classes(&self) -> Option<&'a Classes> {
+        self.source.profiling?.classes.as_ref()
+    }
+
     /// Adds to four classes.
     fn add_four(&mut self, group: usize, more: Value) {
         let offset = CLASSES + 16 * group as i32;
@@ -30,7 +53,7 @@ impl Lower<'_, '_> {
 
     /// Adds what a block costs from a place on.
     pub fn spend_classes(&mut self, place: u32) {
-        if let Some(classes) = self.source.classes {
+        if let Some(classes) = self.classes() {
             let span: Counts = classes.span(place, self.source.blocks.end[place as usize]);
             self.add_lanes(lanes(&span));
         }
@@ -38,14 +61,14 @@ impl Lower<'_, '_> {
 
     /// Adds what an exit costs beside its block.
     pub fn pass_classes(&mut self, exit: usize) {
-        if let Some(classes) = self.source.classes {
+        if let Some(classes) = self.classes() {
             self.add_lanes(classes.exits[exit]);
         }
     }
 
     /// Adds the cost of one of several exits that only the running program knows, by its number from `first` on.
     pub fn pass_classes_dynamic(&mut self, first: usize, exits: usize, number: Value) {
-        let Some(classes) = self.source.classes else { return };
+        let Some(classes) = self.classes() else { return };
         let exits = &classes.exits[first..first + exits];
         let size = self.c64(size_of::<Lanes>() as i64);
         let offset = self.b.ins().imul(number, size);
@@ -57,35 +80,49 @@ impl Lower<'_, '_> {
         }
     }
 
-    /// Tells that control goes from the current slot to another one.
-    fn tell(&mut self, to: Value, motion: Motion) {
+    /// Calls a function of two numbers.
+    fn call_host(&mut self, function: usize, first: Value, second: i64) -> Value {
+        let (function, second) = (self.c64(function as i64), self.c64(second));
+        let call = self.b.ins().call_indirect(self.call, function, &[self.context, first, second]);
+        self.b.inst_results(call)[0]
+    }
+
+    /// The current slot in the low half, another one in the high half.
+    fn ways(&mut self, to: Value) -> Value {
         let from = self.source.steps[self.place as usize].slot;
         let to = self.b.ins().uextend(I64, to);
         let to = self.b.ins().ishl_imm_s(to, 32);
-        let ways = self.b.ins().bor_imm_s(to, i64::from(from));
-        let function = self.c64(calls::went as Went as usize as i64);
-        let motion = self.c64(motion as i64);
-        self.b.ins().call_indirect(self.call, function, &[self.context, ways, motion]);
+        self.b.ins().bor_imm_s(to, i64::from(from))
     }
 
-    /// Tells of a call or a return, if anybody measures functions.
+    /// Tells who measures each call that control goes from the current slot to another one.
+    fn tell(&mut self, to: Value, motion: Motion) {
+        if self.classes().is_some() {
+            let ways = self.ways(to);
+            self.call_host(calls::went as Went as usize, ways, motion as i64);
+        }
+    }
+
+    /// Tells of a call or a return to a word, if anybody measures functions.
     pub fn tell_motion(&mut self, to: Value, motion: Motion) {
-        if self.source.classes.is_some() {
+        if self.source.profiling.is_some() {
+            let ways = self.ways(to);
+            self.call_host(calls::follow as Follow as usize, ways, motion as i64);
             self.tell(to, motion);
         }
     }
 
-    /// Tells of a call or a return that leads to a place.
+    /// Tells of a call or a return that leads to a place, if anybody measures each call.
     pub fn tell_motion_to(&mut self, to: u32, motion: Motion) {
-        if self.source.classes.is_some() {
+        if self.classes().is_some() {
             let slot = self.slot(to);
             self.tell(slot, motion);
         }
     }
 
-    /// Tells that control goes on at a place, where that belongs to another region.
+    /// Tells that control goes on at a place, where that belongs to another region and anybody measures each call.
     pub fn tell_border(&mut self, from: u32, to: u32) {
-        if self.source.classes.is_some_and(|classes| classes.is_border(from, to)) {
+        if self.source.profiling.is_some_and(|profiling| profiling.is_border(from, to)) {
             let slot = self.slot(to);
             self.tell(slot, Motion::Jump);
         }
@@ -94,5 +131,91 @@ impl Lower<'_, '_> {
     fn slot(&mut self, place: u32) -> Value {
         let slot = self.source.steps[place as usize].slot;
         self.c32(slot as i32)
+    }
+
+    /// Goes over to the node of a calling context.
+    fn switch_to_context(&mut self, number: Value) {
+        let Some(variable) = self.node else { return };
+        self.b.ins().store(aligned(), number, self.context, CURRENT);
+        let node = node(&mut self.b, self.context, self.source.layout, number);
+        self.b.def_var(variable, node);
+    }
+
+    /// Goes over to the node of the calling context that a function has changed.
+    fn reload_node(&mut self) {
+        if let Some(variable) = self.node {
+            let node = current_node(&mut self.b, self.context, self.source.layout);
+            self.b.def_var(variable, node);
+        }
+    }
+
+    /// Finds the calling context of what the current row calls, before it is executed; what has none is left to the interpreter.
+    pub fn find_callee(&mut self) -> Option<Value> {
+        let caller = self.source.profiling?.caller(self.place);
+        let step = &self.source.steps[self.place as usize];
+        // Where there is no room for the call, the interpreter says what becomes of it.
+        let calls = self.b.ins().load(I64, aligned(), self.context, CALLS);
+        let end = self.b.ins().load(I64, aligned(), self.context, CALLS_END);
+        let is_full = self.b.ins().icmp(IntCC::Equal, calls, end);
+        self.unless(is_full);
+        let (base, offset) = self.counter(self.source.layout.callee(caller));
+        let known = self.b.ins().load(I32, aligned(), base, offset);
+        let (seek, found, stop, on) = (self.cold_block(), self.cold_block(), self.cold_block(), self.b.create_block());
+        let number = self.b.append_block_param(on, I32);
+        self.b.ins().brif(known, on, &[known.into()], seek, &[]);
+        self.b.switch_to_block(seek);
+        let slot = self.c64(step.slot.into());
+        let sought = self.call_host(calls::callee as Callee as usize, slot, caller as i64);
+        self.b.ins().brif(sought, found, &[], stop, &[]);
+        self.b.switch_to_block(stop);
+        self.leave(Status::Bailout, self.place, self.rest());
+        self.b.switch_to_block(found);
+        self.reload_node();
+        let sought = self.b.ins().ireduce(I32, sought);
+        self.b.ins().jump(on, &[sought.into()]);
+        self.b.switch_to_block(on);
+        Some(number)
+    }
+
+    /// Opens a call from the current row to a calling context that [`Lower::find_callee`] has found.
+    pub fn open_call(&mut self, callee: Value) {
+        let slot = self.source.steps[self.place as usize].slot;
+        let calls = self.b.ins().load(I64, aligned(), self.context, CALLS);
+        let (current, back) = (self.b.ins().load(I32, aligned(), self.context, CURRENT), self.c32(slot as i32 + 1));
+        self.b.ins().store(aligned(), current, calls, 0);
+        self.b.ins().store(aligned(), back, calls, 4);
+        let calls = self.b.ins().iadd_imm_s(calls, 8);
+        self.b.ins().store(aligned(), calls, self.context, CALLS);
+        self.switch_to_context(callee);
+    }
+
+    /// Ends the newest call with a return to the place behind it, or whatever else that return ends.
+    pub fn close_call(&mut self, place: u32) {
+        if self.node.is_none() {
+            return;
+        }
+        let back = self.source.steps[place as usize - 1].slot + 1;
+        let calls = self.b.ins().load(I64, aligned(), self.context, CALLS);
+        let returns_to = self.b.ins().load(I32, aligned(), calls, -4);
+        let is_newest = self.b.ins().icmp_imm_s(IntCC::Equal, returns_to, i64::from(back));
+        let (newest, other, on) = (self.b.create_block(), self.cold_block(), self.b.create_block());
+        self.b.ins().brif(is_newest, newest, &[], other, &[]);
+
+        self.b.switch_to_block(newest);
+        let calls = self.b.ins().iadd_imm_s(calls, -8);
+        self.b.ins().store(aligned(), calls, self.context, CALLS);
+        let caller = self.b.ins().load(I32, aligned(), calls, 0);
+        self.switch_to_context(caller);
+        self.begin(place - 1, place);
+        self.b.ins().jump(on, &[]);
+
+        self.b.switch_to_block(other);
+        let slot = self.slot(place);
+        let ways = self.ways(slot);
+        self.call_host(calls::follow as Follow as usize, ways, Motion::Return as i64);
+        self.reload_node();
+        self.bump(self.source.layout.begun(place));
+        self.b.ins().jump(on, &[]);
+        self.b.switch_to_block(on);
     }
 }

@@ -7,7 +7,7 @@ use crate::code::registers::Registers;
 
 /// Sets a vector.
 #[inline(always)]
-pub(in crate::engine) fn set_vector(registers: &mut Registers, number: u8, value: Vector) {
+pub(super) fn set_vector(registers: &mut Registers, number: u8, value: Vector) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_mm_setr_epi32, _mm_storeu_si128};
@@ -22,7 +22,7 @@ pub(in crate::engine) fn set_vector(registers: &mut Registers, number: u8, value
 /// Puts a value where a written operand says.
 macro_rules! put {
     ($registers:expr, $fields:expr, $letter:ident V) => {
-        $crate::engine::fast::operands::set_vector($registers, $fields.$letter, $letter)
+        $crate::engine::native::operands::set_vector($registers, $fields.$letter, $letter)
     };
     ($registers:expr, $fields:expr, $letter:ident S) => {
         $registers.set_other_scalar($fields.$letter, $letter)
@@ -38,7 +38,7 @@ macro_rules! put {
     };
     ($registers:expr, $fields:expr, $letter:ident vectors) => {
         for (at, value) in $letter.into_iter().enumerate() {
-            $crate::engine::fast::operands::set_vector($registers, $fields.$letter.wrapping_add(at as u8), value);
+            $crate::engine::native::operands::set_vector($registers, $fields.$letter.wrapping_add(at as u8), value);
         }
     };
     ($registers:expr, $fields:expr, $letter:ident $kind:ident) => {
@@ -46,4 +46,4 @@ macro_rules! put {
     };
 }
 
-pub(in crate::engine) use put;
+pub(super) use put;

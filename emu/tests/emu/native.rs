@@ -1,4 +1,4 @@
-//! The fast engine against the interpreter: whole frames of generated programs, from words at random to loops, calls and transfers. Frames
+//! Native code against the interpreter: whole frames of generated programs, from words at random to loops, calls and transfers. Frames
 //! hold memory, passes, clocks, octets and each work item; the answers are made of all registers and of the buffer.
 
 use emu::engine::EngineKind;
@@ -38,18 +38,15 @@ fn frame(
     emu::run(&setup, Memory::new(image), &mut |_| {})
 }
 
-/// Runs a program on both engines, the fast one with each of the host's features, and yields what all said.
+/// Runs a program on both engines, as native code with each of the host's features, and yields what all said.
 fn same(name: &str, core: &Program, step_limit: u64) -> Result<RunOutcome, String> {
     let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
     let checked = run(EngineKind::Checked, None);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
-        for engine in [EngineKind::Native, EngineKind::Fast] {
-            let found = run(engine, Some(features));
-            if found != checked {
-                let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
-                let (engine, features) = (engine.name(), features.name());
-                panic!("{name}, {engine} with {features}\n{}\n{found:#?}\n{checked:#?}", text.concat());
-            }
+        let found = run(EngineKind::Native, Some(features));
+        if found != checked {
+            let text: Vec<String> = core.sources.iter().map(|source| source.text.to_string()).collect();
+            panic!("{name}, with {}\n{}\n{found:#?}\n{checked:#?}", features.name(), text.concat());
         }
     }
     checked

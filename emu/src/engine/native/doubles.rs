@@ -139,7 +139,7 @@ fn close_margins(met: &Met) -> __m256d {
 /// A ray against a triangle; see the row.
 #[target_feature(enable = "avx2,fma")]
 #[inline]
-pub(in crate::engine) fn rtri(registers: &mut Registers, fields: &Fields) -> Outcome {
+pub(super) fn rtri(registers: &mut Registers, fields: &Fields) -> Outcome {
     let met = meet(registers, fields);
     let margin = wide_margin(&met);
     let (passed, is_missed) = judge(met.found, _mm256_broadcastsd_pd(margin), 6.0 * _mm_cvtsd_f64(margin));

@@ -1,0 +1,364 @@
+//! Calling contexts: the functions and regions that are open around a call. While a program runs, only passes are counted, by context; what
+//! functions and regions took with all that they called is folded from those counts in the end.
+//!
+//! In a program where `pixel` calls `trace` and `trace` calls `root`, what `root` executes is counted in the context {pixel, trace}. The
+//! inclusive total of `trace` is the sum over all contexts with `trace` in them, and of its own words in the others. A function that calls
+//! itself is in the set once, so that of nested calls only the outermost counts.
+
+use std::collections::HashMap;
+
+use isa::Counts;
+
+use super::Profile;
+use super::regions::RegionNesting;
+use crate::code::Code;
+use crate::code::tally::Tally;
+use crate::semantics::Motion;
+
+/// Most calls that are open at once; what deeper calls cost counts for what is open already.
+const DEEPEST: usize = 1 << 15;
+
+/// Calls among which that is looked for to which a return leads.
+const LOOKED_AT: usize = 1 << 10;
+
+/// Octets that the counts of all contexts may take. What is executed in others is added up at once.
+const MOST_OCTETS: usize = 64 << 20;
+
+/// Number of the context that stands for all for which there is no room.
+const CROWDED: u32 = 0;
+
+/// Number of the context of what was not called.
+const ROOT: u32 = 1;
+
+/// Regions, a bit each.
+type RegionSet = Box<[u64]>;
+
+fn set_bit(set: &mut [u64], region: u16) {
+    set[usize::from(region) / 64] |= 1 << (region % 64);
+}
+
+fn has_bit(set: &[u64], region: u16) -> bool {
+    set[usize::from(region) / 64] >> (region % 64) & 1 != 0
+}
+
+/// Regions that are open around a call, and what was executed in the call itself.
+#[derive(Clone, Debug)]
+struct CallContext {
+    open: RegionSet,
+    /// Calls that are too deep: their own functions and regions are not open.
+    is_deep: bool,
+    /// Passes and units by exit of the program; empty before the first one.
+    passes: Vec<(u64, u64)>,
+    /// The context of calls from each innermost region, the one of those outside of all regions first; 0 where that is not known.
+    callees: Vec<u32>,
+}
+
+/// Open regions where there is no room for a context.
+#[derive(Clone, Debug)]
+struct Crowd {
+    /// Number of the first call that has no context.
+    bottom: usize,
+    /// By region: how often it is open.
+    open: Vec<u32>,
+}
+
+/// Calls that are open, and what was executed by context.
+#[derive(Clone, Debug)]
+pub struct Contexts {
+    /// Nesting of the program's regions.
+    pub regions: RegionNesting,
+    /// Cost of each exit, and of a unit of it.
+    costs: Vec<(Counts, Counts)>,
+    /// Most contexts.
+    most: usize,
+    contexts: Vec<CallContext>,
+    numbers: HashMap<(RegionSet, bool), u32>,
+    current: u32,
+    /// Open calls: in the low half the context of the caller, in the high half the word to which the callee returns. The first is none.
+    calls: Box<[u64]>,
+    /// The place behind the newest call.
+    top: usize,
+    /// Calls deeper than [`DEEPEST`].
+    deeper: u64,
+    crowd: Option<Crowd>,
+    /// By region: operations in crowded contexts.
+    crowded: Vec<Counts>,
+    /// By region: how often it was entered.
+    entered: Vec<u64>,
+}
+
+/// Open calls as generated code follows them.
+#[derive(Clone, Copy, Debug)]
+pub struct CallStack {
+    /// The first place.
+    pub start: *mut u64,
+    /// The place behind the newest call.
+    pub top: *mut u64,
+    /// The place at which there is no room for another call.
+    pub end: *mut u64,
+    /// The current context.
+    pub current: u32,
+}
+
+impl Contexts {
+    /// Nothing called yet.
+    pub fn new(code: &Code) -> Contexts {
+        let regions = RegionNesting::new(code);
+        let costs: Vec<_> = (0..code.passes().len()).map(|pass| code.pass_cost(pass)).collect();
+        // Passes and units here, as many numbers in generated code, a context of callees for each region.
+        let octets = 48 * (costs.len() + code.slots().len()) + 16 * regions.count() + 256;
+        let nothing: RegionSet = vec![0; regions.count().div_ceil(64)].into();
+        let mut contexts = Contexts {
+            most: (MOST_OCTETS / octets).clamp(4, 1 << 12),
+            contexts: Vec::new(),
+            numbers: HashMap::new(),
+            current: ROOT,
+            calls: vec![0; DEEPEST + 2].into(),
+            top: 1,
+            deeper: 0,
+            crowd: None,
+            crowded: Vec::new(),
+            entered: vec![0; regions.count()],
+            regions,
+            costs,
+        };
+        contexts.calls[0] = u64::MAX << 32;
+        let open = nothing.clone();
+        contexts.contexts.push(CallContext { open, is_deep: false, passes: Vec::new(), callees: Vec::new() });
+        contexts.number(nothing, false);
+        contexts
+    }
+
+    /// Number of a context; that of the crowded ones where there is no room.
+    fn number(&mut self, open: RegionSet, is_deep: bool) -> u32 {
+        let key = (open, is_deep);
+        if let Some(&number) = self.numbers.get(&key) {
+            return number;
+        }
+        if self.contexts.len() >= self.most {
+            return CROWDED;
+        }
+        let number = self.contexts.len() as u32;
+        let callees = vec![0; self.regions.count() + 1];
+        self.contexts.push(CallContext { open: key.0.clone(), is_deep, passes: Vec::new(), callees });
+        self.numbers.insert(key, number);
+        number
+    }
+
+    /// The regions that are open in a call that a slot of the current context makes.
+    fn open_in_callee(&self, caller: u32) -> RegionSet {
+        let mut open = self.contexts[self.current as usize].open.clone();
+        self.regions.around(caller).iter().for_each(|&region| set_bit(&mut open, region));
+        open
+    }
+
+    /// The context of what a slot calls; `None` where that has none.
+    pub fn callee(&mut self, caller: u32) -> Option<u32> {
+        let from = self.regions.innermost(caller).map_or(0, |region| usize::from(region) + 1);
+        if let Some(&known) = self.contexts[self.current as usize].callees.get(from).filter(|&&known| known != 0) {
+            return Some(known);
+        }
+        let number = (self.current != CROWDED).then(|| self.number(self.open_in_callee(caller), false))?;
+        if number == CROWDED {
+            return None;
+        }
+        self.contexts[self.current as usize].callees[from] = number;
+        Some(number)
+    }
+
+    /// Context of calls from an innermost region of a context, the place of the region among the callees; 0 where there were none.
+    pub fn known_callee(&self, context: u32, from: usize) -> u32 {
+        self.contexts[context as usize].callees.get(from).copied().unwrap_or(0)
+    }
+
+    /// Number of contexts, that of the crowded ones counted.
+    pub fn count(&self) -> u32 {
+        self.contexts.len() as u32
+    }
+
+    /// Passes are counted by context now: neither are there too many contexts, nor are calls too deep.
+    pub fn is_plain(&self) -> bool {
+        self.current != CROWDED && self.deeper == 0
+    }
+
+    /// The calls for generated code, which may push and pop calls of contexts that are known as long as they are plain.
+    pub fn stack(&mut self) -> CallStack {
+        let calls = self.calls.as_mut_ptr_range();
+        let (start, end) = (calls.start, calls.start.wrapping_add(DEEPEST + 1));
+        CallStack { start, top: start.wrapping_add(self.top), end, current: self.current }
+    }
+
+    /// The calls that generated code has left open.
+    pub fn set_stack(&mut self, CallStack { start, top, current, .. }: CallStack) {
+        self.top = (top as usize - start as usize) / size_of::<u64>();
+        self.current = current;
+        debug_assert!((1..self.calls.len()).contains(&self.top) && current < self.count());
+    }
+
+    fn enter_all(&mut self, slot: u32) {
+        self.regions.around(slot).iter().for_each(|&region| self.entered[usize::from(region)] += 1);
+    }
+
+    fn enter_between(&mut self, from: u32, to: u32) {
+        self.regions.entered(from, to).iter().for_each(|&region| self.entered[usize::from(region)] += 1);
+    }
+
+    /// A run begins at a slot.
+    pub fn begin(&mut self, slot: u32) {
+        self.end();
+        self.enter_all(slot);
+    }
+
+    /// A run is over.
+    pub fn end(&mut self) {
+        (self.top, self.current, self.deeper, self.crowd) = (1, ROOT, 0, None);
+    }
+
+    /// A pass through an exit of the slot at `pc`.
+    #[inline]
+    pub fn pass(&mut self, pc: u32, exit: usize, units: u32) {
+        match self.contexts[self.current as usize].passes.get_mut(exit) {
+            Some((count, sum)) => {
+                *count += 1;
+                *sum += u64::from(units);
+            }
+            None => self.pass_slowly(pc, exit, units),
+        }
+    }
+
+    #[cold]
+    fn pass_slowly(&mut self, pc: u32, exit: usize, units: u32) {
+        let Some(crowd) = &self.crowd else { return self.add_passes(self.current, exit, 1, units.into()) };
+        let (cost, each) = self.costs[exit];
+        let cost = cost + each.times(units.into());
+        self.crowded.resize(self.regions.count(), Counts::ZERO);
+        let own = if self.deeper == 0 { self.regions.around(pc) } else { &[] };
+        for (region, sum) in self.crowded.iter_mut().enumerate() {
+            if crowd.open[region] != 0 || own.contains(&(region as u16)) {
+                *sum += cost;
+            }
+        }
+    }
+
+    /// Passes through an exit that were counted elsewhere, with their units.
+    pub fn add_passes(&mut self, context: u32, exit: usize, count: u64, units: u64) {
+        let exits = self.costs.len();
+        let passes = &mut self.contexts[context as usize].passes;
+        passes.resize(exits, (0, 0));
+        passes[exit].0 += count;
+        passes[exit].1 += units;
+    }
+
+    /// A region was entered so often.
+    pub fn add_entered(&mut self, region: u16, times: u64) {
+        self.entered[usize::from(region)] += times;
+    }
+
+    /// Control goes from one slot to another.
+    #[inline]
+    pub fn go(&mut self, from: u32, to: u32, motion: Motion) {
+        match motion {
+            Motion::Call => self.call(from, to),
+            Motion::Return => self.go_back(from, to),
+            Motion::Jump if self.regions.innermost(from) != self.regions.innermost(to) && self.deeper == 0 => {
+                self.enter_between(from, to);
+            }
+            Motion::Jump => {}
+        }
+    }
+
+    fn call(&mut self, from: u32, to: u32) {
+        if self.deeper != 0 {
+            self.deeper += 1;
+            return;
+        }
+        let is_deep = self.top > DEEPEST;
+        let callee = match is_deep {
+            false => self.callee(from).unwrap_or(CROWDED),
+            true if self.current == CROWDED => CROWDED,
+            true => self.number(self.open_in_callee(from), true),
+        };
+        if callee == CROWDED {
+            self.crowd_in(from);
+        }
+        self.calls[self.top] = u64::from(from.wrapping_add(1)) << 32 | u64::from(self.current);
+        self.top += 1;
+        self.current = callee;
+        match is_deep {
+            true => self.deeper = 1,
+            false => self.enter_all(to),
+        }
+    }
+
+    /// Counts what is open from here on, where there is no room for the context of a call from a slot.
+    fn crowd_in(&mut self, from: u32) {
+        let (regions, contexts) = (&self.regions, &self.contexts);
+        let crowd = self.crowd.get_or_insert_with(|| {
+            let open = &contexts[self.current as usize].open;
+            let open = (0..regions.count() as u16).map(|region| u32::from(has_bit(open, region)));
+            Crowd { bottom: self.top, open: open.collect() }
+        });
+        regions.around(from).iter().for_each(|&region| crowd.open[usize::from(region)] += 1);
+    }
+
+    /// A return ends the newest call that returns to its target, and every call inside that one; where there is none, it is a jump.
+    fn go_back(&mut self, from: u32, to: u32) {
+        if self.deeper != 0 {
+            self.deeper -= 1;
+            if self.deeper == 0 {
+                self.close(self.top - 1);
+            }
+            return;
+        }
+        let returns_to = |at: &usize| (self.calls[*at] >> 32) as u32 == to;
+        match (self.top.saturating_sub(LOOKED_AT).max(1)..self.top).rev().find(returns_to) {
+            Some(at) => {
+                self.close(at);
+                self.enter_between(to.wrapping_sub(1), to);
+            }
+            None => self.enter_between(from, to),
+        }
+    }
+
+    /// Ends the calls from one on.
+    fn close(&mut self, first: usize) {
+        match &mut self.crowd {
+            Some(crowd) if first > crowd.bottom => {
+                for call in &self.calls[first..self.top] {
+                    let caller = ((call >> 32) as u32).wrapping_sub(1);
+                    let around = self.regions.around(caller).iter();
+                    around.for_each(|&region| crowd.open[usize::from(region)] -= 1);
+                }
+            }
+            crowd => *crowd = None,
+        }
+        self.top = first;
+        self.current = self.calls[first] as u32;
+    }
+
+    /// Puts calls and inclusive totals into a profile.
+    pub fn fold(&self, code: &Code, profile: &mut Profile) {
+        for (region, (found, &calls)) in (0..).zip(profile.regions.iter_mut().zip(&self.entered)) {
+            found.calls = calls;
+            found.inclusive = self.crowded.get(region).copied().unwrap_or_default();
+        }
+        for context in self.contexts.iter().filter(|context| !context.passes.is_empty()) {
+            let mut tally = Tally::new(code);
+            for (passes, &(count, units)) in tally.passes_mut().iter_mut().zip(&context.passes) {
+                (passes.count, passes.units) = (count, units);
+            }
+            let mut of_callers = Counts::ZERO;
+            for pc in 0..code.words() {
+                let counts = tally.word(code, pc).counts;
+                of_callers += counts;
+                let own = if context.is_deep { &[][..] } else { self.regions.around(pc) };
+                for &region in own.iter().filter(|&&region| !has_bit(&context.open, region)) {
+                    profile.regions[usize::from(region)].inclusive += counts;
+                }
+            }
+            for region in (0..self.regions.count() as u16).filter(|&region| has_bit(&context.open, region)) {
+                profile.regions[usize::from(region)].inclusive += of_callers;
+            }
+        }
+    }
+}

@@ -4,7 +4,8 @@
 //! In a body the operands have the names of the row's letters; `i` is a number. Scratch registers are s8 and up, v8 and
 //! up, w0, w1, w2, w5 to w7. A line `; range: a 30 bits` or `; range: i 31..63` limits the operands to those that the
 //! elementary rows can say, a line `; arithmetic: default` the machines. `; range: b planes 20 bits` says that wide operands are
-//! planes, as the rows of the ray unit take them. Bodies may include files of the folder.
+//! planes, as the rows of the ray unit take them; `; buffer: packet of 10 bits` and `; buffer: block of 10 bits` fill the first octets of the
+//! buffer, which the body leaves free. Bodies may include files of the folder.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -24,6 +25,9 @@ use super::random::Random;
 /// Operands that a body and its row are run on, for each shift.
 const ROUNDS: usize = 60;
 
+/// Octets of the buffer that are filled for rows that look there.
+const FILLED: usize = 512;
+
 /// Shifts of the rows that have one.
 const SHIFTS: [i64; 16] = [0, 1, 2, 7, 15, 16, 29, 30, 31, 32, 33, 45, 60, 61, 62, 63];
 
@@ -41,7 +45,7 @@ fn elementary(counts: &Counts) -> Counts {
 }
 
 fn is_composite(row: &InstructionDef) -> bool {
-    row.outcomes.iter().any(|exit| exit.cost.elementary() > 1)
+    row.outcomes.iter().any(|exit| exit.cost.elementary() > 1 || exit.each.elementary() > 1)
 }
 
 /// Home of an operand: by its letter, behind the further vectors of the operands before it.
@@ -145,10 +149,45 @@ impl Oracle<'_> {
         registers
     }
 
+    /// Fills the buffer as the body's row takes it, and lets the operands point there.
+    fn fill(&self, registers: &mut Registers, random: &mut Random) -> Vec<u8> {
+        let Some(setting) = self.settings("buffer").next() else { return Vec::new() };
+        let (what, bits) = setting.split_once(" of ").expect("it says of how many bits");
+        let bits = bits.trim_end_matches(" bits").parse().unwrap();
+        let mut put = |letter: u8, value: i64| {
+            let operand = self.row.operand(letter).expect("the row has it");
+            registers.set_scalar(register(self.row, operand).unwrap().1, value as i32);
+        };
+        let mut words: Vec<i32> = (0..FILLED / 4).map(|_| random.signed(bits) as i32).collect();
+        match what {
+            "packet" => {
+                put(b'b', 4 * random.within(0, 3));
+                put(b'c', random.within(0, 8));
+            }
+            "block" => {
+                // The nodes lead forwards and back, within the block and out of it, to leaves as well; notes stand behind.
+                const FIRST: i64 = 0x400;
+                let nodes = random.within(1, 20);
+                (words[0], words[1]) = (FIRST as i32, 8 * nodes as i32);
+                for node in 0..nodes as usize {
+                    let child = FIRST + 8 * random.within(node as i64 - 1, node as i64 + 4);
+                    words[3 + 2 * node] = (child | random.within(0, 3)) as i32;
+                }
+                let notes = 8 + 8 * nodes;
+                put(b'c', 0);
+                put(b'x', FIRST + 8 * random.within(0, nodes));
+                put(b'y', notes);
+            }
+            _ => panic!("`{what}` is nothing that fills a buffer"),
+        }
+        words.into_iter().flat_map(i32::to_le_bytes).collect()
+    }
+
     /// The results that a run left.
     fn results(&self, run: &OneCoreRun) -> Vec<i64> {
         let registers = &run.state.registers;
         let written = self.row.operands.iter().filter(|operand| operand.is_written());
+        let octets = self.settings("buffer").flat_map(|_| &run.state.buffer.octets()[..FILLED]);
         written
             .flat_map(|operand| {
                 let (file, number) = register(self.row, operand).unwrap();
@@ -158,6 +197,7 @@ impl Oracle<'_> {
                     _ => vec![registers.wide(number + at)],
                 })
             })
+            .chain(octets.map(|&octet| octet.into()))
             .collect()
     }
 }
@@ -174,6 +214,14 @@ fn run(isa: &Isa, modes: Modes, program: &Program, registers: &Registers) -> (On
     }
     let counts = elementary(&run.tally.counts(&Code::new(program, isa, config.timing())));
     (run, counts)
+}
+
+/// The program with the first octets of its buffer.
+fn with_buffer(program: &Program, filled: &[u8]) -> Program {
+    let mut program = program.clone();
+    program.buffer.resize(program.buffer.len().max(filled.len()), 0);
+    program.buffer[..filled.len()].copy_from_slice(filled);
+    program
 }
 
 #[test]
@@ -202,7 +250,9 @@ fn every_composite_row_costs_and_does_what_its_body_does() {
             }
             for modes in oracle.arithmetics() {
                 for _ in 0..ROUNDS {
-                    let registers = oracle.operands(modes.word, &mut random);
+                    let mut registers = oracle.operands(modes.word, &mut random);
+                    let filled = oracle.fill(&mut registers, &mut random);
+                    let [statement, body] = [&statement, &body].map(|program| with_buffer(program, &filled));
                     let (found, cost) = run(&isa, modes, &statement, &registers);
                     let (expected, body_cost) = run(&isa, modes, &body, &registers);
                     let (name, modes) = (&row.name, format!("shift {shift}, {modes:?}"));

@@ -19,7 +19,7 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, Program};
+use isa::{Counts, Fields, InstructionDef, Isa, Kind, Op, OutcomeDef, Program};
 use messages::{Diagnostic, Place};
 
 use quantity::Clocks;
@@ -53,6 +53,21 @@ pub struct OutcomeCost {
     pub has_busy_units: bool,
     /// True for a step of a body that goes on: no instruction of the program ends with it.
     pub is_inner: bool,
+    /// Cost of the units where one takes as long as another, several of them at once.
+    pub turns: Option<Turns>,
+}
+
+/// Units that are worked off turn by turn: triangles on the lanes of a packet unit, which wait for each other, or nodes one after the other.
+///
+/// 9 triangles on 4 lanes take three turns.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Turns {
+    /// Units of a turn at most.
+    pub at_once: u32,
+    /// Time of a turn.
+    pub clocks: u64,
+    /// Elementary operations of a unit.
+    pub elementary: u64,
 }
 
 /// Owner of a pass, and what the pass counts.
@@ -185,9 +200,19 @@ impl<'a> Code<'a> {
             has_busy_units: cost
                 .is_some_and(|exit| self.timing.clocks(&exit.each).0 != 0 || exit.each.elementary() != 0),
             is_inner,
+            turns: pass.cost.zip(cost).and_then(|((op, _), exit)| self.turns(op, exit)),
         });
         self.passes.push(pass);
         self.passes.len() as u32 - 1
+    }
+
+    fn turns(&self, op: Op, exit: &OutcomeDef) -> Option<Turns> {
+        let at_once = match &*self.isa.definition(op).room {
+            "packet" => self.timing.packet_lanes,
+            "walk" => 1,
+            _ => return None,
+        };
+        Some(Turns { at_once, clocks: self.timing.clocks(&exit.each).0, elementary: exit.each.elementary() })
     }
 
     /// Puts the body of the extension instruction at a word behind the words; its first slot takes the word's place.
@@ -368,6 +393,9 @@ impl<'a> Code<'a> {
 
     /// Clocks and elementary operations that `units` units add to a pass.
     pub fn unit_cost(&self, pass: usize, units: u32) -> (Clocks, u64) {
+        if let Some(OutcomeCost { turns: Some(turns), .. }) = self.costs.get(pass) {
+            return (Clocks(turns.clocks * u64::from(units.div_ceil(turns.at_once))), turns.elementary * u64::from(units));
+        }
         let (cost, each) = self.pass_cost(pass);
         let each = each.times(units.into());
         (self.timing.clocks(&(cost + each)) - self.timing.clocks(&cost), each.elementary())

@@ -4,6 +4,9 @@ use isa::{Class, Counts};
 
 use crate::code::quantity::Clocks;
 
+/// Lanes of the packet unit of a machine that says nothing about them.
+pub const PACKET_LANES: u32 = 4;
+
 /// Clocks and units by class of operations: an exit takes, for each class, ceil(cost / units) times the class's clocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timing {
@@ -11,13 +14,16 @@ pub struct Timing {
     pub clocks: Counts,
     /// Operations of each class that run at once; at least 1.
     pub units: Counts,
+    /// Triangles of a packet that are tested at once, in the time of one; at least 1.
+    pub packet_lanes: u32,
 }
 
 impl Default for Timing {
-    /// One clock for each of add, sub, mul, div and cmp, one at a time, nothing for the rest. Report 6.1.
+    /// One clock for each of add, sub, mul, div and cmp, one at a time but for the triangles of packets, nothing for the rest. Report 6.1.
     fn default() -> Timing {
         let clocks = Class::ALL.iter().filter(|class| class.is_elementary());
-        let mut timing = Timing { clocks: Counts::ZERO, units: Counts([1; Class::ALL.len()]) };
+        let mut timing =
+            Timing { clocks: Counts::ZERO, units: Counts([1; Class::ALL.len()]), packet_lanes: PACKET_LANES };
         for &class in clocks {
             timing.clocks[class] = 1;
         }

@@ -11,8 +11,8 @@ use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
 use crate::profile::Observer;
 use crate::semantics::{
-    BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom,
-    Watch, WideRoom, split_operands,
+    BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, PacketRoom, Port, RayRoom, ScalarRoom,
+    VectorRoom, WalkRoom, Watch, WideRoom, split_operands,
 };
 
 /// Course of a program after an instruction.
@@ -97,6 +97,15 @@ pub fn run<T: Watch, O: Observer>(
             ({ local $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
                 match $trait::$name(buffer $(, read!(registers, fields, $letter $kind))*) {
                     Ok(result) => finish!(result, $written),
+                    Err(fault) => break Pause::Fault(fault),
+                }
+            };
+            ({ buffered $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+                match $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*) {
+                    Ok(result) => {
+                        watch!();
+                        finish!(result, $written)
+                    }
                     Err(fault) => break Pause::Fault(fault),
                 }
             };

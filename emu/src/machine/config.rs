@@ -9,12 +9,15 @@ use serde::{Deserialize, Serialize};
 
 use super::arbiter::ArbiterKind;
 use crate::code::quantity::{Clocks, Octets};
-use crate::code::timing::Timing;
+use crate::code::timing::{PACKET_LANES, Timing};
 use crate::semantics::Watching;
 pub use law::{ClassClocks, ClassUnits};
 
 /// Most cores that a machine may have.
 pub const MOST_CORES: u32 = 256;
+
+/// Most lanes of a packet unit.
+pub const MOST_LANES: u32 = 1024;
 
 /// Most octets of a local buffer.
 pub const MOST_BUFFER_OCTETS: u32 = 1 << 24;
@@ -37,6 +40,8 @@ pub struct Config {
     pub buffer_octets: u32,
     /// Instructions that a work item may take; 10^8, thousands of times what a pixel takes.
     pub step_limit: u64,
+    /// Triangles of a packet that `rnear` and `rany` test at once; 4. The report has no such unit.
+    pub packet_lanes: u32,
     /// Word and modes.
     pub arithmetic: ArithmeticConfig,
     /// Clocks of an operation, by class, as numbers or by the word; 1 for add, sub, mul, div and cmp, 0 for the rest. Report 6.1.
@@ -58,6 +63,7 @@ impl Default for Config {
             clock_hz: 100_000_000,
             buffer_octets: 18_525,
             step_limit: 100_000_000,
+            packet_lanes: PACKET_LANES,
             arithmetic: ArithmeticConfig::default(),
             clocks: ClassClocks::default(),
             units: ClassUnits::default(),
@@ -245,7 +251,7 @@ impl Config {
         let word = self.arithmetic.word;
         // An inverse law may come to no unit at all; a class always has one.
         let units = Counts(self.units.0.at(word).0.map(|units| units.max(1)));
-        Timing { clocks: self.clocks.0.at(word), units }
+        Timing { clocks: self.clocks.0.at(word), units, packet_lanes: self.packet_lanes }
     }
 
     /// Some clocks or units depend on the word.
@@ -261,6 +267,7 @@ impl Config {
             clock_hz: _,
             buffer_octets,
             step_limit,
+            packet_lanes: _,
             arithmetic,
             clocks: _,
             units: _,

@@ -6,12 +6,14 @@ mod control;
 mod integer;
 mod local;
 mod numbers;
+mod packet;
 mod ray;
 mod scalar;
 mod split;
 #[cfg(test)]
 mod tests;
 mod vector;
+mod walk;
 mod watch;
 mod wide;
 
@@ -28,6 +30,7 @@ pub use watch::{Computes, Watch, Watching};
 
 pub(crate) use split::split_operands;
 
+use crate::code::octets::Buffer;
 use crate::code::trap::{Fault, Stop};
 
 /// The type of an operand's value: registers by kind, every immediate an `i32`.
@@ -106,6 +109,13 @@ macro_rules! method {
         /// An access beyond the end of the buffer.
         fn $name(&mut self, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Fault>;
     };
+    ({ buffered $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        $(#[doc = $doc])*
+        ///
+        /// # Errors
+        /// An access beyond the end of the buffer; then the buffer is as it was.
+        fn $name(&self, buffer: &mut Buffer, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Fault>;
+    };
     ({ bus $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] $written:tt) => {
         $(#[doc = $doc])*
         ///
@@ -114,7 +124,7 @@ macro_rules! method {
         fn $name(&mut self, $($letter: value!($kind)),*) -> Result<outcome!($name $written), Stop>;
     };
     ({ $style:ident $name:ident $docs:tt } $read:tt $written:tt) => {
-        compile_error!(concat!("`", stringify!($name), "` is of style `", stringify!($style), "`, which is none of pure, local, bus, control"));
+        compile_error!(concat!("`", stringify!($name), "` is of style `", stringify!($style), "`, which is none of pure, local, buffered, bus, control"));
     };
 }
 

@@ -4,9 +4,11 @@
 mod control;
 mod integer;
 mod memory;
+mod packet;
 mod ray;
 mod scalar;
 mod vector;
+mod walk;
 mod wide;
 
 use std::borrow::Cow;
@@ -17,12 +19,12 @@ use crate::pattern::BitPattern;
 
 /// Calls `callback!` with all rooms: `style room Trait "doc" { rows }`, a row as it stands in its room.
 ///
-/// The style says who may give the semantics: `pure` needs only values, `local` the core's buffer, `bus` the machine,
-/// `control` the next instruction.
+/// The style says who may give the semantics: `pure` needs only values, `local` the core's buffer, `buffered` both, `bus` the
+/// machine, `control` the next instruction.
 #[macro_export]
 macro_rules! instructions {
     ($callback:ident) => {
-        $crate::scalar_instructions! { [] integer_instructions vector_instructions wide_instructions ray_instructions memory_instructions control_instructions instructions_end $callback }
+        $crate::scalar_instructions! { [] integer_instructions vector_instructions wide_instructions ray_instructions packet_instructions walk_instructions memory_instructions control_instructions instructions_end $callback }
     };
 }
 

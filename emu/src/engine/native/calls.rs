@@ -14,7 +14,8 @@ use crate::code::registers::{Registers, read};
 use crate::engine::HostSimd;
 use crate::engine::plan::Step;
 use crate::semantics::{
-    BusRoom, IntegerRoom, Motion, Port, RayRoom, ScalarRoom, VectorRoom, Watch, Watching, WideRoom, split_operands,
+    BusRoom, IntegerRoom, Motion, PacketRoom, Port, RayRoom, ScalarRoom, VectorRoom, WalkRoom, Watch, Watching, WideRoom,
+    split_operands,
 };
 
 /// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].
@@ -73,6 +74,32 @@ macro_rules! row_function {
             let _ = (&*registers, fields);
             let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
             exit.index() as u64 | u64::from(exit.units()) << 32
+        }
+    };
+    ({ buffered $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
+        /// Yields the number of the exit, and in the high half its units; [`STOPPED`] for an access beyond the buffer, with nothing written.
+        ///
+        /// # Safety
+        /// Context and registers are those of a run, whose arithmetic is a `T`, and the step lives.
+        #[inline]
+        pub unsafe extern "C" fn $name<T: Watch>(
+            context: *mut Context,
+            registers: *mut Registers,
+            step: *const Step,
+        ) -> u64 {
+            // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
+            let (context, registers, fields) = unsafe { (&mut *context, &mut *registers, &(*step).fields) };
+            // SAFETY: as above.
+            let arithmetic = unsafe { &*context.arithmetic.cast::<T>() };
+            // SAFETY: the context is that of a run, and the buffer is the core's, which nobody else has.
+            let buffer = unsafe { &mut *Host::of(context).buffer };
+            match $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*) {
+                Ok(result) => {
+                    let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
+                    exit.index() as u64 | u64::from(exit.units()) << 32
+                }
+                Err(_) => STOPPED,
+            }
         }
     };
     ({ bus $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
@@ -158,6 +185,9 @@ macro_rules! of_values {
     (pure $name:ident) => {
         Some(rows::$name::<T>)
     };
+    (buffered $name:ident) => {
+        Some(rows::$name::<T>)
+    };
     ($style:ident $name:ident) => {
         None
     };
@@ -174,17 +204,53 @@ macro_rules! of_machine {
 
 isa::instructions!(row_functions);
 
-/// The function of a row that needs only values: it yields the number of the exit, and in the high half its units; [`STOPPED`] where it has
-/// divided by zero and that traps.
+/// The function of a row that needs only values, and perhaps the buffer: it yields the number of the exit, and in the high half its units;
+/// [`STOPPED`] where it has divided by zero and that traps, or has left the buffer.
 pub(super) fn pure(op: Op, recipe: &Recipe) -> RowCall {
-    if recipe.is_watching {
-        return of_values::<Watching>(op).expect("the row needs only values");
-    }
+    const OF_VALUES: &str = "the row needs only values and the buffer";
     #[cfg(target_arch = "x86_64")]
-    if op == Op::rtri && recipe.simd.min(HostSimd::best()) >= HostSimd::Avx2 {
-        return rtri;
+    if recipe.simd.min(HostSimd::best()) >= HostSimd::Avx2 {
+        match (op, recipe.is_watching) {
+            (Op::rtri, false) => return rtri,
+            (Op::rnear, false) => return wide::rnear::<Nearest32>,
+            (Op::rany, false) => return wide::rany::<Nearest32>,
+            (Op::rnear, true) => return wide::rnear::<Watching>,
+            (Op::rany, true) => return wide::rany::<Watching>,
+            _ => {}
+        }
     }
-    of_values::<Nearest32>(op).expect("the row needs only values")
+    if recipe.is_watching {
+        return of_values::<Watching>(op).expect(OF_VALUES);
+    }
+    of_values::<Nearest32>(op).expect(OF_VALUES)
+}
+
+/// Rows that do the same for many values, compiled for hosts with vectors of four doubles.
+#[cfg(target_arch = "x86_64")]
+mod wide {
+    use super::{Context, Registers, Step, Watch, rows};
+
+    macro_rules! wide {
+        ($($name:ident)*) => {
+            $(
+                /// See the row.
+                ///
+                /// # Safety
+                /// As that of the same name in [`rows`], on a host with these features.
+                #[target_feature(enable = "avx2,bmi1,bmi2,fma,lzcnt,popcnt")]
+                pub unsafe extern "C" fn $name<T: Watch>(
+                    context: *mut Context,
+                    registers: *mut Registers,
+                    step: *const Step,
+                ) -> u64 {
+                    // SAFETY: as the function asks for. The row compiled for all hosts is the twin.
+                    unsafe { rows::$name::<T>(context, registers, step) }
+                }
+            )*
+        };
+    }
+
+    wide!(rnear rany);
 }
 
 /// A ray against a triangle, in doubles where they are sure.

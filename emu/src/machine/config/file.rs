@@ -8,7 +8,7 @@ use messages::{Diagnostic, Place, Report, Source, did_you_mean};
 use toml::de::{DeTable, DeValue};
 
 use super::law::Law;
-use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_OCTETS};
+use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_LANES, MOST_OCTETS};
 use crate::machine::arbiter::ArbiterKind;
 
 impl Config {
@@ -64,6 +64,7 @@ impl Config {
         check("clock_hz", self.clock_hz, 1, 1_000_000_000_000);
         check("buffer_octets", self.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("step_limit", self.step_limit, 1, 1 << 62);
+        check("packet_lanes", self.packet_lanes.into(), 1, MOST_LANES.into());
         check("arithmetic.word", self.arithmetic.word.into(), 8, 32);
         for &class in Class::ALL {
             // A number of no units is a mistake; a law that comes to none leaves the class its one.

@@ -11,10 +11,10 @@ use crate::number::Vector;
 /// product is off by 2 e m from its two products and 2 e m from their difference, all but terms of e^2; with |component| <= 2 m its product
 /// with a component of at most r is off by 6 e m r, three of them by 18 e m r, and the two additions add 4 e m r and 6 e m r. 28 e with the terms of
 /// e^2 is below 29 e; the bound is 32 e, and the error of computing it, 3 e of itself, is far below the rest.
-const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;
+pub(super) const DETERMINANT: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// Bound on the error of det - u - v, in units of the sum of the three products: 29 e from its terms and 6 e from each difference.
-const DIFFERENCE: f64 = 2.0 * DETERMINANT;
+pub(super) const DIFFERENCE: f64 = 2.0 * DETERMINANT;
 
 /// Ray against triangle: equal to [`exact_triangle`] for all operands, and faster.
 pub fn triangle(ray: &Ray, vertices: &[Vector; 3]) -> Meeting {

@@ -6,17 +6,23 @@
 //! outside to the inside as back, by a walk through a kd tree as well. `docs/exactness.md` has the argument and the numbers of bits.
 
 mod filter;
+mod packet;
+#[cfg(test)]
+mod packet_tests;
 mod plane;
 mod ratio;
 #[cfg(test)]
 mod tests;
 mod triangle;
+mod walk;
 
 use super::Vector;
 pub use filter::triangle;
+pub use packet::{PACKET_WORDS, Packet, PacketHit};
 pub use plane::{BoxEnd, Plane, SplitEnd, across_box, exit_face, is_surely_before, step};
 pub use ratio::ratio;
 pub use triangle::{Meeting, TriangleEnd, exact_triangle};
+pub use walk::{Children, Descent};
 
 /// A ray P(t) = origin + t direction, t > 0, on raw integers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

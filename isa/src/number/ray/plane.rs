@@ -42,17 +42,44 @@ impl Plane {
     /// The ray meets the plane after its start. A plane through the origin is met at t = 0: it has been crossed.
     #[inline]
     fn is_ahead(self, ray: &Ray) -> bool {
-        let origin = if self.axis == TIME { 0 } else { ray.origin[self.axis] };
-        if is_backwards(ray, self.axis) { self.at < origin } else { self.at > origin }
+        Crossing::new(self, ray).is_ahead()
     }
 
-    /// The plane is met at t = run / slope.
+    /// The ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
     #[inline]
-    fn run_and_slope(self, ray: &Ray) -> (i64, i64) {
-        match self.axis {
-            TIME => (self.at.into(), 1),
-            axis => (i64::from(self.at) - i64::from(ray.origin[axis]), ray.direction[axis].into()),
-        }
+    fn is_before(self, other: Plane, ray: &Ray) -> bool {
+        Crossing::new(self, ray).is_before(Crossing::new(other, ray))
+    }
+}
+
+/// A plane as a ray meets it, at t = run / slope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Crossing {
+    axis: usize,
+    run: i64,
+    slope: i64,
+}
+
+impl Crossing {
+    #[inline]
+    pub(super) fn new(plane: Plane, ray: &Ray) -> Crossing {
+        let (run, slope) = match plane.axis {
+            TIME => (plane.at.into(), 1),
+            axis => (i64::from(plane.at) - i64::from(ray.origin[axis]), ray.direction[axis].into()),
+        };
+        Crossing { axis: plane.axis, run, slope }
+    }
+
+    /// The ray goes towards smaller coordinates of the plane's axis.
+    #[inline]
+    pub(super) fn is_backwards(self) -> bool {
+        self.slope < 0
+    }
+
+    /// The plane lies ahead of the origin; one through the origin does not.
+    #[inline]
+    pub(super) fn is_ahead(self) -> bool {
+        if self.slope < 0 { self.run < 0 } else { self.run > 0 }
     }
 
     /// The ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
@@ -60,20 +87,17 @@ impl Plane {
     /// Of planes of axes j < k that the ray itself meets at the same t > 0, that of j comes first exactly when D_j >= 0: its t changes by
     /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Runs stay below 2^32, so products fit 64 bits.
     #[inline]
-    fn is_before(self, other: Plane, ray: &Ray) -> bool {
-        let ((run, slope), (other_run, other_slope)) = (self.run_and_slope(ray), other.run_and_slope(ray));
+    pub(super) fn is_before(self, other: Crossing) -> bool {
         // run / slope < other_run / other_slope, multiplied by both slopes: the comparison turns round when one of them is negative.
-        let (here, there) = (run * other_slope, other_run * slope);
-        let is_same_way = (slope < 0) == (other_slope < 0);
-        match if is_same_way { here.cmp(&there) } else { there.cmp(&here) } {
-            Ordering::Less => true,
-            Ordering::Greater => false,
-            Ordering::Equal => match self.axis.cmp(&other.axis) {
-                Ordering::Less => slope >= 0,
+        let (here, there) = (self.run * other.slope, other.run * self.slope);
+        if here == there {
+            return match self.axis.cmp(&other.axis) {
+                Ordering::Less => self.slope >= 0,
                 Ordering::Equal => false,
-                Ordering::Greater => other_slope < 0,
-            },
+                Ordering::Greater => other.slope < 0,
+            };
         }
+        (here < there) == ((self.slope < 0) == (other.slope < 0))
     }
 }
 
@@ -183,7 +207,7 @@ impl SplitEnd {
 /// the ray's direction. Of a hit for which this holds no other one behind the plane can be nearer.
 #[inline]
 pub fn is_surely_before(ray: &Ray, plane: Plane, t: i32, shift: u32) -> bool {
-    let (run, slope) = plane.run_and_slope(ray);
+    let Crossing { run, slope, .. } = Crossing::new(plane, ray);
     let run = if slope < 0 { -run } else { run };
     (i128::from(t) + 1) * i128::from(slope.abs()) < i128::from(run) << shift
 }

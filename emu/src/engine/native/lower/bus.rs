@@ -40,6 +40,15 @@ impl Lower<'_, '_> {
         self.ended(step, exit);
     }
 
+    /// A row of values and the buffer, by its meaning; an access beyond the buffer is for the interpreter.
+    pub fn call_in_buffer(&mut self, op: Op, step: &Step) {
+        let exit = self.call_row(op, step);
+        let has_stopped = self.b.ins().icmp_imm_s(IntCC::Equal, exit, STOPPED as i64);
+        self.unless(has_stopped);
+        self.forget_written(step);
+        self.ended(step, exit);
+    }
+
     /// Counts the exit, and its units, by which a function said that a row ended: the exit in the low half, the units in the high one.
     fn ended(&mut self, step: &Step, exit: Value) {
         let has_units = self

@@ -9,10 +9,12 @@ mod counting;
 mod forms;
 mod integer;
 mod local;
+mod packet;
 mod profile;
 mod ray;
 mod scalar;
 mod vector;
+mod walk;
 mod wide;
 
 use cranelift_codegen::ir::types::{I32, I32X4, I64};
@@ -29,7 +31,9 @@ use super::profiling::Profiling;
 use super::{Recipe, Status};
 use crate::code::registers::Registers;
 use crate::engine::plan::{Plan, Step};
-use forms::{BusRoom, ControlRoom, IntegerRoom, LocalRoom, RayRoom, ScalarRoom, VectorRoom, WideRoom};
+use forms::{
+    BusRoom, ControlRoom, IntegerRoom, LocalRoom, PacketRoom, RayRoom, ScalarRoom, VectorRoom, WalkRoom, WideRoom,
+};
 
 /// A scalar register, by its number.
 #[derive(Clone, Copy)]
@@ -290,6 +294,9 @@ impl Lower<'_, '_> {
         macro_rules! called {
             (pure $op:expr, $step:expr) => {
                 self.call_meaning($op, $step)
+            };
+            (buffered $op:expr, $step:expr) => {
+                self.call_in_buffer($op, $step)
             };
             (bus $op:expr, $step:expr) => {
                 self.ask_machine($op, $step)

@@ -1,4 +1,4 @@
-//! The structures of global memory as data: names, octets and offsets of all fields, in both layouts. The image is written and read by these
+//! The structures of global memory as data: names, octets and offsets of all fields, in each layout. The image is written and read by these
 //! tables, and the assembler's `.struct` definitions are generated from them, so that a field has one place. Little-endian throughout.
 
 mod manual;
@@ -129,17 +129,20 @@ pub enum Layout {
     /// Coordinates of 32 bits, nodes of 8 octets, references as arrays.
     #[default]
     Wide,
+    /// As `Wide`; behind the references of a leaf stand the vertices of its triangles, so that one transfer brings all that a ray meets there.
+    Packet,
 }
 
 impl Layout {
-    /// Both, in the order of their declaration.
-    pub const ALL: [Layout; 2] = [Layout::Report, Layout::Wide];
+    /// All of them, in the order of their declaration.
+    pub const ALL: [Layout; 3] = [Layout::Report, Layout::Wide, Layout::Packet];
 
     /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Layout::Report => "report",
             Layout::Wide => "wide",
+            Layout::Packet => "packet",
         }
     }
 
@@ -147,7 +150,7 @@ impl Layout {
     pub const fn triangle(self) -> &'static Structure {
         match self {
             Layout::Report => &REPORT_TRIANGLE,
-            Layout::Wide => &WIDE_TRIANGLE,
+            Layout::Wide | Layout::Packet => &WIDE_TRIANGLE,
         }
     }
 
@@ -155,7 +158,7 @@ impl Layout {
     pub const fn node(self) -> &'static Structure {
         match self {
             Layout::Report => &REPORT_NODE,
-            Layout::Wide => &WIDE_NODE,
+            Layout::Wide | Layout::Packet => &WIDE_NODE,
         }
     }
 
@@ -163,7 +166,7 @@ impl Layout {
     pub const fn reference(self) -> &'static Structure {
         match self {
             Layout::Report => &REPORT_REFERENCE,
-            Layout::Wide => &WIDE_REFERENCE,
+            Layout::Wide | Layout::Packet => &WIDE_REFERENCE,
         }
     }
 
@@ -172,11 +175,19 @@ impl Layout {
         [self.node(), self.reference(), self.triangle(), &MATERIAL, &LIGHT, &PIXEL]
     }
 
+    /// Octets that a leaf takes for each of its triangles: a reference, and in packets the vertices.
+    pub const fn octets_a_reference(self) -> u32 {
+        match self {
+            Layout::Report | Layout::Wide => self.reference().octets(),
+            Layout::Packet => self.reference().octets() + 4 * PACKET_COMPONENTS,
+        }
+    }
+
     /// Bits by which a raw coordinate is shifted right (rounded to nearest, ties up) when it is stored, and left when it is loaded.
     pub const fn coordinate_shift(self, word: u32) -> u32 {
         match self {
             Layout::Report => word.saturating_sub(16),
-            Layout::Wide => 0,
+            Layout::Wide | Layout::Packet => 0,
         }
     }
 }
@@ -193,11 +204,20 @@ impl FromStr for Layout {
     fn from_str(name: &str) -> Result<Layout, Box<Diagnostic>> {
         Layout::ALL.into_iter().find(|layout| layout.name() == name).ok_or_else(|| {
             let names = Layout::ALL.map(Layout::name);
-            let hint = did_you_mean(name, names).unwrap_or_else(|| format!("the layouts are {}", names.join(" and ")));
+            let hint = did_you_mean(name, names).unwrap_or_else(|| format!("the layouts are {}", names.join(", ")));
             Box::new(Diagnostic::error(format!("`{name}` is no memory layout")).hint(hint))
         })
     }
 }
+
+/// Components of the three vertices of a triangle of a packet, each a word of 32 bits in an array of its own.
+pub const PACKET_COMPONENTS: u32 = 9;
+
+/// Nodes of the top of the tree that stand level by level in the layout `packet`: the root and whole pairs of children.
+pub const TOP_NODES: u32 = 1023;
+
+/// Nodes of a block below the top in the layout `packet`, at most.
+pub const BLOCK_NODES: u32 = 8;
 
 /// Tags in the low bits of `link` of a wide node: the axis of an inner node, or this for a leaf.
 pub const WIDE_LEAF: u32 = 3;
@@ -270,7 +290,7 @@ static WIDE_NODE: Structure = Structure {
 static WIDE_REFERENCE: Structure =
     Structure { name: "reference", fields: &[unsigned("triangle", 4, "address of a triangle")] };
 
-/// A material, the same in both layouts.
+/// A material, the same in all layouts.
 pub static MATERIAL: Structure = Structure {
     name: "material",
     fields: &[
@@ -288,7 +308,7 @@ pub static MATERIAL: Structure = Structure {
     ],
 };
 
-/// A light, the same in both layouts.
+/// A light, the same in all layouts.
 pub static LIGHT: Structure = Structure {
     name: "light",
     fields: &[
@@ -310,6 +330,7 @@ mod tests {
         let sizes = |layout: Layout| [layout.triangle(), layout.node(), layout.reference()].map(Structure::octets);
         assert_eq!(sizes(Layout::Report), [31, 55, 8]);
         assert_eq!(sizes(Layout::Wide), [38, 8, 4]);
+        assert_eq!(Layout::ALL.map(Layout::octets_a_reference), [8, 4, 40]);
         assert_eq!([MATERIAL, LIGHT, PIXEL].map(|s| s.octets()), [32, 24, 12]);
     }
 

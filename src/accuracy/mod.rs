@@ -47,10 +47,10 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The variant with other kernels, those of the report in their own layout.
+    /// The variant with other kernels, those that were made for a layout in that.
     fn with(self, profile: KernelSet) -> Variant {
         let layout = match profile.layout() {
-            Layout::Report => Layout::Report,
+            own @ (Layout::Report | Layout::Packet) => own,
             Layout::Wide => self.layout,
         };
         Variant { profile, layout, ..self }

@@ -35,7 +35,7 @@ impl MemoryImage {
         Some(DecodedImage {
             tree: match self.layout {
                 Layout::Report => self.report_tree(nodes)?,
-                Layout::Wide => self.wide_tree(nodes)?,
+                Layout::Wide | Layout::Packet => self.wide_tree(nodes)?,
             },
             triangles: (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?,
             materials: (0..self.counts.materials)
@@ -165,11 +165,26 @@ impl MemoryImage {
         let structure = self.layout.reference();
         let first = if count == 0 { 0 } else { self.number(MemoryKind::References, structure, address)? };
         let end = first.checked_add(u32::try_from(count).ok()?)?;
-        (first..end)
-            .map(|k| {
-                let triangle = *self.element(MemoryKind::References, structure, k)?.first()?;
-                self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)
-            })
-            .collect()
+        let triangle = |k| {
+            let triangle = *self.element(MemoryKind::References, structure, k)?.first()?;
+            self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)
+        };
+        let triangles = (first..end).map(triangle).collect::<Option<Vec<u32>>>()?;
+        let is_whole = self.layout != Layout::Packet || self.has_vertices(end, &triangles)?;
+        is_whole.then_some(triangles)
+    }
+
+    /// The words behind the references of a packet are the vertices of its triangles; `first` is the number of the first word, counted as
+    /// references are.
+    fn has_vertices(&self, first: u32, triangles: &[u32]) -> Option<bool> {
+        let vertices: Vec<[[i32; 3]; 3]> =
+            triangles.iter().map(|&triangle| Some(self.triangle(triangle)?.vertices)).collect::<Option<_>>()?;
+        let words = (0..9).flat_map(|kind| vertices.iter().map(move |vertices| vertices.as_flattened()[kind]));
+        for (k, word) in (first..).zip(words) {
+            if *self.element(MemoryKind::References, self.layout.reference(), k)?.first()? as i32 != word {
+                return Some(false);
+            }
+        }
+        Some(true)
     }
 }

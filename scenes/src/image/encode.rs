@@ -2,7 +2,7 @@
 
 use messages::{Diagnostic, Report};
 
-use super::{HEADER, MemoryKind, Regions, out_of_range, stored, three};
+use super::{HEADER, MemoryKind, Regions, blocks, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};
 use crate::grid::Grid;
 use crate::kdtree::{Bounds, BuiltTree, Content, Node, NumberedNode, Triangles};
@@ -26,7 +26,7 @@ impl Tables {
             ))
             .hint(match layout {
                 Layout::Report => "use --layout wide, which has room for 65536",
-                Layout::Wide => "merge materials that are the same",
+                Layout::Wide | Layout::Packet => "merge materials that are the same",
             })
             .into());
         }
@@ -75,7 +75,7 @@ pub(super) fn memory(
     let octets = [
         u64::from(HEADER),
         u64::from(tree.count()) * u64::from(layout.node().octets()),
-        u64::from(tree.references()) * u64::from(layout.reference().octets()),
+        u64::from(tree.references()) * u64::from(layout.octets_a_reference()),
         triangles.count() as u64 * u64::from(layout.triangle().octets()),
         tables.materials.len() as u64 * u64::from(MATERIAL.octets()),
         tables.lights.len() as u64 * u64::from(LIGHT.octets()),
@@ -95,13 +95,14 @@ pub(super) fn memory(
     }
     let mut bytes = vec![0; end as usize];
     let start = |kind: usize| regions[kind].1.start;
-    let addresses = Addresses { nodes: start(1), references: start(2), triangles: start(3), layout };
+    let places = if layout == Layout::Packet { blocks::places(tree) } else { Vec::new() };
+    let addresses = Addresses { nodes: start(1), places, references: start(2), triangles: start(3), layout };
     let mut put = |address: u32, structure: &Structure, values: &mut dyn Iterator<Item = i64>| {
         structure.write(&mut bytes[address as usize..], values);
     };
     for NumberedNode { number, first: reference, node } in tree.nodes() {
         let packet = packet(node.content);
-        let first = if packet.is_empty() { 0 } else { addresses.reference(reference) };
+        let first = if packet.is_empty() { 0 } else { addresses.leaf(reference) };
         let values = match layout {
             Layout::Report => {
                 if packet.len() > usize::from(u16::MAX) {
@@ -114,14 +115,14 @@ pub(super) fn memory(
                 }
                 addresses.report_node(&node, first, shift)
             }
-            Layout::Wide => addresses.wide_node(node.content, first),
+            Layout::Wide | Layout::Packet => addresses.wide_node(node.content, first),
         };
         put(addresses.node(number), layout.node(), &mut values.into_iter());
-        for (reference, &triangle) in (reference..).zip(packet) {
-            let here = addresses.reference(reference);
+        let octets = layout.reference().octets();
+        for (here, &triangle) in (first..).step_by(octets as usize).zip(packet) {
             // A packet names no triangle twice, so the last one is known by its number.
             let is_last = packet.last() == Some(&triangle);
-            let next = if is_last { 0 } else { addresses.reference(reference + 1) };
+            let next = if is_last { 0 } else { here + octets };
             let values = [addresses.triangle(triangle), next].map(i64::from);
             put(here, layout.reference(), &mut values.into_iter().take(layout.reference().fields.len()));
         }
@@ -132,7 +133,7 @@ pub(super) fn memory(
         // The report keeps each triangle's box beside it; the wide layout works boxes out where they are needed.
         let own: &[[i32; 3]] = match layout {
             Layout::Report => &[low, high],
-            Layout::Wide => &[],
+            Layout::Wide | Layout::Packet => &[],
         };
         let mut values = vertices
             .iter()
@@ -148,7 +149,26 @@ pub(super) fn memory(
     for (number, light) in (0..).zip(&tables.lights) {
         put(start(5) + number * LIGHT.octets(), &LIGHT, &mut light.iter().map(|&x| i64::from(x)));
     }
+    if layout == Layout::Packet {
+        for NumberedNode { first: reference, node, .. } in tree.nodes() {
+            let packet = packet(node.content);
+            let behind = addresses.leaf(reference) + packet.len() as u32 * layout.reference().octets();
+            components(&mut bytes[behind as usize..], triangles, packet);
+        }
+    }
     Ok((bytes, regions))
+}
+
+/// Writes the vertices of a packet: all x of first vertices, then all y, and so on up to all z of third ones.
+fn components(octets: &mut [u8], triangles: &impl Triangles, packet: &[u32]) {
+    // Of three triangles the z of the second vertex of the last one is word 5 x 3 + 2, since five arrays stand before its own.
+    for (at, &triangle) in packet.iter().enumerate() {
+        let vertices = triangles.vertices(triangle as usize);
+        for (kind, component) in vertices.as_flattened().iter().enumerate() {
+            let place = 4 * (kind * packet.len() + at);
+            octets[place..place + 4].copy_from_slice(&component.to_le_bytes());
+        }
+    }
 }
 
 /// The triangles of a leaf, none for an inner node.
@@ -162,6 +182,8 @@ fn packet(content: Content<'_>) -> &[u32] {
 /// Addresses of structures, by number.
 struct Addresses {
     nodes: u32,
+    /// Places of the nodes, where they do not stand in the order of their numbers.
+    places: Vec<u32>,
     references: u32,
     triangles: u32,
     layout: Layout,
@@ -169,11 +191,13 @@ struct Addresses {
 
 impl Addresses {
     fn node(&self, number: u32) -> u32 {
-        self.nodes + number * self.layout.node().octets()
+        let place = self.places.get(number as usize).copied().unwrap_or(number);
+        self.nodes + place * self.layout.node().octets()
     }
 
-    fn reference(&self, number: u32) -> u32 {
-        self.references + number * self.layout.reference().octets()
+    /// What a leaf has of its triangles, behind so many references of other leaves.
+    fn leaf(&self, references: u32) -> u32 {
+        self.references + references * self.layout.octets_a_reference()
     }
 
     fn triangle(&self, number: u32) -> u32 {

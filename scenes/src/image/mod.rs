@@ -1,6 +1,7 @@
 //! The image of global memory that a machine starts with: kd tree, triangles, materials, lights and an empty frame, and what the kernels
 //! have to be told beside it. How structures look is said in [`crate::layout`].
 
+mod blocks;
 mod decode;
 mod encode;
 #[cfg(test)]

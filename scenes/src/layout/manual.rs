@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{Field, LIGHT, Layout, MATERIAL, PIXEL, Structure};
+use super::{BLOCK_NODES, Field, LIGHT, Layout, MATERIAL, PIXEL, Structure, TOP_NODES};
 use crate::image::{HEADER, MemoryKind};
 
-/// The manual of both layouts: `docs/layouts.md`.
+/// The manual of all layouts: `docs/layouts.md`.
 pub fn manual() -> String {
     let mut text = INTRODUCTION.to_string();
     for (number, kind) in MemoryKind::ALL.into_iter().enumerate() {
@@ -25,13 +25,17 @@ pub fn manual() -> String {
         let about = match layout {
             Layout::Report => REPORT,
             Layout::Wide => WIDE,
+            Layout::Packet => &format!("{PACKET}{}", blocks()),
         };
         line(&mut text, &format!("## Layout `{layout}`\n\n{about}"));
+        if layout == Layout::Packet {
+            continue;
+        }
         for structure in [layout.node(), layout.reference(), layout.triangle()] {
             table(&mut text, structure);
         }
     }
-    line(&mut text, "## Structures of both layouts\n");
+    line(&mut text, "## Structures of all layouts\n");
     for structure in [&MATERIAL, &LIGHT, &PIXEL] {
         table(&mut text, structure);
     }
@@ -47,8 +51,8 @@ const INTRODUCTION: &str = "\
 <!-- Written by scenes::layout::manual from the tables in scenes/src/layout.rs; a test says when this file is stale. -->
 
 A scene is put into global memory once, before the machine starts; kernels read it there and write the frame. There are
-two layouts: `report` has the report's structures bit for bit (Annex I), `wide` is the default and keeps all bits of a
-coordinate. `--layout` chooses one.
+three layouts: `report` has the report's structures bit for bit (Annex I), `wide` is the default and keeps all bits of a
+coordinate, `packet` is `wide` with the vertices of a leaf's triangles beside its references. `--layout` chooses one.
 
 Integers are little-endian, signed ones in two's complement, and structures have no gaps between their fields.
 Structures follow each other without gaps too, in this order; each kind starts at the next multiple of 8:
@@ -78,6 +82,21 @@ const WIDE: &str = "\
 Coordinates are stored as they are in registers. A node has 8 octets at an address that is a multiple of 8, so that the
 low bits of `link` can hold a tag; a leaf's references are an array. A triangle names 65,536 materials at most.
 ";
+
+const PACKET: &str = "\
+Structures are those of the layout `wide`, and a leaf's references are an array, too. Behind that array stand the
+vertices of its triangles, as the rows `rnear` and `rany` take them: for a leaf of n triangles nine arrays of n words of
+32 bits, which hold x, y and z of the first vertices, then of the second and of the third ones. A leaf takes 40 octets a
+reference, and one transfer brings all of it. A triangle that lies in several leaves has its vertices in each.
+";
+
+/// The order of the nodes in the layout `packet`.
+fn blocks() -> String {
+    format!(
+        "\nThe root is the first node. The first {TOP_NODES} nodes stand level by level. Below, nodes stand in blocks of at most {BLOCK_NODES}, \
+         which\nbegin with the children of a node above and go on level by level, so that a walk finds several steps in one transfer.\n"
+    )
+}
 
 fn line(text: &mut String, line: &str) {
     text.push_str(line);

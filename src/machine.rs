@@ -56,7 +56,10 @@ const COMMENTS: &[(&str, &str)] = &[
     ("clock_hz", "clock rate in hertz; it turns clocks into seconds and changes nothing else (report 6.1: 100 MHz)"),
     ("buffer_octets", "octets of each core's local buffer (report 6.2: the sum of the list is 18,525)"),
     ("step_limit", "instructions that a pixel may take (ours: thousands of times what one takes)"),
-    ("packet_lanes", "triangles of a packet that `rnear` and `rany` test at once, in the time of one (ours; the report has no such unit)"),
+    (
+        "packet_lanes",
+        "triangles of a packet that `rnear` and `rany` test at once, in the time of one (ours; the report has no such unit)",
+    ),
     ("[arithmetic]", "how results are rounded and what happens when they do not fit"),
     ("arithmetic.word", "bits of a word, 8 to 32 (ours: 32; the report multiplies in 32 masked steps)"),
     ("arithmetic.quantization", "rounding by its IEEE 1666 name (ours: RND, to nearest, ties up; the report has none)"),

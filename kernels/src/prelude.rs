@@ -9,7 +9,7 @@ use messages::{Report, Source};
 use scenes::cadrage::Formats;
 use scenes::camera::RawCamera;
 use scenes::image::{MemoryImage, MemoryKind};
-use scenes::layout::{Layout, Structure};
+use scenes::layout::{BLOCK_NODES, Layout, Structure, TOP_NODES};
 
 use crate::build::{Crop, SceneFeatures};
 use crate::constants::{Constants, SIDE_MARGIN};
@@ -20,6 +20,9 @@ const TABLES: u32 = 768;
 
 /// References that are fetched at once.
 const REFERENCES_AT_ONCE: u32 = 128;
+
+/// Triangles of a packet that the buffer holds at once.
+const PACKET_AT_ONCE: u32 = 64;
 
 /// Triangles of a ray that its core remembers, a power of two.
 const TESTED_PLACES: u32 = 16;
@@ -48,6 +51,8 @@ pub enum WalkMemory {
     Boxes,
     /// Planes, the last one first.
     Planes,
+    /// As `Planes`, in blocks of nodes that lie in the buffer.
+    Blocks,
 }
 
 /// The prelude of a core's program, or of the main processor's.
@@ -69,8 +74,11 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
     text.push_str(match walk {
         WalkMemory::Restart => "NODE: .space 2 * sizeof(node)\n",
         WalkMemory::Boxes => BOXES,
-        WalkMemory::Planes => PLANES,
+        WalkMemory::Planes | WalkMemory::Blocks => PLANES,
     });
+    if walk == WalkMemory::Blocks && image.layout != Layout::Report {
+        blocks(&mut text, image);
+    }
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
     if is_main {
@@ -106,6 +114,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
     let mut entries = vec![
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
+        ("LAYOUT_PACKET", (image.layout == Layout::Packet).into()),
         ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
         ("EDGE_SHIFT", edge_shift.into()),
         ("T_SHIFT", t_shift.into()),
@@ -118,6 +127,11 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("MISSED", missed.into()),
         ("MOST_STEPS", most_steps.into()),
         ("LARGEST_PACKET", image.tree.most_triangles as i64),
+        ("PACKET_AT_ONCE", PACKET_AT_ONCE.into()),
+        ("PACKET_OCTETS", Layout::Packet.octets_a_reference().into()),
+        ("TREE_NODES", image.tree.nodes as i64),
+        ("TOP_NODES", top_nodes(image).into()),
+        ("BLOCK_OCTETS", (BLOCK_NODES * image.layout.node().octets()).into()),
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.depth.into()),
         ("ROOT", image.root.into()),
@@ -163,12 +177,31 @@ NODE: .space 2 * sizeof(node)
 .endif
 ";
 
+/// The nodes from the root on that a buffer has from the start.
+fn top_nodes(image: &MemoryImage) -> u32 {
+    TOP_NODES.min(image.tree.nodes as u32)
+}
+
+/// The blocks of nodes in a buffer: the top of the tree, and one for the nodes below, if there are any. The address of an empty block is no node's.
+fn blocks(text: &mut String, image: &MemoryImage) {
+    let _ = writeln!(text, "TOP: .word {}, TOP_NODES * sizeof(node)", image.root);
+    let start = image.root as usize;
+    let octets = top_nodes(image) * image.layout.node().octets();
+    words_of(text, &image.bytes[start..start + octets as usize]);
+    if image.tree.nodes as u32 > TOP_NODES {
+        text.push_str("BLOCK: .word 0, BLOCK_OCTETS\n    .space BLOCK_OCTETS\n");
+    }
+}
+
 /// The map of a core's buffer (report 6.2): one node, references, two triangles, the ray tree, materials and lights.
 fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: WalkMemory) {
     text.push_str(
         "REFERENCES: .space 4 * REFERENCES_AT_ONCE\nSLOT: .space sizeof(triangle)\nNEAR_SLOT: .space sizeof(triangle)\n\
          MATERIAL_AT: .space 4\nSHADE_LIGHT: .space 4\nSHADE_COSINE: .space 4\n",
     );
+    if walk == WalkMemory::Blocks {
+        text.push_str("PACKET: .space PACKET_OCTETS * min(PACKET_AT_ONCE, LARGEST_PACKET)\n");
+    }
     if features.skips.has(Skip::Tested) {
         text.push_str("TESTED: .space 4 * TESTED_PLACES\n");
     }
@@ -227,7 +260,10 @@ fn words(values: &[i32]) -> String {
 /// The words of a region of the image, as data.
 fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind) {
     let range = image.region(kind);
-    let octets = &image.bytes[range.start as usize..range.end as usize];
+    words_of(text, &image.bytes[range.start as usize..range.end as usize]);
+}
+
+fn words_of(text: &mut String, octets: &[u8]) {
     for row in octets.chunks(16) {
         let (row, _) = row.as_chunks::<4>();
         let values: Vec<i32> = row.iter().map(|&word| i32::from_le_bytes(word)).collect();
@@ -264,7 +300,7 @@ pub fn included(layout: Layout) -> [Arc<Source>; 7] {
     }
     let structures = match layout {
         Layout::Report => file!("report.inc"),
-        Layout::Wide => file!("wide.inc"),
+        Layout::Wide | Layout::Packet => file!("wide.inc"),
     };
     [
         file!("registers.inc"),

@@ -4,9 +4,10 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use emu::semantics::RayRoom;
-use isa::number::ray::Ray;
+use isa::number::ray::{PacketHit, PacketWords, Ray};
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
+use kernels::twin::packets::PackedLeaves;
 use kernels::twin::stage::StageNode;
 
 use super::mesh::{ClosedMesh, TriangleCorners, cube, sphere};
@@ -45,11 +46,21 @@ fn model(ray: &Ray, corners: &TriangleCorners) -> Option<(i128, i128)> {
     is_hit.then_some((along.abs(), whole.abs()))
 }
 
-/// True where the machine's row decides as the model does and rounds t as it should.
+/// True where the machine's rows decide as the model does and round t as they should.
 fn check(ray: &Ray, corners: &TriangleCorners) -> Result<f64, String> {
     let (t, _, _) = Nearest32.rtri([ray.origin, ray.direction], *corners, SHIFT as i32);
     let expected = model(ray, corners).map_or(i32::MAX, |(along, whole)| nearest_integer(along, whole, SHIFT));
-    if t == expected { Ok(0.0) } else { Err(format!("{ray:?}, {corners:?}: t = {t}, exactly {expected}")) }
+    // Twice in a packet: the first name is nearer than the second one.
+    let words = corners.as_flattened().iter().flat_map(|&word| [word; 2]);
+    let octets: Vec<u8> = [1, 2].into_iter().chain(words).flat_map(i32::to_le_bytes).collect();
+    let farthest = PacketHit { t: i32::MAX, name: 0 };
+    let found = PacketWords::new(&octets).nearest(&Nearest32, ray, SHIFT, farthest);
+    let name = u32::from(expected != i32::MAX);
+    if t == expected && found == (PacketHit { t: expected, name }) {
+        Ok(0.0)
+    } else {
+        Err(format!("{ray:?}, {corners:?}: t = {t}, {found:?} in a packet, exactly {expected}"))
+    }
 }
 
 fn between(a: Vector, b: Vector, share: f64) -> Vector {
@@ -128,6 +139,7 @@ static DUPLICATES: LazyLock<Vec<Target>> = LazyLock::new(|| {
                     shuffle(&mut stage.references[references.start as usize..references.end as usize], &mut random);
                 }
             }
+            target.packets = PackedLeaves::new(&target.twin.stage);
             target
         })
         .collect()

@@ -6,6 +6,7 @@ use isa::number::ray::{Meeting, Ray, TriangleEnd, triangle};
 use isa::number::{Nearest32, Vector};
 use kernels::KernelSet;
 use kernels::build::SceneFeatures;
+use kernels::twin::packets::PackedLeaves;
 use kernels::twin::planes::Packets;
 use kernels::twin::stage::StageNode;
 use kernels::twin::{Twin, ray};
@@ -23,6 +24,8 @@ pub struct Target {
     pub name: &'static str,
     /// The kernels' functions for it.
     pub twin: Twin<Nearest32>,
+    /// Its packets, as the rows of the packet unit take them.
+    pub packets: PackedLeaves,
     /// Coordinates of the planes that divide the tree, by axis.
     pub splits: [Vec<i32>; 3],
 }
@@ -55,7 +58,8 @@ impl Target {
                 splits[axis].push(at);
             }
         }
-        Target { name: mesh.name, twin, splits }
+        let packets = PackedLeaves::new(&twin.stage);
+        Target { name: mesh.name, twin, packets, splits }
     }
 
     /// The corners of a triangle, on the grid.
@@ -104,6 +108,39 @@ impl Target {
         Ok(search.triangle.map(|index| (search.t, index)))
     }
 
+    /// The same as the profile `packet` finds it.
+    fn nearest_of_packets(&self, ray: &Ray) -> Option<(i32, u32)> {
+        let Twin { arithmetic, constants, stage, .. } = &self.twin;
+        let mut search = ray::TwinSearch { t: constants.never, triangle: None, takes_any: false };
+        self.packets.search(stage, arithmetic, constants, ray, &mut search);
+        search.triangle.map(|index| (search.t, index))
+    }
+
+    /// Checks that whole packets give the nearest of the crossings that the walk finds, and that any hit in front of a distance is found just
+    /// where there is one.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    fn check_packets(&self, ray: &Ray, found: &[Crossing]) -> Result<(), String> {
+        let (nearest, expected) = (self.nearest_of_packets(ray), self.expected(found));
+        if nearest != expected {
+            return Err(format!("{}, {ray:?}: packets give {nearest:?}, nearest is {expected:?}", self.name));
+        }
+        let Twin { arithmetic, constants, stage, .. } = &self.twin;
+        for limit in expected.into_iter().flat_map(|(t, _)| [t, t + 1]) {
+            let mut search = ray::TwinSearch { t: limit, triangle: None, takes_any: true };
+            self.packets.search(stage, arithmetic, constants, ray, &mut search);
+            let is_right = match search.triangle {
+                Some(_) => expected.is_some_and(|(t, _)| t < limit && search.t == t),
+                None => expected.is_some_and(|(t, _)| t >= limit),
+            };
+            if !is_right {
+                return Err(format!("{}, {ray:?}: any hit before {limit} is {search:?}", self.name));
+            }
+        }
+        Ok(())
+    }
+
     /// Result that the kernels should find: of the smallest rounded t the lowest index.
     pub fn expected(&self, crossings: &[Crossing]) -> Option<(i32, u32)> {
         let shift = self.twin.constants.along();
@@ -117,6 +154,7 @@ impl Target {
     /// What is wrong, in words.
     pub fn check_closed(&self, ray: &Ray, is_searched: bool) -> Result<(), String> {
         let found = self.crossings(ray);
+        self.check_packets(ray, &found)?;
         // The way ends outside: ahead of each point of it, inwards against outwards, is nothing or one surface outwards. Crossings at the
         // same t, where the ray grazes an edge, have no order, only a sum.
         let mut ahead: i32 = found.iter().map(|crossing| crossing.2).sum();
@@ -149,6 +187,7 @@ impl Target {
         if found != sorted {
             return Err(format!("{}, {ray:?}: the tree finds {found:?} of {sorted:?}", self.name));
         }
+        self.check_packets(ray, &all)?;
         let (nearest, expected) = (self.nearest(ray)?, self.expected(&all));
         if nearest == expected {
             Ok(())

@@ -12,6 +12,7 @@ use proptest::test_runner::TestRunner;
 use scenes::generate;
 use scenes::image::{self, MemoryKind};
 use scenes::kdtree::Bounds;
+use scenes::layout::Layout;
 use scenes::model::View;
 
 use super::Subject;
@@ -35,10 +36,16 @@ const PROFILES: [KernelSet; 2] = [KernelSet::Vector, KernelSet::Report];
 
 /// A generated scene with a small picture.
 pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
+    subject_in(image::MemoryOptions::default().layout, name, level, modes)
+}
+
+/// The same in a layout.
+pub(super) fn subject_in(layout: Layout, name: &str, level: Option<u32>, modes: Modes) -> Subject {
     let size = (8, 6);
     let scene =
         generate::scene(name, &generate::GenerateOptions { level, size, triangles: None }).expect("a generated scene");
-    Subject::new(scene, View::new(size), modes, image::MemoryOptions::default()).expect("a scene that fits the word")
+    let options = image::MemoryOptions { layout, ..image::MemoryOptions::default() };
+    Subject::new(scene, View::new(size), modes, options).expect("a scene that fits the word")
 }
 
 fn runner() -> TestRunner {
@@ -259,7 +266,12 @@ pub(super) fn packet_words(subject: &Subject, packet: Option<Packet>) -> Vec<i32
 
 /// Scenes with trees of different kinds.
 pub(super) fn trees(modes: Modes) -> [Subject; 3] {
-    [subject("slivers", Some(8), modes), subject("cornell", Some(2), modes), subject("slabs", Some(4), modes)]
+    trees_in(image::MemoryOptions::default().layout, modes)
+}
+
+/// The same in a layout.
+pub(super) fn trees_in(layout: Layout, modes: Modes) -> [Subject; 3] {
+    [("slivers", 8), ("cornell", 2), ("slabs", 4)].map(|(name, level)| subject_in(layout, name, Some(level), modes))
 }
 
 /// A point whose coordinates are often in planes of the tree.

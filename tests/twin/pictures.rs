@@ -194,6 +194,33 @@ fn pictures_of_the_ray_unit_in_fewer_bits() {
 }
 
 #[test]
+fn pictures_of_packets() {
+    let packet = Setting { profile: KernelSet::Packet, layout: Layout::Packet, ..PLAIN };
+    assert_eq!(check_all(&packet), 0);
+    assert_eq!(check_all(&Setting { is_perspective: true, background: 0.3, bounces: 2, ..packet }), 0);
+    assert_eq!(check_all(&Setting { layout: Layout::Report, shift: 0.0, ..packet }), 0);
+    assert_eq!(check_all(&Setting { layout: Layout::Wide, shift: 0.0, ..packet }), 0);
+}
+
+#[test]
+fn pictures_of_packets_in_fewer_bits() {
+    let packet = Setting { profile: KernelSet::Packet, layout: Layout::Packet, ..PLAIN };
+    assert_eq!(check_all(&Setting { modes: word(24), is_perspective: true, ..packet }), 0);
+    assert_eq!(check_all(&Setting { modes: word(16), shift: 0.0, bounces: 2, ..packet }), 0);
+    assert_eq!(check_all(&Setting { modes: word(8), background: 1.0, layout: Layout::Wide, ..packet }), 0);
+    let modes = Modes { word: 21, quantization: Quantization::Trn, overflow: Overflow::Wrap(0) };
+    assert_eq!(check_all(&Setting { modes, is_perspective: true, layout: Layout::Report, ..packet }), 0);
+}
+
+/// The layout that has packets is read by all sets as the wide one.
+#[test]
+fn pictures_of_the_layout_of_packets_by_other_kernels() {
+    for profile in [KernelSet::Report, KernelSet::Vector, KernelSet::Ray] {
+        assert_eq!(check_all(&Setting { profile, layout: Layout::Packet, bounces: 2, ..PLAIN }), 0);
+    }
+}
+
+#[test]
 fn pictures_as_the_report_draws_them() {
     let report = Setting { profile: KernelSet::Report, layout: Layout::Report, ..PLAIN };
     assert_eq!(check_all(&report), 0);
@@ -256,8 +283,13 @@ fn pictures_of_long_packets_in_short_words() {
     scene.triangles.extend([first; 300]);
     for overflow in [Overflow::Sat, Overflow::Wrap(0), Overflow::SatZero] {
         let modes = Modes { overflow, ..word(8) };
-        let subject = Subject::new(scene.clone(), View::new(SIZE), modes, image::MemoryOptions::default())
-            .expect("a small scene");
-        assert!(subject.check(ALL, &format!("300 triangles in {modes:?}")));
+        for set in [KernelSet::Vector, KernelSet::Ray, KernelSet::Packet] {
+            for layout in Layout::ALL {
+                let options = image::MemoryOptions { layout, ..image::MemoryOptions::default() };
+                let subject = Subject::new(scene.clone(), View::new(SIZE), modes, options).expect("a small scene");
+                let what = format!("300 triangles in {modes:?} by {set} from {layout}");
+                assert!(subject.with(set).check(ALL, &what));
+            }
+        }
     }
 }

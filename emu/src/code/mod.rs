@@ -394,7 +394,10 @@ impl<'a> Code<'a> {
     /// Clocks and elementary operations that `units` units add to a pass.
     pub fn unit_cost(&self, pass: usize, units: u32) -> (Clocks, u64) {
         if let Some(OutcomeCost { turns: Some(turns), .. }) = self.costs.get(pass) {
-            return (Clocks(turns.clocks * u64::from(units.div_ceil(turns.at_once))), turns.elementary * u64::from(units));
+            return (
+                Clocks(turns.clocks * u64::from(units.div_ceil(turns.at_once))),
+                turns.elementary * u64::from(units),
+            );
         }
         let (cost, each) = self.pass_cost(pass);
         let each = each.times(units.into());

@@ -1,6 +1,6 @@
 //! Semantics of the instructions of the packet unit. The decisions are those of [`isa::number::ray`].
 
-use isa::number::ray::{PACKET_WORDS, Packet, PacketHit, Ray};
+use isa::number::ray::{PACKET_WORDS, PacketHit, PacketWords, Ray};
 use isa::number::{Arithmetic, Vector};
 use isa::table::outcome;
 
@@ -10,11 +10,11 @@ use crate::code::trap::Fault;
 
 /// The packet of so many triangles at an address.
 #[inline(always)]
-fn packet(buffer: &Buffer, address: u32, triangles: i32) -> Result<Packet<'_>, Fault> {
+fn packet(buffer: &Buffer, address: u32, triangles: i32) -> Result<PacketWords<'_>, Fault> {
     // More octets than there are addresses are more than any buffer has.
     let octets = u64::from(triangles as u32) * 4 * PACKET_WORDS as u64;
     let octets = u32::try_from(octets).unwrap_or(u32::MAX);
-    Ok(Packet::new(buffer.slice(address, octets)?))
+    Ok(PacketWords::new(buffer.slice(address, octets)?))
 }
 
 impl<T: Arithmetic> PacketRoom for T {

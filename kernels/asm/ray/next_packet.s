@@ -19,17 +19,7 @@
     lwide leaves_by, NOTES + note.plane(last_note)
 2:  call  link_step, descend
     ret   link_packet
-3:  bwgez came_by, 4f                       ; the root's face: the ray leaves the scene
-    ; The main processor has found the first packet: the walk of this core begins where the ray leaves it.
-    lv    v6, ROOT_LOW(s0)
-    lv    v7, ROOT_HIGH(s0)
-    rexit leaves_by, origin, v6
-    swide leaves_by, NOTES + note.plane(s0)
-    vget  s12, box_low, 1
-    vget  s13, box_low, 0
-    wjoin came_by, s12, s13
-    bweq  came_by, leaves_by, 4f
-    li    packet_refs, ROOT
+3:  begin_walk 4f
 .if SKIP_BEYOND
     rbefore s12, origin, came_by, near_t, dir + t - pos
     beqz  s12, 2b

@@ -1,6 +1,7 @@
 //! The sets of kernels: one file a set, with an answer to each question that a set has to answer, and one line here. The functions that a
 //! picture is made of are listed in [`crate::function`].
 
+mod packet;
 mod ray;
 mod report;
 mod vector;
@@ -106,6 +107,8 @@ kernel_sets! {
     Vector vector;
     /// The rows of the ray unit where they serve, else as `Vector`: exact at any word length, and few instructions.
     Ray ray;
+    /// Rows that meet whole packets and walk down several levels of the tree, else as `Ray`: the same decisions, and fewer transfers.
+    Packet packet;
 }
 
 impl KernelSet {

@@ -8,6 +8,7 @@ pub mod descend;
 pub mod exact_triangle;
 pub mod exit_face;
 pub mod first_packet;
+pub mod packets;
 pub mod planes;
 pub mod ray;
 pub mod ray_tree;

@@ -2,4 +2,5 @@
 
 mod annex;
 mod modes;
+mod packets;
 mod ties;

@@ -20,7 +20,8 @@ pub(super) fn places(tree: &BuiltTree) -> Vec<u32> {
             children[number as usize] = left;
         }
     }
-    let pairs_below = |left: u32| [left, left + 1].map(|node| children[node as usize]).into_iter().filter(|&pair| pair != 0);
+    let pairs_below =
+        |left: u32| [left, left + 1].map(|node| children[node as usize]).into_iter().filter(|&pair| pair != 0);
     let top = TOP_NODES.min(count);
     let mut places: Vec<u32> = (0..count).collect();
     let below = children[..top as usize].iter().copied().filter(|&pair| pair >= top);

@@ -14,8 +14,8 @@ use crate::code::registers::{Registers, read};
 use crate::engine::HostSimd;
 use crate::engine::plan::Step;
 use crate::semantics::{
-    BusRoom, IntegerRoom, Motion, PacketRoom, Port, RayRoom, ScalarRoom, VectorRoom, WalkRoom, Watch, Watching, WideRoom,
-    split_operands,
+    BusRoom, IntegerRoom, Motion, PacketRoom, Port, RayRoom, ScalarRoom, VectorRoom, WalkRoom, Watch, Watching,
+    WideRoom, split_operands,
 };
 
 /// A row: what it returns is said by [`pure`], [`bus`] and [`unit`].

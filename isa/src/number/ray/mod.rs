@@ -18,7 +18,7 @@ mod walk;
 
 use super::Vector;
 pub use filter::triangle;
-pub use packet::{PACKET_WORDS, Packet, PacketHit};
+pub use packet::{PACKET_WORDS, PacketHit, PacketWords};
 pub use plane::{BoxEnd, Plane, SplitEnd, across_box, exit_face, is_surely_before, step};
 pub use ratio::ratio;
 pub use triangle::{Meeting, TriangleEnd, exact_triangle};

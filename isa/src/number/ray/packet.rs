@@ -16,11 +16,11 @@ pub const PACKET_WORDS: usize = 10;
 const LARGEST: f64 = 2147483000.0;
 
 /// A number for each lane.
-type Lanes = [f64; LANES];
+type LaneNumbers = [f64; LANES];
 
 /// Triangles in octets: as many names of 32 bits, then as many x, y and z of first vertices, of second and of third ones, little-endian.
 #[derive(Clone, Copy, Debug)]
-pub struct Packet<'a> {
+pub struct PacketWords<'a> {
     octets: &'a [u8],
     count: usize,
 }
@@ -41,10 +41,10 @@ impl PacketHit {
     }
 }
 
-impl<'a> Packet<'a> {
+impl<'a> PacketWords<'a> {
     /// The packet of as many triangles as the octets hold.
-    pub fn new(octets: &'a [u8]) -> Packet<'a> {
-        Packet { octets, count: octets.len() / (4 * PACKET_WORDS) }
+    pub fn new(octets: &'a [u8]) -> PacketWords<'a> {
+        PacketWords { octets, count: octets.len() / (4 * PACKET_WORDS) }
     }
 
     /// A word of a triangle: 0 for its name, then the components of its vertices.
@@ -64,7 +64,7 @@ impl<'a> Packet<'a> {
 
     /// The words of one kind of the lanes from a triangle on; lanes without a triangle have 0.
     #[inline(always)]
-    fn lanes(&self, kind: usize, first: usize) -> Lanes {
+    fn lanes(&self, kind: usize, first: usize) -> LaneNumbers {
         let mut words = [0; LANES];
         let start = 4 * (kind * self.count + first);
         match self.octets[start..].first_chunk::<{ 4 * LANES }>() {
@@ -99,13 +99,7 @@ impl<'a> Packet<'a> {
 
     /// The first hit, in the order of the packet, whose t is below `limit`, and the number of triangles before it.
     #[inline(always)]
-    pub fn any(
-        &self,
-        arithmetic: &impl Arithmetic,
-        ray: &Ray,
-        shift: u32,
-        limit: i32,
-    ) -> Option<(usize, PacketHit)> {
+    pub fn any(&self, arithmetic: &impl Arithmetic, ray: &Ray, shift: u32, limit: i32) -> Option<(usize, PacketHit)> {
         let mut found = None;
         let last = self.search(arithmetic, ray, shift, limit, |hit| {
             let is_below = hit.t < limit;
@@ -188,8 +182,8 @@ fn rounded(arithmetic: &impl Arithmetic, low: f64, high: f64) -> Option<i32> {
 
 /// A ray as the lanes take it.
 struct Beam {
-    origin: [Lanes; 3],
-    direction: [Lanes; 3],
+    origin: [LaneNumbers; 3],
+    direction: [LaneNumbers; 3],
     /// The largest component of the direction.
     size: f64,
 }
@@ -197,18 +191,18 @@ struct Beam {
 /// Bounds of the tests of some lanes. With the sign of the determinant turned away, each test is a number that has to be positive.
 struct Judged {
     /// The determinant's magnitude above its error.
-    sure: Lanes,
+    sure: LaneNumbers,
     /// The least of the tests, with all errors taken for it: a negative one is surely missed.
-    most: Lanes,
+    most: LaneNumbers,
     /// The same with all errors taken against it: a positive one is surely hit.
-    least: Lanes,
+    least: LaneNumbers,
     /// u, or v, surely above the determinant's magnitude: missed, whatever the sign of that is.
-    beyond: Lanes,
-    determinant: Lanes,
-    t: Lanes,
+    beyond: LaneNumbers,
+    determinant: LaneNumbers,
+    t: LaneNumbers,
     /// Errors of the determinant and of t.
-    determinant_error: Lanes,
-    t_error: Lanes,
+    determinant_error: LaneNumbers,
+    t_error: LaneNumbers,
 }
 
 impl Judged {
@@ -236,7 +230,7 @@ impl Judged {
 }
 
 #[inline(always)]
-fn each(a: Lanes, b: Lanes, of: impl Fn(f64, f64) -> f64) -> Lanes {
+fn each(a: LaneNumbers, b: LaneNumbers, of: impl Fn(f64, f64) -> f64) -> LaneNumbers {
     let mut result = [0.0; LANES];
     for lane in 0..LANES {
         result[lane] = of(a[lane], b[lane]);
@@ -245,60 +239,60 @@ fn each(a: Lanes, b: Lanes, of: impl Fn(f64, f64) -> f64) -> Lanes {
 }
 
 #[inline(always)]
-fn add(a: Lanes, b: Lanes) -> Lanes {
+fn add(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| a + b)
 }
 
 #[inline(always)]
-fn subtract(a: Lanes, b: Lanes) -> Lanes {
+fn subtract(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| a - b)
 }
 
 #[inline(always)]
-fn multiply(a: Lanes, b: Lanes) -> Lanes {
+fn multiply(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| a * b)
 }
 
 #[inline(always)]
-fn scaled(a: Lanes, factor: f64) -> Lanes {
+fn scaled(a: LaneNumbers, factor: f64) -> LaneNumbers {
     a.map(|a| a * factor)
 }
 
 #[inline(always)]
-fn magnitude(a: Lanes) -> Lanes {
+fn magnitude(a: LaneNumbers) -> LaneNumbers {
     a.map(f64::abs)
 }
 
 /// The smaller number, lane by lane; none of them is NaN.
 #[inline(always)]
-fn least(a: Lanes, b: Lanes) -> Lanes {
+fn least(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| if a < b { a } else { b })
 }
 
 /// The larger number, lane by lane; none of them is NaN.
 #[inline(always)]
-fn largest(a: Lanes, b: Lanes) -> Lanes {
+fn largest(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| if a > b { a } else { b })
 }
 
 #[inline(always)]
-fn cross(a: &[Lanes; 3], b: &[Lanes; 3]) -> [Lanes; 3] {
+fn cross(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> [LaneNumbers; 3] {
     let minor = |j: usize, k: usize| subtract(multiply(a[j], b[k]), multiply(a[k], b[j]));
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 #[inline(always)]
-fn dot(a: &[Lanes; 3], b: &[Lanes; 3]) -> Lanes {
+fn dot(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> LaneNumbers {
     add(add(multiply(a[0], b[0]), multiply(a[1], b[1])), multiply(a[2], b[2]))
 }
 
 #[inline(always)]
-fn size(a: &[Lanes; 3]) -> Lanes {
+fn size(a: &[LaneNumbers; 3]) -> LaneNumbers {
     largest(largest(magnitude(a[0]), magnitude(a[1])), magnitude(a[2]))
 }
 
 #[inline(always)]
-fn difference(a: &[Lanes; 3], b: &[Lanes; 3]) -> [Lanes; 3] {
+fn difference(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> [LaneNumbers; 3] {
     [subtract(a[0], b[0]), subtract(a[1], b[1]), subtract(a[2], b[2])]
 }
 
@@ -312,7 +306,7 @@ impl Beam {
 
     /// Tries the triangles from a number on, by the formulas and the bounds of [`super::filter`].
     #[inline(always)]
-    fn judge(&self, packet: &Packet, first: usize) -> Judged {
+    fn judge(&self, packet: &PacketWords, first: usize) -> Judged {
         // Find edges and start, which doubles hold exactly.
         let vertex = |kind: usize| [0, 1, 2].map(|axis| packet.lanes(kind + axis, first));
         let corner = vertex(1);
@@ -334,7 +328,7 @@ impl Beam {
         let t_error = scaled(multiply(ab, s), DETERMINANT);
 
         // Turn the tests so that a hit passes them with positive numbers.
-        let turned = |x: Lanes| each(x, determinant, |x, sign| x * 1f64.copysign(sign));
+        let turned = |x: LaneNumbers| each(x, determinant, |x, sign| x * 1f64.copysign(sign));
         let tests = [(turned(u), u_error), (turned(v), v_error), (turned(w), w_error), (turned(t), t_error)];
         let [most_u, most_v, most_w, most_t] = tests.map(|(test, error)| add(test, error));
         let [least_u, least_v, least_w, least_t] = tests.map(|(test, error)| subtract(test, error));

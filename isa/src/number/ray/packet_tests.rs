@@ -10,12 +10,18 @@ use crate::number::{Arithmetic, Modes, Nearest32, Overflow, Quantization};
 fn octets(triangles: &[(u32, [Vector; 3])]) -> Vec<u8> {
     let names = triangles.iter().map(|&(name, _)| name);
     let kinds = (0..3).flat_map(|vertex| (0..3).map(move |axis| (vertex, axis)));
-    let words = kinds.flat_map(|(vertex, axis)| triangles.iter().map(move |(_, vertices)| vertices[vertex][axis] as u32));
+    let words =
+        kinds.flat_map(|(vertex, axis)| triangles.iter().map(move |(_, vertices)| vertices[vertex][axis] as u32));
     names.chain(words).flat_map(u32::to_le_bytes).collect()
 }
 
 /// The hits in the order of the packet, without a shortcut.
-fn hits(arithmetic: &impl Arithmetic, ray: &Ray, triangles: &[(u32, [Vector; 3])], shift: u32) -> Vec<(usize, PacketHit)> {
+fn hits(
+    arithmetic: &impl Arithmetic,
+    ray: &Ray,
+    triangles: &[(u32, [Vector; 3])],
+    shift: u32,
+) -> Vec<(usize, PacketHit)> {
     let hit = |(number, &(name, vertices)): (usize, &(u32, [Vector; 3]))| {
         let met = exact_triangle(ray, &vertices);
         let t = || ratio(arithmetic, met.t, met.determinant, shift);
@@ -26,7 +32,7 @@ fn hits(arithmetic: &impl Arithmetic, ray: &Ray, triangles: &[(u32, [Vector; 3])
 
 fn check(arithmetic: &impl Arithmetic, ray: &Ray, triangles: &[(u32, [Vector; 3])], shift: u32, found: PacketHit) {
     let octets = octets(triangles);
-    let packet = Packet::new(&octets);
+    let packet = PacketWords::new(&octets);
     let hits = hits(arithmetic, ray, triangles, shift);
     let nearest = hits.iter().map(|&(_, hit)| (hit.t, hit.name)).fold((found.t, found.name), Ord::min);
     let best = packet.nearest(arithmetic, ray, shift, found);
@@ -60,20 +66,28 @@ fn fans() -> impl Strategy<Value = (Ray, Vec<(u32, [Vector; 3])>)> {
     let far = |bits: u32| vector(-(1i32 << bits)..=1 << bits);
     (1u32..29, 1u32..29).prop_flat_map(move |(wide, narrow)| {
         let triangle = (far(narrow), far(narrow), near(), 0u32..6, 0usize..3);
-        (far(wide), far(wide), 1i32..4, prop::collection::vec(triangle, 0..11)).prop_map(|(point, origin, times, parts)| {
-            let direction = std::array::from_fn(|k| (point[k] - origin[k]).saturating_mul(times));
-            let triangle = |(edge1, edge2, off, name, place): (Vector, Vector, Vector, u32, usize)| {
-                let moved = |edge: Vector, times: i32| std::array::from_fn(|k| point[k].saturating_add(off[k] + times * edge[k]));
-                // The point lies on a vertex, on an edge, or inside, all but for `off`.
-                let corners = match place {
-                    0 => [moved([0; 3], 0), moved(edge1, 1), moved(edge2, 1)],
-                    1 => [moved(edge1, -1), moved(edge1, 1), moved(edge2, 1)],
-                    _ => [moved(edge1, -1), moved(edge2, -1), moved(std::array::from_fn(|k| edge1[k] / 2 + edge2[k] / 2), 2)],
+        (far(wide), far(wide), 1i32..4, prop::collection::vec(triangle, 0..11)).prop_map(
+            |(point, origin, times, parts)| {
+                let direction = std::array::from_fn(|k| (point[k] - origin[k]).saturating_mul(times));
+                let triangle = |(edge1, edge2, off, name, place): (Vector, Vector, Vector, u32, usize)| {
+                    let moved = |edge: Vector, times: i32| {
+                        std::array::from_fn(|k| point[k].saturating_add(off[k] + times * edge[k]))
+                    };
+                    // The point lies on a vertex, on an edge, or inside, all but for `off`.
+                    let corners = match place {
+                        0 => [moved([0; 3], 0), moved(edge1, 1), moved(edge2, 1)],
+                        1 => [moved(edge1, -1), moved(edge1, 1), moved(edge2, 1)],
+                        _ => [
+                            moved(edge1, -1),
+                            moved(edge2, -1),
+                            moved(std::array::from_fn(|k| edge1[k] / 2 + edge2[k] / 2), 2),
+                        ],
+                    };
+                    (name, corners)
                 };
-                (name, corners)
-            };
-            (Ray { origin, direction }, parts.into_iter().map(triangle).collect())
-        })
+                (Ray { origin, direction }, parts.into_iter().map(triangle).collect())
+            },
+        )
     })
 }
 

@@ -42,32 +42,32 @@ impl Plane {
     /// The ray meets the plane after its start. A plane through the origin is met at t = 0: it has been crossed.
     #[inline]
     fn is_ahead(self, ray: &Ray) -> bool {
-        Crossing::new(self, ray).is_ahead()
+        PlaneCrossed::new(self, ray).is_ahead()
     }
 
     /// The ray, its direction moved by (e, e^2, e^3), meets this plane before the other one; both are ahead.
     #[inline]
     fn is_before(self, other: Plane, ray: &Ray) -> bool {
-        Crossing::new(self, ray).is_before(Crossing::new(other, ray))
+        PlaneCrossed::new(self, ray).is_before(PlaneCrossed::new(other, ray))
     }
 }
 
 /// A plane as a ray meets it, at t = run / slope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Crossing {
+pub(super) struct PlaneCrossed {
     axis: usize,
     run: i64,
     slope: i64,
 }
 
-impl Crossing {
+impl PlaneCrossed {
     #[inline]
-    pub(super) fn new(plane: Plane, ray: &Ray) -> Crossing {
+    pub(super) fn new(plane: Plane, ray: &Ray) -> PlaneCrossed {
         let (run, slope) = match plane.axis {
             TIME => (plane.at.into(), 1),
             axis => (i64::from(plane.at) - i64::from(ray.origin[axis]), ray.direction[axis].into()),
         };
-        Crossing { axis: plane.axis, run, slope }
+        PlaneCrossed { axis: plane.axis, run, slope }
     }
 
     /// The ray goes towards smaller coordinates of the plane's axis.
@@ -87,7 +87,7 @@ impl Crossing {
     /// Of planes of axes j < k that the ray itself meets at the same t > 0, that of j comes first exactly when D_j >= 0: its t changes by
     /// the larger amount, t e^(j+1) / D_j. A plane is not before itself. Runs stay below 2^32, so products fit 64 bits.
     #[inline]
-    pub(super) fn is_before(self, other: Crossing) -> bool {
+    pub(super) fn is_before(self, other: PlaneCrossed) -> bool {
         // run / slope < other_run / other_slope, multiplied by both slopes: the comparison turns round when one of them is negative.
         let (here, there) = (self.run * other.slope, other.run * self.slope);
         if here == there {
@@ -207,7 +207,7 @@ impl SplitEnd {
 /// the ray's direction. Of a hit for which this holds no other one behind the plane can be nearer.
 #[inline]
 pub fn is_surely_before(ray: &Ray, plane: Plane, t: i32, shift: u32) -> bool {
-    let Crossing { run, slope, .. } = Crossing::new(plane, ray);
+    let PlaneCrossed { run, slope, .. } = PlaneCrossed::new(plane, ray);
     let run = if slope < 0 { -run } else { run };
     (i128::from(t) + 1) * i128::from(slope.abs()) < i128::from(run) << shift
 }

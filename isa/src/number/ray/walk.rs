@@ -1,7 +1,7 @@
 //! A walk down a kd tree: the steps of a ray from node to node between two planes, with what it needs of them at hand.
 
 use super::Ray;
-use super::plane::{Crossing, Plane};
+use super::plane::{Plane, PlaneCrossed};
 
 /// Number of the axis by which a node says that it is a leaf.
 const LEAF: usize = 3;
@@ -10,8 +10,8 @@ const LEAF: usize = 3;
 #[derive(Clone, Copy, Debug)]
 pub struct Descent {
     ray: Ray,
-    entry: Crossing,
-    exit: Crossing,
+    entry: PlaneCrossed,
+    exit: PlaneCrossed,
 }
 
 /// Children of a node that the ray visits.
@@ -35,7 +35,7 @@ impl Descent {
     /// The walk of a ray from where it came by `entry` up to where it leaves by `exit`.
     #[inline]
     pub fn new(ray: &Ray, entry: Plane, exit: Plane) -> Descent {
-        Descent { ray: *ray, entry: Crossing::new(entry, ray), exit: Crossing::new(exit, ray) }
+        Descent { ray: *ray, entry: PlaneCrossed::new(entry, ray), exit: PlaneCrossed::new(exit, ray) }
     }
 
     /// Goes on in a node that is divided at a plane, with the decisions of [`super::step`]. Where the ray visits both children, it leaves the
@@ -45,7 +45,7 @@ impl Descent {
         if split.axis == LEAF {
             return Children::None;
         }
-        let crossing = Crossing::new(split, &self.ray);
+        let crossing = PlaneCrossed::new(split, &self.ray);
         let is_backwards = crossing.is_backwards();
         if !crossing.is_ahead() || !self.entry.is_before(crossing) {
             Children::One { is_right: !is_backwards }

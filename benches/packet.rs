@@ -26,6 +26,9 @@ const NEVER: PacketHit = PacketHit { t: i32::MAX - 1, name: 0 };
 
 type Vertices = [Vector; 3];
 
+/// Name of a search, and the search: the sum of what it finds.
+type PacketContender<'a> = (&'static str, Box<dyn Fn() -> i32 + 'a>);
+
 /// Small triangles in a slab that rays cross.
 fn triangles(count: usize) -> Vec<Vertices> {
     let mut random = SplitMix64::new(1);
@@ -111,7 +114,7 @@ fn main() {
                 triangles.iter().map(|vertices| triangle(ray, vertices)).filter(|met| met.end == TriangleEnd::Hit);
             hits.map(|met| ratio(&Nearest32, met.t, met.determinant, SHIFT)).fold(NEVER.t, i32::min)
         };
-        let contenders: [(&str, Box<dyn Fn() -> i32 + '_>); 5] = [
+        let contenders: [PacketContender; 5] = [
             ("triangle by triangle, Rust", Box::new(|| sum_of(&singly))),
             ("whole packet, Rust for any host", Box::new(|| sum_of(&packets))),
             ("rnear, native", Box::new(|| engine(EngineKind::Native))),

@@ -39,6 +39,10 @@ fn profiles_save_what_their_document_says() {
         ("vector", "octets", 0.75, 0.5),
         ("ray", "instructions", 0.5, 0.5),
         ("ray", "search_instructions", 0.3, 0.3),
+        ("packet", "instructions", 0.5, 0.45),
+        ("packet", "search_instructions", 0.4, 0.3),
+        ("packet", "operations", 1.6, 1.5),
+        ("packet", "octets", 1.3, 1.15),
     ];
     for (profile, key, each, together) in limits {
         let (most, mean) = most_and_mean(ratios, profile, key);
@@ -50,4 +54,7 @@ fn profiles_save_what_their_document_says() {
         pictures.iter().find(is_it).unwrap()["image_hash"].clone()
     };
     assert_eq!(hash("slabs", "vector"), hash("slabs", "ray"), "both decide exactly");
+    for scene in ["cornell", "sphereflake", "slabs", "mirrors", "terrain"] {
+        assert_eq!(hash(scene, "ray"), hash(scene, "packet"), "{scene}: the same decisions and roundings");
+    }
 }

@@ -235,7 +235,10 @@ mod tests {
 
     /// Rays at vertices that are found to be wrong, of 500.
     fn wrong(triangles: Vec<TriangleCorners>) -> usize {
-        let target = Target::new(&ClosedMesh { name: "sphere", triangles }, KernelSet::Ray);
+        wrong_of(&Target::new(&ClosedMesh { name: "sphere", triangles }, KernelSet::Ray))
+    }
+
+    fn wrong_of(target: &Target) -> usize {
         let ray = |trial| {
             let mut random = Random::new(1, trial);
             through(random.point(1 << 30), target.corners(random.below(target.len()) as u32)[0])
@@ -251,6 +254,19 @@ mod tests {
         assert!(wrong([closed.clone(), closed[..4].to_vec()].concat()) > 5, "a surface that is there twice");
         let turned = closed.iter().map(|&[a, b, c]| [a, c, b]).collect();
         assert!(wrong(turned) > 100, "inside out");
+    }
+
+    #[test]
+    fn packets_that_differ_are_found() {
+        let mut target = Target::new(&ClosedMesh { name: "sphere", triangles: sphere(3, |_| 1.0) }, KernelSet::Ray);
+        let mut moved = target.twin.stage.clone();
+        moved.triangles[7].vertices[0][1] += 1 << 20;
+        target.packets = PackedLeaves::new(&moved);
+        assert!(wrong_of(&target) > 0, "a vertex that lies elsewhere");
+        let mut named = target.twin.stage.clone();
+        named.references.iter_mut().for_each(|index| *index ^= 1);
+        target.packets = PackedLeaves::new(&named);
+        assert!(wrong_of(&target) > 100, "triangles that have the names of others");
     }
 
     #[test]

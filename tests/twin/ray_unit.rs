@@ -91,7 +91,8 @@ fn searches_of_aimed_rays() {
                call link_packet, own_packet\n    call link_trace, trace\n",
         results: &[Place::Scalar("near_t"), Place::Scalar("near")],
     };
-    for (modes, (set, layout)) in MODES.into_iter().flat_map(|modes| SETS.map(|set| (modes, set))) {
+    let in_turn = MODES.into_iter().zip(SETS[1..].iter().cycle().copied());
+    for (modes, (set, layout)) in MODES.into_iter().map(|modes| (modes, SETS[0])).chain(in_turn) {
         for subject in trees_in(layout, modes) {
             let subject = subject.with(set);
             let twin = subject.twin();
@@ -115,7 +116,7 @@ fn searches_of_aimed_shadow_rays() {
                call link_packet, own_packet\n    call link_trace, trace\n    bnez near, 1f\n    mov near_t, s0\n1:\n",
         results: &[Place::Scalar("near_t"), Place::Scalar("near")],
     };
-    for (modes, (set, layout)) in MODES.into_iter().flat_map(|modes| SETS.map(|set| (modes, set))) {
+    for (modes, (set, layout)) in MODES.into_iter().zip(SETS.iter().cycle().copied()) {
         for subject in trees_in(layout, modes) {
             let subject = subject.with(set);
             let twin = subject.twin();

@@ -92,7 +92,7 @@ macro_rules! row_function {
             // SAFETY: as above.
             let arithmetic = unsafe { &*context.arithmetic.cast::<T>() };
             // SAFETY: the context is that of a run, and the buffer is the core's, which nobody else has.
-            let buffer = unsafe { &mut *Host::of(context).buffer };
+            let buffer = unsafe { &mut *NativeHost::of(context).buffer };
             match $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
                     let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);

@@ -2,8 +2,8 @@
 
 use emu::machine::{Config, Setup};
 use emu::octets::Memory;
+use isa::Isa;
 use isa::number::{Modes, Overflow, Quantization, Vector};
-use isa::{Isa, number};
 use kernels::{KernelOptions, KernelSet, build};
 use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::image::{self, MemoryKind, MemoryOptions};
@@ -28,7 +28,7 @@ fn drawn(scene: &Scene, view: &View, set: KernelSet, layout: Layout, modes: Mode
     let options = KernelOptions { profile: set, ..KernelOptions::default() };
     let built = build(scene, view, &image, &isa, &options).unwrap_or_else(|report| panic!("{}", report.render(false)));
     let mut config = Config::default();
-    let number::Modes { word, quantization, overflow } = modes;
+    let Modes { word, quantization, overflow } = modes;
     (config.arithmetic.word, config.arithmetic.quantization, config.arithmetic.overflow) =
         (word, quantization, overflow);
     let (core, main) = (&built.cores, &built.main);

@@ -114,11 +114,10 @@ fn main() {
                 triangles.iter().map(|vertices| triangle(ray, vertices)).filter(|met| met.end == TriangleEnd::Hit);
             hits.map(|met| ratio(&Nearest32, met.t, met.determinant, SHIFT)).fold(NEVER.t, i32::min)
         };
-        let contenders: [PacketContender; 5] = [
+        let contenders: [PacketContender; 4] = [
             ("triangle by triangle, Rust", Box::new(|| sum_of(&singly))),
             ("whole packet, Rust for any host", Box::new(|| sum_of(&packets))),
             ("rnear, native", Box::new(|| engine(EngineKind::Native))),
-            ("rnear, fast", Box::new(|| engine(EngineKind::Fast))),
             ("rnear, checked", Box::new(|| engine(EngineKind::Checked))),
         ];
         let mut sums = Vec::new();

@@ -137,6 +137,7 @@ macro_rules! row_function {
 /// Refuses a row with several outcomes where none is counted.
 macro_rules! check_outcomes {
     (pure $name:ident) => {};
+    (buffered $name:ident) => {};
     (control $name:ident) => {};
     ($style:ident $name:ident) => {
         const _: () = assert!(

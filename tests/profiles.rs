@@ -54,7 +54,13 @@ fn profiles_save_what_their_document_says() {
         pictures.iter().find(is_it).unwrap()["image_hash"].clone()
     };
     assert_eq!(hash("slabs", "vector"), hash("slabs", "ray"), "both decide exactly");
+    let transfers = |scene: &str, profile: &str| {
+        let is_it = |picture: &&Value| picture["scene"] == scene && picture["profile"] == profile;
+        pictures.iter().find(is_it).unwrap()["counts"]["mem"].as_f64().unwrap()
+    };
     for scene in ["cornell", "sphereflake", "slabs", "mirrors", "terrain"] {
         assert_eq!(hash(scene, "ray"), hash(scene, "packet"), "{scene}: the same decisions and roundings");
+        let ratio = transfers(scene, "packet") / transfers(scene, "ray");
+        assert!((0.05..0.25).contains(&ratio), "{scene}: {ratio} times the transfers");
     }
 }

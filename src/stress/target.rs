@@ -24,7 +24,7 @@ pub struct Target {
     pub name: &'static str,
     /// The kernels' functions for it.
     pub twin: Twin<Nearest32>,
-    /// Its packets, as the rows of the packet unit take them.
+    /// Packets of the tree, as the rows of the packet unit take them.
     pub packets: PackedLeaves,
     /// Coordinates of the planes that divide the tree, by axis.
     pub splits: [Vec<i32>; 3],
@@ -108,7 +108,7 @@ impl Target {
         Ok(search.triangle.map(|index| (search.t, index)))
     }
 
-    /// The same as the profile `packet` finds it.
+    /// Result of the profile `packet`: the rounded t and the triangle.
     fn nearest_of_packets(&self, ray: &Ray) -> Option<(i32, u32)> {
         let Twin { arithmetic, constants, stage, .. } = &self.twin;
         let mut search = ray::TwinSearch { t: constants.never, triangle: None, takes_any: false };

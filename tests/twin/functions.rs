@@ -39,7 +39,7 @@ pub(super) fn subject(name: &str, level: Option<u32>, modes: Modes) -> Subject {
     subject_in(image::MemoryOptions::default().layout, name, level, modes)
 }
 
-/// The same in a layout.
+/// A generated scene with a small picture, in a layout.
 pub(super) fn subject_in(layout: Layout, name: &str, level: Option<u32>, modes: Modes) -> Subject {
     let size = (8, 6);
     let scene =
@@ -269,7 +269,7 @@ pub(super) fn trees(modes: Modes) -> [Subject; 3] {
     trees_in(image::MemoryOptions::default().layout, modes)
 }
 
-/// The same in a layout.
+/// Scenes with trees of different kinds, in a layout.
 pub(super) fn trees_in(layout: Layout, modes: Modes) -> [Subject; 3] {
     [("slivers", 8), ("cornell", 2), ("slabs", 4)].map(|(name, level)| subject_in(layout, name, Some(level), modes))
 }

@@ -71,7 +71,7 @@ const SETS: [(KernelSet, Layout); 4] = [
     (KernelSet::Packet, Layout::Wide),
 ];
 
-/// What a search of a twin finds, as the kernel's registers have it.
+/// Result of a search of a twin, as the kernel's registers have it.
 fn found(subject: &Subject, twin: &Twin<Modes>, ray: &TwinRay, mut search: TwinSearch) -> Vec<i32> {
     let triangles = subject.image.region(MemoryKind::Triangles).start;
     let octets = subject.image.layout.triangle().octets();

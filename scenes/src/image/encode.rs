@@ -195,7 +195,7 @@ impl Addresses {
         self.nodes + place * self.layout.node().octets()
     }
 
-    /// What a leaf has of its triangles, behind so many references of other leaves.
+    /// Address of a leaf's references, behind so many of other leaves.
     fn leaf(&self, references: u32) -> u32 {
         self.references + references * self.layout.octets_a_reference()
     }

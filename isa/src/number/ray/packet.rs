@@ -43,6 +43,7 @@ impl PacketHit {
 
 impl<'a> PacketWords<'a> {
     /// The packet of as many triangles as the octets hold.
+    #[inline(always)]
     pub fn new(octets: &'a [u8]) -> PacketWords<'a> {
         PacketWords { octets, count: octets.len() / (4 * PACKET_WORDS) }
     }
@@ -65,23 +66,23 @@ impl<'a> PacketWords<'a> {
     /// The words of one kind of the lanes from a triangle on; lanes without a triangle have 0.
     #[inline(always)]
     fn lanes(&self, kind: usize, first: usize) -> LaneNumbers {
-        let mut words = [0; LANES];
-        let start = 4 * (kind * self.count + first);
-        match self.octets[start..].first_chunk::<{ 4 * LANES }>() {
+        let mut lanes = [0.0; LANES];
+        let octets = &self.octets[4 * (kind * self.count + first)..];
+        match octets.first_chunk::<{ 4 * LANES }>() {
             // What follows in memory stands in lanes that nobody looks at.
             Some(octets) => {
-                let (chunks, _) = octets.as_chunks::<4>();
-                for lane in 0..LANES {
-                    words[lane] = i32::from_le_bytes(chunks[lane]);
+                let (words, _) = octets.as_chunks::<4>();
+                for (lane, &word) in lanes.iter_mut().zip(words) {
+                    *lane = f64::from(i32::from_le_bytes(word));
                 }
             }
             None => {
-                for (lane, word) in words.iter_mut().enumerate().take(self.count - first) {
-                    *word = self.word(kind, first + lane);
+                for (triangle, lane) in (first..self.count).zip(&mut lanes) {
+                    *lane = f64::from(self.word(kind, triangle));
                 }
             }
         }
-        words.map(f64::from)
+        lanes
     }
 
     /// The nearest of a hit and those of the packet: the least rounded t, then the least name. t is scaled by 2^shift.
@@ -156,7 +157,7 @@ impl<'a> PacketWords<'a> {
     }
 }
 
-/// What is known of the t of a lane, scaled.
+/// Knowledge of the t of a lane, scaled.
 enum Distance {
     /// The lane is surely hit, and t lies strictly between these.
     Between(f64, f64),
@@ -194,7 +195,7 @@ struct Judged {
     sure: LaneNumbers,
     /// The least of the tests, with all errors taken for it: a negative one is surely missed.
     most: LaneNumbers,
-    /// The same with all errors taken against it: a positive one is surely hit.
+    /// The least of the tests, with all errors taken against it: a positive one is surely hit.
     least: LaneNumbers,
     /// u, or v, surely above the determinant's magnitude: missed, whatever the sign of that is.
     beyond: LaneNumbers,
@@ -229,6 +230,7 @@ impl Judged {
     }
 }
 
+/// A function of two numbers, lane by lane. A loop by hand: what `array::map` calls is compiled apart, without the host's features.
 #[inline(always)]
 fn each(a: LaneNumbers, b: LaneNumbers, of: impl Fn(f64, f64) -> f64) -> LaneNumbers {
     let mut result = [0.0; LANES];
@@ -255,12 +257,12 @@ fn multiply(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
 
 #[inline(always)]
 fn scaled(a: LaneNumbers, factor: f64) -> LaneNumbers {
-    a.map(|a| a * factor)
+    each(a, [factor; LANES], |a, factor| a * factor)
 }
 
 #[inline(always)]
 fn magnitude(a: LaneNumbers) -> LaneNumbers {
-    a.map(f64::abs)
+    each(a, a, |a, _| a.abs())
 }
 
 /// The smaller number, lane by lane; none of them is NaN.
@@ -299,16 +301,19 @@ fn difference(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> [LaneNumbers; 3] {
 impl Beam {
     #[inline(always)]
     fn new(ray: &Ray) -> Beam {
-        let [origin, direction] = [ray.origin, ray.direction].map(|vector| vector.map(f64::from));
-        let size = direction.into_iter().map(f64::abs).fold(0.0, f64::max);
-        Beam { origin: origin.map(|x| [x; LANES]), direction: direction.map(|x| [x; LANES]), size }
+        let beside = |component: i32| [f64::from(component); LANES];
+        let ([x, y, z], [along_x, along_y, along_z]) = (ray.origin, ray.direction);
+        let direction = [beside(along_x), beside(along_y), beside(along_z)];
+        let size = size(&direction)[0];
+        Beam { origin: [beside(x), beside(y), beside(z)], direction, size }
     }
 
     /// Tries the triangles from a number on, by the formulas and the bounds of [`super::filter`].
     #[inline(always)]
     fn judge(&self, packet: &PacketWords, first: usize) -> Judged {
         // Find edges and start, which doubles hold exactly.
-        let vertex = |kind: usize| [0, 1, 2].map(|axis| packet.lanes(kind + axis, first));
+        let vertex =
+            |kind: usize| [packet.lanes(kind, first), packet.lanes(kind + 1, first), packet.lanes(kind + 2, first)];
         let corner = vertex(1);
         let edge1 = difference(&vertex(4), &corner);
         let edge2 = difference(&vertex(7), &corner);
@@ -329,15 +334,19 @@ impl Beam {
 
         // Turn the tests so that a hit passes them with positive numbers.
         let turned = |x: LaneNumbers| each(x, determinant, |x, sign| x * 1f64.copysign(sign));
-        let tests = [(turned(u), u_error), (turned(v), v_error), (turned(w), w_error), (turned(t), t_error)];
-        let [most_u, most_v, most_w, most_t] = tests.map(|(test, error)| add(test, error));
-        let [least_u, least_v, least_w, least_t] = tests.map(|(test, error)| subtract(test, error));
+        let (inside_u, inside_v, inside_w, ahead) = (turned(u), turned(v), turned(w), turned(t));
         let absolute = magnitude(determinant);
         let above = largest(subtract(magnitude(u), u_error), subtract(magnitude(v), v_error));
         Judged {
             sure: subtract(absolute, determinant_error),
-            most: least(least(most_u, most_v), least(most_w, most_t)),
-            least: least(least(least_u, least_v), least(least_w, least_t)),
+            most: least(
+                least(add(inside_u, u_error), add(inside_v, v_error)),
+                least(add(inside_w, w_error), add(ahead, t_error)),
+            ),
+            least: least(
+                least(subtract(inside_u, u_error), subtract(inside_v, v_error)),
+                least(subtract(inside_w, w_error), subtract(ahead, t_error)),
+            ),
             beyond: subtract(above, add(absolute, determinant_error)),
             determinant,
             t,

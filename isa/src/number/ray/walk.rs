@@ -40,7 +40,7 @@ impl Descent {
 
     /// Goes on in a node that is divided at a plane, with the decisions of [`super::step`]. Where the ray visits both children, it leaves the
     /// first one by that plane.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, split: Plane) -> Children {
         if split.axis == LEAF {
             return Children::None;

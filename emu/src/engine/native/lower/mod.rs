@@ -403,29 +403,6 @@ impl Lower<'_, '_> {
         self.vectors[usize::from(number)] = Some(value);
     }
 
-    fn component_offset(V(number): V, component: usize) -> i32 {
-        Registers::vector_offset(number) + 4 * component as i32
-    }
-
-    /// A component of a vector.
-    fn component(&mut self, vector: V, component: usize) -> Value {
-        match self.vectors[usize::from(vector.0)] {
-            Some(known) => self.b.ins().extractlane(known, component as u8),
-            None => self.b.ins().load(I32, aligned(), self.registers, Self::component_offset(vector, component)),
-        }
-    }
-
-    /// A component of a vector as 64 bits.
-    fn component64(&mut self, vector: V, component: usize) -> Value {
-        match self.vectors[usize::from(vector.0)] {
-            Some(known) => {
-                let value = self.b.ins().extractlane(known, component as u8);
-                self.b.ins().sextend(I64, value)
-            }
-            None => self.b.ins().sload32(aligned(), self.registers, Self::component_offset(vector, component)),
-        }
-    }
-
     fn w(&mut self, W(number): W) -> Value {
         if let Some(known) = self.wides[usize::from(number)] {
             return known;

@@ -20,6 +20,30 @@ static MASKS: [[i32; 4]; 16] = {
 };
 
 impl Lower<'_, '_> {
+    /// Place of a component among the registers.
+    fn component_offset(V(number): V, component: usize) -> i32 {
+        Registers::vector_offset(number) + 4 * component as i32
+    }
+
+    /// A component of a vector.
+    pub fn component(&mut self, vector: V, component: usize) -> Value {
+        match self.vectors[usize::from(vector.0)] {
+            Some(known) => self.b.ins().extractlane(known, component as u8),
+            None => self.b.ins().load(I32, aligned(), self.registers, Self::component_offset(vector, component)),
+        }
+    }
+
+    /// A component of a vector as 64 bits.
+    pub fn component64(&mut self, vector: V, component: usize) -> Value {
+        match self.vectors[usize::from(vector.0)] {
+            Some(known) => {
+                let value = self.b.ins().extractlane(known, component as u8);
+                self.b.ins().sextend(I64, value)
+            }
+            None => self.b.ins().sload32(aligned(), self.registers, Self::component_offset(vector, component)),
+        }
+    }
+
     /// The mask of which the low bits are known when code is generated.
     pub fn mask(&mut self, bits: usize) -> Value {
         let masks = self.c64(MASKS.as_ptr() as i64);

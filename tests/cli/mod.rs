@@ -16,4 +16,5 @@ mod schema;
 pub mod session;
 mod settings;
 mod streams;
+mod sweep;
 mod trace;

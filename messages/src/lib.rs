@@ -2,6 +2,7 @@
 //! project (assembly, extensions, scenes, machines) report through these types; no reader prints by itself.
 
 mod diagnostic;
+mod document;
 mod packed;
 mod report;
 mod snippet;
@@ -10,6 +11,7 @@ mod suggestion;
 mod visible;
 
 pub use diagnostic::{Diagnostic, Severity};
+pub use document::read_toml;
 pub use packed::{packed_by, refuse_packed, refuse_utf16};
 pub use report::Report;
 pub use source::{Place, Source};

@@ -1,11 +1,9 @@
 //! A machine's file: read with places and hints, checked, and written with every key.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use isa::Class;
-use messages::{Diagnostic, Place, Report, Source, did_you_mean};
-use toml::de::{DeTable, DeValue};
+use messages::{Diagnostic, Report, Source, read_toml};
 
 use super::law::Law;
 use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_LANES, MOST_OCTETS};
@@ -15,30 +13,9 @@ impl Config {
     /// Reads a machine file; keys that it leaves out have their defaults.
     ///
     /// # Errors
-    /// A file that is not TOML, a key that does not exist, a value out of its range.
+    /// All at once: what is no TOML, keys that do not exist, values of the wrong type or out of their ranges.
     pub fn parse(source: &Arc<Source>) -> Result<Config, Report> {
-        let config: Config = toml::from_str(&source.text).map_err(|error| {
-            let first_line = error.message().lines().next().unwrap_or_default().to_owned();
-            let mut message = Diagnostic::error(plain(&first_line));
-            if let Some(span) = error.span() {
-                message = message.at(Place::new(source, span), "");
-            }
-            // The parser's message quotes the wrong word first and then all that would be right.
-            let mut quoted = first_line.split('`').skip(1).step_by(2);
-            if first_line.contains("unknown")
-                && let Some(wrong) = quoted.next()
-                && let Some(hint) = did_you_mean(wrong, quoted)
-            {
-                message = message.hint(hint);
-            }
-            Report::from(message)
-        })?;
-        let shown = |(key, message): (String, Diagnostic)| match span(&source.text, &key) {
-            Some(span) => message.at(Place::new(source, span), "out of its range"),
-            None => message,
-        };
-        let wrong: Vec<Diagnostic> = config.out_of_range().into_iter().map(shown).collect();
-        if wrong.is_empty() { Ok(config) } else { Err(Report(wrong)) }
+        read_toml(source, Config::out_of_range)
     }
 
     /// Check that every number lies in its range.
@@ -130,42 +107,6 @@ impl Config {
     }
 }
 
-/// Place of the value of a key such as `bus.weights[2]` in a file.
-fn span(text: &str, key: &str) -> Option<Range<usize>> {
-    let document = DeTable::parse(text).ok()?;
-    let mut table = document.get_ref();
-    let mut found = None;
-    for part in key.split('.') {
-        // `weights[1]` and `weights' length` both point to the list as a whole.
-        let part = part.split(['[', '\'']).next()?;
-        let (_, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
-        found = Some(value.span());
-        match value.get_ref() {
-            DeValue::Table(inner) => table = inner,
-            _ => break,
-        }
-    }
-    found
-}
-
-/// A message of the TOML reader about a value of the wrong type, without the names of types of Rust.
-fn plain(message: &str) -> String {
-    let wrong = ["invalid type: ", "invalid value: "].iter().find_map(|start| message.strip_prefix(start));
-    let Some((found, wanted)) = wrong.and_then(|rest| rest.split_once(", expected ")) else {
-        return message.to_owned();
-    };
-    let wanted = match wanted {
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number from 0",
-        "a boolean" => "true or false",
-        "a string" => "a text in quotation marks",
-        "a sequence" => "a list in brackets",
-        wanted if wanted.starts_with("struct ") || wanted.starts_with("a map") => "a table",
-        wanted => wanted,
-    };
-    let found = found.replace("string ", "text ").replace("integer ", "number ").replace("floating point ", "number ");
-    format!("{wanted} is expected, not {}", found.replace("sequence", "a list").replace("map", "a table"))
-}
-
 #[cfg(test)]
 mod tests {
     use isa::number::Quantization;
@@ -234,6 +175,17 @@ mod tests {
             let shown = parse(text).expect_err(text);
             assert!(shown.contains(place) && shown.contains(hint), "{text}\n{shown}");
         }
+    }
+
+    #[test]
+    fn mistakes_of_all_kinds_are_shown_at_once() {
+        let text = "core = 3\nclock_hz = \"fast\"\n[clocks]\nmull = 1\n[bus]\narbiter = \"tmda\"\noverlap = 1\nburst_octets = -4\n\
+                    [arithmetic]\nword = 99\n";
+        let shown = parse(text).expect_err("nothing is right");
+        for place in ["1:1", "2:12", "4:1", "6:11", "7:11", "8:16", "10:8"] {
+            assert!(shown.contains(&format!("m.toml:{place}")), "{place}\n{shown}");
+        }
+        assert!(shown.contains("did you mean `tdma`?") && shown.ends_with("7 errors"), "{shown}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A scene drawn without an extension, with it, and with the bodies of its instructions in their place.
 
+use emu::code::Code;
 use isa::table::Op;
 use isa::{Isa, Program};
 use scenes::metrics::PictureError;
@@ -23,6 +24,8 @@ pub struct VariantResult {
     pub counts: ByClass,
     /// Elementary operations of all cores: add, sub, mul, div and cmp.
     pub elementary: u64,
+    /// Clocks that all cores together computed; what they wait for the bus is not in it.
+    pub busy_clocks: u64,
     /// Octets that the cores moved over the bus.
     pub octets: u64,
     /// Length of the frame in clocks.
@@ -49,6 +52,8 @@ pub struct ExtensionResult {
     pub file: String,
     /// Instructions of the extension.
     pub instructions: Vec<String>,
+    /// Executions of each of them by the cores, with the extension.
+    pub executions: Vec<u64>,
     /// Name of the scene.
     pub scene: String,
     /// Name of the kernels' profile.
@@ -78,6 +83,7 @@ impl VariantResult {
             instructions: render.instructions,
             elementary: render.counts.0.elementary(),
             counts: render.counts,
+            busy_clocks: render.cores.iter().map(|core| core.busy).sum(),
             octets: render.octets,
             clocks: render.clocks,
             words: size(&drawing.build.cores) + size(&drawing.build.main),
@@ -100,6 +106,20 @@ fn length(word: u32, isa: &Isa) -> u64 {
     }
 }
 
+/// Executions of each instruction by the cores of a picture.
+fn executed(job: &Job, drawing: &Drawing, ops: &[Op]) -> Vec<u64> {
+    let program = &drawing.build.cores;
+    let code = Code::new(program, &job.isa, job.machine.timing());
+    let mut executions = vec![0; ops.len()];
+    for (pc, &word) in program.words.iter().enumerate() {
+        let op = job.isa.decode(word).map(|instruction| instruction.op);
+        if let Some(at) = op.and_then(|op| ops.iter().position(|known| *known == op)) {
+            executions[at] += drawing.frame.tally.word(&code, pc as u32).instructions;
+        }
+    }
+    executions
+}
+
 /// Draws the scene of `plain` without the extension, and that of `extended`, whose set of instructions has it, twice. `progress` is called
 /// after each of the three.
 ///
@@ -113,22 +133,27 @@ pub fn compare(
     progress: &mut dyn FnMut(),
 ) -> Result<ExtensionResult, Failure> {
     // Draw the three pictures with the same view and machine.
-    let mut draw = |job: &Job| -> Result<VariantResult, Failure> {
+    let mut executions = vec![0; ops.len()];
+    let mut draw = |job: &Job, executions: Option<&mut Vec<u64>>| -> Result<VariantResult, Failure> {
         let drawing = drawing::draw(job, Comparison::Reference, &mut |_| {})?;
         progress();
+        if let Some(executions) = executions {
+            *executions = executed(job, &drawing, ops);
+        }
         Ok(VariantResult::new(job, &drawing, &job.isa))
     };
-    let without = draw(plain)?;
-    let with = draw(extended)?;
+    let without = draw(plain, None)?;
+    let with = draw(extended, Some(&mut executions))?;
     // The kernels of the extension with bodies in the places of their instructions: what the extension saves is the difference.
     let mut expanded = extended.clone();
     expanded.isa = extended.isa.expanded(ops);
-    let expanded = draw(&expanded)?;
+    let expanded = draw(&expanded, None)?;
     let hashes = [&without.image_hash, &with.image_hash, &expanded.image_hash];
     Ok(ExtensionResult {
         schema: SCHEMA,
         file,
         instructions: ops.iter().map(|&op| extended.isa.definition(op).name.to_string()).collect(),
+        executions,
         scene: crate::job::result_name(&plain.scene),
         profile: plain.kernels.profile.name(),
         machine: plain.machine_name.clone(),

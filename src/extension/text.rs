@@ -38,9 +38,14 @@ impl ExtensionResult {
         for &class in Class::ALL {
             add(class.name(), &|variant| variant.counts.0[class]);
         }
+        add("clocks of computing", &|variant| variant.busy_clocks);
         add("octets on the bus", &|variant| variant.octets);
         add(&format!("clocks on {}", count(self.cores.into(), "core", "cores")), &|variant| variant.clocks);
         add("code in words", &|variant| variant.words);
+        for (name, &count) in self.instructions.iter().zip(&self.executions) {
+            let none = String::new;
+            rows.push(vec![format!("times `{name}` ran"), none(), grouped(count), none(), none(), none()]);
+        }
         let psnr = |variant: &VariantResult| match variant.error.and_then(|error| error.psnr_db) {
             Some(psnr) => format!("{psnr:.2}"),
             None => "-".to_owned(),

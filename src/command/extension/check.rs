@@ -65,7 +65,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
                 spent(&isa, loaded.op)
             );
         }
-        terminal.print(&text)?;
+        terminal.tell(&text)?;
     }
     Ok(Exit::Done)
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use isa::table::Op;
+use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -92,10 +93,15 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
     let comparison = compare(file, &ops, &plain, &extended, &mut || bar.inc(1));
     bar.finish_and_clear();
     let comparison = comparison?;
-    terminal.print(&match (arguments.json, arguments.markdown) {
-        (true, _) => result::json(&WithSettings::new(&comparison, settings)),
-        (_, true) => comparison.markdown(),
-        _ => comparison.text(),
-    })?;
+    if comparison.executions.iter().all(|&count| count == 0) {
+        let message = Diagnostic::warning("the kernels execute none of these instructions, so nothing changes");
+        let hint = "`--kernel FUNCTION=FILE` names a function that has them";
+        terminal.show(&message.hint(hint).into());
+    }
+    match (arguments.json, arguments.markdown) {
+        (true, _) => terminal.print(&result::json(&WithSettings::new(&comparison, settings)))?,
+        (_, true) => terminal.print(&comparison.markdown())?,
+        _ => terminal.tell(&comparison.text())?,
+    }
     Ok(Exit::Done)
 }

@@ -65,6 +65,12 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     terminal.show(&plain.warnings);
     let file = arguments.output.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     asm::check_outside_name(&file, &plain.isa).map_err(|why| Failure::usage(Diagnostic::error(why)))?;
+    // Instructions are named by the prefix and a number: `s` would make registers of them.
+    let made = (1..=arguments.most).map(|number| format!("{file}{number}"));
+    if let Some(why) = made.filter_map(|name| asm::check_outside_name(&name, &plain.isa).err()).next() {
+        let message = Diagnostic::error(format!("`{file}` cannot begin the names of instructions: {why}"));
+        return Err(Failure::usage(message.hint("choose a longer one, such as `-o fused`")));
+    }
     if file.chars().any(|c| c.is_ascii_uppercase()) {
         let message = format!("`{file}` names instructions: small letters, digits and `_`");
         return Err(Failure::usage(Diagnostic::error(message)));
@@ -76,10 +82,10 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     let drawing = render::draw(&plain, Comparison::None, terminal)?;
     let suggestions = suggest(&plain, &drawing, &file, arguments.most as usize);
     if suggestions.found.is_empty() {
-        terminal.print(&match arguments.json {
-            true => json(SuggestionResult::new(&plain, &suggestions, Vec::new(), None)),
-            false => "no sequence of instructions would save anything\n".to_owned(),
-        })?;
+        match arguments.json {
+            true => terminal.print(&json(SuggestionResult::new(&plain, &suggestions, Vec::new(), None)))?,
+            false => terminal.tell("no sequence of instructions would save anything\n")?,
+        }
         return Ok(Exit::Done);
     }
     let mut written: Vec<(PathBuf, &str)> = vec![(path(".isa"), &suggestions.extension)];
@@ -99,14 +105,20 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
     let comparison = compare(source.name.clone(), &ops, &plain, &extended, &mut || {})?;
     let exit = if comparison.is_identical { Exit::Done } else { Exit::Tolerance };
     let names: Vec<String> = written.iter().map(|(path, _)| path.display().to_string()).collect();
-    terminal.print(&match arguments.json {
-        true => json(SuggestionResult::new(&plain, &suggestions, names, Some(comparison))),
-        false => format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(), names.join(", ")),
-    })?;
+    match arguments.json {
+        true => {
+            let result = SuggestionResult::new(&plain, &suggestions, names, Some(comparison));
+            terminal.print(&json(result))?;
+        }
+        false => {
+            let all = format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(), names.join(", "));
+            terminal.tell(&all)?;
+        }
+    }
     Ok(exit)
 }
 
-/// The sequences, the one that saves most first.
+/// The sequences, the one that saves most time first.
 fn text(suggestions: &Suggestions) -> String {
     let mut rows = vec![row([
         "instruction",
@@ -118,6 +130,7 @@ fn text(suggestions: &Suggestions) -> String {
         "saves",
         "clocks",
         "chain",
+        "saved clocks",
         "at most",
     ])];
     for found in &suggestions.found {
@@ -132,12 +145,13 @@ fn text(suggestions: &Suggestions) -> String {
             percent(found.saved(), suggestions.instructions),
             found.serial.to_string(),
             found.critical.to_string(),
+            grouped(found.saved_clocks()),
             format!("{:.3} x", suggestions.speedup(found)),
         ]);
     }
     let saved: u64 = suggestions.found.iter().map(|found| found.saved()).sum();
     format!(
-        "{}apart: places where other instructions stood between those of the sequence; saves: share of all instructions; clocks: one after the other, and along the longest chain of results;\nat most: how much \
+        "{}apart: places where other instructions stood between those of the sequence; saves: share of all instructions; clocks: one after the other, and along the longest chain of results; saved clocks: of computing, on this machine;\nat most: how much \
          faster the cores compute when the instruction takes as long as its chain (Amdahl)\ntogether {} of {} instructions, {}\n",
         table(rows),
         grouped(saved),

@@ -51,7 +51,7 @@ pub struct Suggestion {
 /// Suggestions from a run.
 #[derive(Clone, Debug)]
 pub struct Suggestions {
-    /// The instructions, the one that saves most first.
+    /// The instructions, the one that saves most time on the machine first.
     pub found: Vec<Suggestion>,
     /// Their file.
     pub extension: String,
@@ -64,6 +64,11 @@ pub struct Suggestions {
 }
 
 impl Suggestion {
+    /// Clocks of computing that it saves at most, on the machine of the run: when it takes as long as its chain.
+    pub fn saved_clocks(&self) -> u64 {
+        self.executions * (self.serial - self.critical)
+    }
+
     /// Instructions that it saves.
     pub fn saved(&self) -> u64 {
         self.executions * (self.lines.len() as u64 - 1)
@@ -73,8 +78,7 @@ impl Suggestion {
 impl Suggestions {
     /// Speed-up of the cores at most, when a suggested instruction takes as long as its chain (Amdahl).
     pub fn speedup(&self, found: &Suggestion) -> f64 {
-        let saved = found.executions * (found.serial - found.critical);
-        self.clocks as f64 / self.clocks.saturating_sub(saved).max(1) as f64
+        self.clocks as f64 / self.clocks.saturating_sub(found.saved_clocks()).max(1) as f64
     }
 }
 
@@ -100,13 +104,13 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
             functions.push((function, own));
         }
     }
-    // Take the sequence that saves most, put the instruction in all of its places, and look again: what is left may form others.
+    // Take the sequence that saves most time, put the instruction in all of its places, and look again: what is left may form others.
     let total: u64 = counts.iter().sum();
     let mut majors = Majors::new(isa);
     let mut found: Vec<Suggestion> = Vec::new();
     while found.len() < most {
         // Sum what each sequence would save over all blocks.
-        let mut totals: BTreeMap<&str, (u64, u32)> = BTreeMap::new();
+        let mut totals: BTreeMap<&str, Saving> = BTreeMap::new();
         for block in functions.iter_mut().flat_map(|(_, blocks)| blocks) {
             block.search(&flow, isa, &timing);
         }
@@ -116,15 +120,21 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
                 // Of sequences that overlap the first counts.
                 if ends.get(&*candidate.key).is_none_or(|&end| end <= candidate.window.start) {
                     ends.insert(&candidate.key, candidate.window.end);
-                    let entry = totals.entry(&candidate.key).or_insert((0, candidate.pattern.bits()));
-                    entry.0 += block.count * (candidate.pattern.lines.len() as u64 - 1);
+                    let Pattern { lines, serial, critical, .. } = &candidate.pattern;
+                    let entry = totals.entry(&candidate.key).or_default();
+                    entry.bits = candidate.pattern.bits();
+                    entry.clocks += block.count * (serial - critical);
+                    entry.instructions += block.count * (lines.len() as u64 - 1);
                 }
             }
         }
-        // Choose the one that saves most, of equal ones the one with fewest operand bits, as long as it is worth an opcode.
-        let fitting = totals.into_iter().filter(|(_, (_, bits))| majors.has_room(*bits));
-        let best = fitting.max_by_key(|&(_, (saved, bits))| (saved, std::cmp::Reverse(bits)));
-        let Some((key, _)) = best.filter(|&(_, (saved, _))| saved as f64 >= LEAST_SHARE * total as f64) else { break };
+        // Choose the one that saves most clocks of computing on this machine, of equal ones the one that saves most instructions,
+        // then the one with fewest operand bits, as long as it is worth an opcode.
+        let is_worth = |saving: &Saving| saving.instructions as f64 >= LEAST_SHARE * total as f64;
+        let fitting = totals.into_iter().filter(|(_, saving)| majors.has_room(saving.bits) && is_worth(saving));
+        let best =
+            fitting.max_by_key(|(_, saving)| (saving.clocks, saving.instructions, std::cmp::Reverse(saving.bits)));
+        let Some((key, _)) = best else { break };
         let key = key.to_owned();
         let mnemonic = format!("{name}{}", found.len() + 1);
         // Replace it wherever it stands; each replacement changes the block, so the search starts anew.
@@ -144,6 +154,8 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
         let name = mnemonic;
         found.push(Suggestion { name, row, lines, functions, places, apart, executions, serial, critical });
     }
+    // What is left may form a sequence that saves more than one before it.
+    found.sort_by_key(|one| std::cmp::Reverse((one.saved_clocks(), one.saved())));
     // Write the functions that changed as files that serve them.
     let scene = crate::job::result_name(&job.scene);
     let kernels =
@@ -161,6 +173,17 @@ pub fn suggest(job: &Job, drawing: &Drawing, name: &str, most: usize) -> Suggest
         instructions: total,
         clocks: drawing.frame.processors[..job.machine.cores as usize].iter().map(|core| core.busy.0).sum(),
     }
+}
+
+/// Savings of a sequence over all its places.
+#[derive(Clone, Copy, Debug, Default)]
+struct Saving {
+    /// Clocks of computing, at most.
+    clocks: u64,
+    /// Instructions.
+    instructions: u64,
+    /// Operand bits of the instruction in its place.
+    bits: u32,
 }
 
 /// Sites of one instruction in the program.

@@ -30,7 +30,7 @@ pub struct SuggestionResult {
     pub instructions: u64,
     /// Clocks that all cores together computed, without the suggestions.
     pub busy_clocks: u64,
-    /// The instructions, the one that saves most first.
+    /// The instructions, the one that saves most time on the machine first.
     pub suggestions: Vec<SuggestionEntry>,
     /// Files that were written: the extension, then the functions.
     pub files: Vec<String>,
@@ -57,6 +57,8 @@ pub struct SuggestionEntry {
     pub executions: u64,
     /// Instructions that it saves.
     pub saved: u64,
+    /// Clocks of computing that it saves at most.
+    pub saved_clocks: u64,
     /// Clocks of its instructions, one after the other.
     pub serial_clocks: u64,
     /// Clocks along the longest chain of its results.
@@ -77,6 +79,7 @@ impl SuggestionResult {
             apart: found.apart as u64,
             executions: found.executions,
             saved: found.saved(),
+            saved_clocks: found.saved_clocks(),
             serial_clocks: found.serial,
             critical_clocks: found.critical,
             speedup: suggestions.speedup(found),

@@ -112,6 +112,7 @@ fn machine_list(text: &str) -> Result<Vec<String>, String> {
 pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()];
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
+    let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
     }
@@ -127,10 +128,11 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         files.push((path, cores::svg(&scaling)?));
     }
     files::write_all(&files)?;
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&scaling, settings)),
-        false => cores::text(&scaling),
-    })?;
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => terminal.print(&result::json(&WithSettings::new(&scaling, settings)))?,
+        (false, false) => terminal.tell(&cores::text(&scaling))?,
+    }
     Ok(Exit::Done)
 }
 
@@ -184,9 +186,8 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResu
     Ok((whole, settings(arguments, Settings::of(&jobs[0]), all)))
 }
 
-fn settings(arguments: &CoresArguments, mut job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
-    let machines: Vec<_> = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
-    job.machine.clone_from(&machines[0]);
+fn settings(arguments: &CoresArguments, job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
+    let machines = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
     CoresSettings { job, cores: cores_of(arguments), machines }
 }
 

@@ -31,8 +31,7 @@ impl PixelDemand {
         Some(self.quotient()? + 1.0)
     }
 
-    /// Clocks a pixel without any waiting: (C + M) / N as long as the bus has room, M beyond that. Where the main processor
-    /// uses the bus while a core computes, one core may be a little faster.
+    /// Clocks a pixel without any waiting: (C + M) / N as long as the bus has room, M beyond that.
     pub fn bound(&self, cores: u32) -> f64 {
         ((self.computing + self.transfer) / f64::from(cores)).max(self.transfer)
     }

@@ -19,6 +19,7 @@ pub use text::{csv, text};
 
 use crate::failure::Failure;
 use crate::load::Load;
+use crate::machine::arbiter_note;
 use crate::result::{FormatTable, OperationTimes};
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
@@ -47,6 +48,8 @@ pub struct Curve {
     pub machine: String,
     /// Name of its arbiter.
     pub arbiter: String,
+    /// Reason for which the arbiter does what another one does; null where it does not.
+    pub arbiter_note: Option<&'static str>,
     /// Bits of a word and fraction bits of each quantity; null for `annex`, whose pixels only take time.
     pub formats: Option<FormatTable>,
     /// Clock rate in hertz.
@@ -70,7 +73,8 @@ pub struct Curve {
 pub struct Saturation {
     /// Number of cores at which the straight line of the first cores reaches the highest speed-up.
     pub cores: f64,
-    /// Resource that is used up: `bus`, `main-processor`, or `other` when neither is and the pixels or the messages set the pace.
+    /// Cause that holds the cores up: `bus` and `main-processor` are used up; `arbiter` leaves the bus idle while cores wait for
+    /// their turns; `other` when the pixels or the messages set the pace.
     pub limit: &'static str,
 }
 
@@ -95,9 +99,11 @@ pub struct Point {
     pub idle: f64,
     /// Longest wait from a request to its grant, in clocks.
     pub longest_wait: u64,
-    /// Share of the frame in which the main processor was not idle.
+    /// Share of the frame in which the main processor computed.
     pub main_load: f64,
-    /// Seconds a pixel without any waiting: max((C + M) / N, M).
+    /// Share of the frame in which the main processor waited for the bus, and so fed nobody.
+    pub main_waiting: f64,
+    /// Least seconds a pixel, if nobody waited for the bus: max((C + T) / N, M), with T the cores' part of the transfers M.
     pub bound_pixel_seconds: f64,
     /// Seconds a pixel by the queueing estimate.
     pub queueing_pixel_seconds: f64,
@@ -168,7 +174,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
         transfer: alone.bus.busy.0 as f64 / pixels,
     };
     let mut points: Vec<Point> =
-        frames.iter().map(|&(cores, frame)| point(cores, frame, alone, &demand, config.clock_hz)).collect();
+        frames.iter().map(|&(cores, frame)| point(cores, frame, alone, &demand, config)).collect();
     let saturation = saturation(&points);
     for point in &mut points {
         point.is_saturated = saturation.is_some_and(|saturation| f64::from(point.cores) >= saturation.cores);
@@ -176,6 +182,7 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     Curve {
         machine: name.to_owned(),
         arbiter: config.bus.arbiter.name().to_owned(),
+        arbiter_note: arbiter_note(config),
         formats: None,
         clock_hz: config.clock_hz,
         timing: OperationTimes::new(config),
@@ -187,13 +194,23 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     }
 }
 
-fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDemand, clock_hz: u64) -> Point {
+fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDemand, config: &Config) -> Point {
+    let (clock_hz, overlaps) = (config.clock_hz, config.bus.overlap);
     let (workers, main) = frame.processors.split_at(cores as usize);
     let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
     let whole = frame.clocks.0 * u64::from(cores);
     let seconds = |clocks: f64| clocks / clock_hz as f64;
-    // The main processor's waiting counts as load: while it waits for the bus it feeds nobody.
-    let main_work = main.iter().map(|main| main.busy.0 + main.waiting.0).sum();
+    let main_busy = main.iter().map(|main| main.busy.0).sum();
+    let main_waiting = main.iter().map(|main| main.waiting.0).sum::<u64>();
+    // The cores' own transfers: all of the bus but what the main processor waited for, which has its transfers in it.
+    let pixels = frame.item_count.max(1) as f64;
+    // A core that computes while its transfer goes on may hide all of it.
+    let own = match overlaps {
+        true => 0,
+        false => frame.bus.busy.0.saturating_sub(main_waiting),
+    };
+    let own = PixelDemand { computing: sum(|used| used.busy.0) as f64 / pixels, transfer: own as f64 / pixels };
+    let bound = own.bound(cores).max(frame.bus.busy.0 as f64 / pixels);
     Point {
         cores,
         clocks: frame.clocks.0,
@@ -204,8 +221,9 @@ fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDeman
         waiting: share(sum(|used| used.waiting.0), whole),
         idle: share(sum(|used| used.idle.0), whole),
         longest_wait: frame.bus.longest_wait.0,
-        main_load: share(main_work, frame.clocks.0),
-        bound_pixel_seconds: seconds(demand.bound(cores)),
+        main_load: share(main_busy, frame.clocks.0),
+        main_waiting: share(main_waiting, frame.clocks.0),
+        bound_pixel_seconds: seconds(bound),
         queueing_pixel_seconds: seconds(demand.queueing(cores)),
         method: frame.method.name(),
         is_saturated: false,
@@ -221,12 +239,53 @@ fn saturation(points: &[Point]) -> Option<Saturation> {
         return None;
     }
     let highest = points.iter().max_by(|one, other| one.speed_up.total_cmp(&other.speed_up))?;
-    // Both may be nearly full; the one that is fuller holds the others up.
+    // Both may be nearly full; the one that is fuller holds the others up. Where neither is, cores that wait do so for their turns.
     let limit = match (last.utilisation, last.main_load) {
         (busy, main) if busy >= 0.95 && busy >= main => "bus",
         (_, main) if main >= 0.9 => "main-processor",
         (busy, _) if busy >= 0.9 => "bus",
+        _ if last.waiting >= 0.5 => "arbiter",
         _ => "other",
     };
     Some(Saturation { cores: highest.speed_up, limit })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limit(change: impl Fn(&mut Point)) -> Option<&'static str> {
+        let point = |cores: u32, speed_up: f64| {
+            let mut point = Point {
+                cores,
+                clocks: 100,
+                seconds: 1.0,
+                pixel_seconds: 1.0,
+                speed_up,
+                utilisation: 0.5,
+                waiting: 0.1,
+                idle: 0.1,
+                longest_wait: 1,
+                main_load: 0.1,
+                main_waiting: 0.1,
+                bound_pixel_seconds: 1.0,
+                queueing_pixel_seconds: 1.0,
+                method: "replayed",
+                is_saturated: false,
+            };
+            change(&mut point);
+            point
+        };
+        saturation(&[point(1, 1.0), point(8, 4.0), point(9, 4.0)]).map(|saturation| saturation.limit)
+    }
+
+    #[test]
+    fn what_holds_cores_up_is_named() {
+        assert_eq!(limit(|point| point.utilisation = 0.999), Some("bus"));
+        // A main processor that waits for a full bus has time: it is the bus that is full.
+        assert_eq!(limit(|point| (point.utilisation, point.main_waiting) = (0.999, 0.98)), Some("bus"));
+        assert_eq!(limit(|point| point.main_load = 0.97), Some("main-processor"));
+        assert_eq!(limit(|point| (point.utilisation, point.waiting) = (0.7, 0.8)), Some("arbiter"));
+        assert_eq!(limit(|_| ()), Some("other"));
+    }
 }

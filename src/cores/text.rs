@@ -21,11 +21,12 @@ fn one(scaling: &CoresResult, curve: &Curve) -> String {
         rows.push(cells(point, is_knee));
     }
     format!(
-        "{}: {} pixels on machine `{}`, arbiter {}\n{}{}{}",
+        "{}: {} pixels on machine `{}`, arbiter {}{}\n{}{}{}",
         scaling.scene,
         grouped(scaling.pixels),
         curve.machine,
         curve.arbiter,
+        curve.arbiter_note.map_or(String::new(), |note| format!(" ({note})")),
         operation_times(&curve.timing),
         table(rows),
         verdict(scaling, curve),
@@ -58,15 +59,18 @@ fn verdict(scaling: &CoresResult, curve: &Curve) -> String {
     let number = |cores: Option<f64>| cores.map_or("none".to_owned(), |cores| format!("{cores:.2}"));
     let measured = match curve.saturation {
         None => "more cores than these still bring more".to_owned(),
-        Some(saturation) => format!(
-            "{:.2} cores, {}",
-            saturation.cores,
-            match saturation.limit {
-                "bus" => "where the bus is full",
-                "main-processor" => "where the main processor has no time left",
-                _ => "though neither bus nor main processor is full",
-            }
-        ),
+        Some(saturation) => {
+            format!(
+                "{:.2} cores, {}",
+                saturation.cores,
+                match saturation.limit {
+                    "bus" => "where the bus is full",
+                    "main-processor" => "where the main processor has no time left",
+                    "arbiter" => "where cores wait for their turns though the bus has room",
+                    _ => "though neither bus nor main processor is full",
+                }
+            ) + &starved(curve)
+        }
     };
     format!(
         "a pixel on one core: C = {} clocks of computing, M = {} of the bus\n\
@@ -80,10 +84,24 @@ fn verdict(scaling: &CoresResult, curve: &Curve) -> String {
     )
 }
 
+/// Share of the frame that the main processor waits for the bus from which it is told.
+const STARVED: f64 = 0.5;
+
+/// Share of the cores' clocks without a pixel from which that matters.
+const IDLE: f64 = 0.1;
+
+/// Sentence on a main processor that hands out no pixels because it does not get the bus.
+fn starved(curve: &Curve) -> String {
+    let starved = |point: &&Point| point.main_waiting >= STARVED && point.idle >= IDLE;
+    curve.points.last().filter(starved).map_or(String::new(), |point| {
+        format!("; the main processor, which feeds the cores, waits for it {:.1} %", 100.0 * point.main_waiting)
+    })
+}
+
 /// A column of the comma-separated values: its head and what it holds.
 type Column = (&'static str, fn(&Curve, &Point) -> String);
 
-const COLUMNS: [Column; 15] = [
+const COLUMNS: [Column; 16] = [
     ("machine", |curve, _| quoted(&curve.machine)),
     ("arbiter", |curve, _| curve.arbiter.clone()),
     ("cores", |_, point| point.cores.to_string()),
@@ -96,6 +114,7 @@ const COLUMNS: [Column; 15] = [
     ("idle", |_, point| point.idle.to_string()),
     ("longest_wait", |_, point| point.longest_wait.to_string()),
     ("main_load", |_, point| point.main_load.to_string()),
+    ("main_waiting", |_, point| point.main_waiting.to_string()),
     ("bound_pixel_seconds", |_, point| point.bound_pixel_seconds.to_string()),
     ("queueing_pixel_seconds", |_, point| point.queueing_pixel_seconds.to_string()),
     ("method", |_, point| point.method.to_owned()),

@@ -95,6 +95,41 @@ fn machines_and_arbiters_stand_side_by_side_and_draw_the_same() {
 }
 
 #[test]
+fn no_measurement_is_below_the_time_without_waiting() {
+    let session = Session::new();
+    let arbiters = emu::machine::arbiter::ArbiterKind::ALL.map(|kind| format!("--arbiter {}", kind.name())).join(" ");
+    let machines: Vec<String> =
+        emu::machine::preset::PRESETS.iter().map(|preset| format!("--machine {}", preset.name)).collect();
+    let machines = machines.join(" ");
+    let result = session.json(&format!("cores cornell --size 12x9 --cores 1,2,3,4,8,16 {machines} {arbiters}"));
+    for machine in result["machines"].as_array().unwrap() {
+        for point in points(machine) {
+            let [time, bound] = ["pixel_seconds", "bound_pixel_seconds"].map(|key| figure(&point[key]));
+            assert!(bound <= time * (1.0 + 1e-12), "{} {} {point}", machine["machine"], machine["arbiter"]);
+            // Below it by little where there is little waiting: one core waits for nobody but the main processor.
+            assert!(point["cores"] != 1 || machine["arbiter"] == "tdma" || bound >= 0.9 * time, "{machine}");
+        }
+    }
+}
+
+#[test]
+fn a_starved_main_processor_is_not_said_to_have_no_time() {
+    let session = Session::new();
+    session.write("m.toml", "[bus]\narbiter = \"fixed-priority\"\n");
+    let result = session.json("cores cornell --size 20x15 --machine m.toml --cores 1,2,4,8");
+    let machine = &result["machines"][0];
+    let last = points(machine).last().unwrap();
+    assert_eq!(machine["saturation"]["limit"], "bus");
+    assert!(figure(&last["main_load"]) < 0.1 && figure(&last["main_waiting"]) > 0.5, "{last}");
+    let text = session.succeed("cores cornell --size 20x15 --machine m.toml --cores 1,2,4,8");
+    assert!(text.contains("where the bus is full; the main processor, which feeds the cores, waits for it"), "{text}");
+    // The same shares as those of the picture by itself.
+    let alone = session.json("render cornell --size 20x15 --machine m.toml --cores 8 --no-error");
+    let busy = figure(&alone["main"]["busy"]) / figure(&alone["clocks"]);
+    assert!((busy - figure(&last["main_load"])).abs() < 1e-12, "{busy} {last}");
+}
+
+#[test]
 fn what_is_wrong_is_said_before_the_work() {
     let session = Session::new();
     session.fail("cores cornell --cores 0", 2, "no number of cores from 1 to 256");

@@ -12,6 +12,7 @@ mod extension;
 mod faults;
 mod laws;
 mod profiles;
+mod python;
 mod readme;
 mod report;
 mod skips;

@@ -8,6 +8,8 @@ pub mod benchmark;
 #[cfg(feature = "cli")]
 pub mod command;
 pub mod cores;
+#[cfg(feature = "cli")]
+pub mod difference;
 pub mod drawing;
 pub mod extension;
 pub mod failure;
@@ -18,6 +20,7 @@ pub mod load;
 pub mod machine;
 #[cfg(feature = "cli")]
 pub mod manual;
+pub mod message;
 pub mod numeral;
 pub mod profiles;
 pub mod result;
@@ -26,7 +29,6 @@ pub mod skips;
 pub mod stress;
 #[cfg(feature = "cli")]
 pub mod summary;
-pub mod sweep;
 #[cfg(feature = "cli")]
 pub mod table;
 #[cfg(feature = "cli")]

@@ -35,7 +35,10 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     }
     let path = Path::new(name);
     // A name that looks like a path is one: then the message is about a file that is missing, not about presets.
-    let is_file = path.exists() || path.extension().is_some() || name.contains(std::path::is_separator);
+    let is_file = name == files::STANDARD
+        || path.exists()
+        || path.extension().is_some()
+        || name.contains(std::path::is_separator);
     if !is_file {
         let names = || PRESETS.iter().map(|preset| preset.name);
         let hint = did_you_mean(name, names()).unwrap_or_else(|| {
@@ -45,7 +48,8 @@ pub fn find(name: &str) -> Result<(String, Config), Report> {
     }
     let octets = files::read_up_to(LARGEST, path)?;
     let config = Config::parse(&files::source_of(path, octets)?)?;
-    let stem = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+    let stem = path.file_stem().filter(|_| name != files::STANDARD);
+    let stem = stem.map_or_else(|| "stdin".to_owned(), |stem| stem.to_string_lossy().into_owned());
     Ok((stem, config))
 }
 
@@ -108,6 +112,20 @@ const COMMENTS: &[(&str, &str)] = &[
     ("main.buffer_octets", "octets of its local buffer (ours; the report has none)"),
     ("main.step_limit", "instructions that its whole program may take (ours)"),
 ];
+
+/// Sentence on an arbiter that does not do what its name says: weights of 1 make round-robin.
+pub fn arbiter_note(config: &Config) -> Option<&'static str> {
+    let is_even = config.bus.weights.iter().all(|&weight| weight == 1);
+    (config.bus.arbiter == ArbiterKind::Weighted && is_even).then_some("all weights are 1, which is round-robin")
+}
+
+/// Warnings about a machine that is right and likely not what was meant.
+pub fn notes(config: &Config) -> Report {
+    let warned = |note| Diagnostic::warning(format!("the arbiter `{}`: {note}", config.bus.arbiter.name()));
+    arbiter_note(config).map_or_else(Report::default, |note| {
+        warned(note).hint("`bus.weights` in the machine's file has a number for each master").into()
+    })
+}
 
 /// Text for help: the values that name a machine.
 pub fn named() -> String {
@@ -198,6 +216,16 @@ mod tests {
             assert!(has_source, "{key} does not say where its default comes from");
             assert!(text.contains(&format!("# {}\n", filled(comment))), "{key} is no key");
         }
+    }
+
+    #[test]
+    fn weights_of_1_are_said_to_be_round_robin() {
+        let mut config = Config::default();
+        assert_eq!(arbiter_note(&config), None);
+        config.bus.arbiter = ArbiterKind::Weighted;
+        assert!(notes(&config).render(false).contains("all weights are 1, which is round-robin"));
+        config.bus.weights = vec![1, 2];
+        assert!(notes(&config).0.is_empty());
     }
 
     #[test]

@@ -4,23 +4,24 @@ use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
 
-use clap::{CommandFactory, FromArgMatches};
-use lancer::command::invocation::{self, CommandSettings};
+use lancer::command::invocation;
 use lancer::command::{self, Lancer};
 use lancer::failure::{Exit, Failure};
-use lancer::terminal::Terminal;
+use lancer::terminal::{StreamArguments, Terminal};
 use messages::{Diagnostic, Report};
 
 fn main() -> ExitCode {
-    let mut terminal = Terminal::new();
-    let line = match invocation::expanded(std::env::args_os().collect()) {
-        Ok(line) => line,
+    let words: Vec<OsString> = std::env::args_os().collect();
+    let streams = StreamArguments::sniffed(&words);
+    let mut terminal = Terminal::new(streams);
+    let words = match invocation::expanded(words) {
+        Ok(words) => words,
         Err(report) => {
             terminal.show(&report);
             return ExitCode::from(Exit::Input as u8);
         }
     };
-    let (arguments, given) = match parse(line) {
+    let (arguments, given) = match Lancer::parsed(words, streams) {
         Ok(parsed) => parsed,
         // Help and version are results: a full disk must not pass for success.
         Err(message) if !message.use_stderr() => match message.print().and_then(|()| io::stdout().flush()) {
@@ -31,7 +32,10 @@ fn main() -> ExitCode {
             }
             _ => return ExitCode::SUCCESS,
         },
-        Err(message) => message.exit(),
+        Err(message) => {
+            terminal.show_usage(&message);
+            return ExitCode::from(Exit::Usage as u8);
+        }
     };
     let exit = match command::execute(&arguments, &given, &mut terminal) {
         Ok(exit) => exit,
@@ -42,11 +46,4 @@ fn main() -> ExitCode {
         }
     };
     ExitCode::from(exit as u8)
-}
-
-/// Reads a command line, and keeps its options as settings.
-fn parse(line: Vec<OsString>) -> Result<(Lancer, CommandSettings), clap::Error> {
-    let matches = Lancer::command().try_get_matches_from(line)?;
-    let arguments = Lancer::from_arg_matches(&matches).map_err(|error| error.format(&mut Lancer::command()))?;
-    Ok((arguments, CommandSettings::new(&matches)))
 }

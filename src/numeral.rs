@@ -13,10 +13,10 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// A number as it is below 10,000, else with three digits and a unit: 9876, 12.3M.
+/// A number as it is below 10,000, else with three digits and a unit: 9,876, 12.3M.
 pub fn short(number: u64) -> String {
     if number < 10_000 {
-        return number.to_string();
+        return grouped(number);
     }
     let mut scaled = number as f64 / 1000.0;
     for unit in ["k", "M", "G", "T", "P"] {
@@ -76,7 +76,7 @@ mod tests {
         assert_eq!(exact, ["0", "12", "999", "1,000", "1,234,567"]);
         let numbers = [0, 9_999, 10_000, 99_949, 99_951, 999_499, 999_501, 12_345_678, u64::MAX];
         let shorter: Vec<String> = numbers.map(short).to_vec();
-        assert_eq!(shorter, ["0", "9999", "10.0k", "99.9k", "100k", "999k", "1.00M", "12.3M", "18.4E"]);
+        assert_eq!(shorter, ["0", "9,999", "10.0k", "99.9k", "100k", "999k", "1.00M", "12.3M", "18.4E"]);
         assert_eq!((percent(1, 8), percent(0, 0)), ("12.5 %".into(), "0.0 %".into()));
         assert_eq!((count(1, "light", "lights"), count(0, "light", "lights")), ("1 light".into(), "0 lights".into()));
     }

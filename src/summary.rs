@@ -6,7 +6,7 @@ use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
 use crate::numeral::{count, grouped, percent, short};
-use crate::result::{ByClass, OperationTimes, ProcessorResult, RegionCounts, Render};
+use crate::result::{ByClass, KindOctets, OperationTimes, ProcessorResult, RegionCounts, Render};
 use crate::table::{row, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -39,6 +39,64 @@ pub fn rays(result: &Render) -> String {
         grouped(rays.refracted),
         grouped(rays.shadow)
     )
+}
+
+/// Functions that the ten lines name.
+const FUNCTIONS_NAMED: usize = 4;
+
+/// The picture in ten lines of at most 80 columns: rays, operations, time, waits, bus, error, hashes.
+pub fn brief(result: &Render) -> String {
+    let (counts, main) = (&result.counts.0, &result.main.counts.0);
+    let pixels = u64::from(result.width) * u64::from(result.height);
+    let operations = format!(
+        "operations: {} of the cores, {} a pixel; {} of the main processor\n",
+        grouped(counts.elementary()),
+        grouped((counts.elementary() as f64 / pixels.max(1) as f64).round() as u64),
+        grouped(main.elementary()),
+    );
+    // Own operations say where the work is done; those of a caller would say so again.
+    let mut functions: Vec<&RegionCounts> = result.functions.iter().chain(&result.regions).collect();
+    functions.sort_by_key(|function| std::cmp::Reverse(function.exclusive.0.elementary()));
+    let own = |function: &&RegionCounts| {
+        let share = percent(function.exclusive.0.elementary(), counts.elementary());
+        format!("{} {share}", function.name)
+    };
+    let functions: Vec<String> = functions.iter().take(FUNCTIONS_NAMED).map(own).collect();
+    let sum = |part: fn(&ProcessorResult) -> u64| {
+        percent(result.cores.iter().map(part).sum(), result.clocks * result.cores.len() as u64)
+    };
+    let time = format!(
+        "time: {} a pixel, {} in all, {} clocks at {} MHz\n",
+        seconds(result.pixel_seconds),
+        seconds(result.seconds),
+        grouped(result.clocks),
+        result.clock_hz as f64 / 1e6,
+    );
+    let cores = format!(
+        "{}: busy {}, waiting for the bus {}, idle {}\n",
+        count(result.cores.len() as u64, "core", "cores"),
+        sum(|core| core.busy),
+        sum(|core| core.waiting),
+        sum(|core| core.idle),
+    );
+    let bus = format!(
+        "bus: busy {}, {} octets, longest wait {} clocks\n",
+        percent(result.bus.busy, result.clocks),
+        grouped(result.bus.moved),
+        grouped(result.bus.longest_wait),
+    );
+    let error = match &result.error {
+        None => "difference from double precision: not measured\n".to_owned(),
+        Some(error) => format!(
+            "difference from double precision: PSNR {}, {} off by 1/255\n",
+            error.psnr_db.map_or("none (equal)".to_owned(), |psnr| format!("{psnr:.2} dB")),
+            count(error.off_pixels, "pixel", "pixels"),
+        ),
+    };
+    let most = format!("most in: {}\n", functions.join(", "));
+    // Who has asked for another engine is told that it did not run.
+    let engine = result.engine_because.map_or(String::new(), |why| format!("engine: {} ({why})\n", result.engine));
+    title(result) + &rays(result) + &operations + &most + &time + &engine + &cores + &bus + &error + &hashes(result)
 }
 
 /// Calls, inclusive operations and the classes of own ones, function by function: first those of the cores, then
@@ -141,11 +199,14 @@ pub fn processors(result: &Render) -> String {
             grouped(cache.asked),
         );
     }
-    let kinds = bus.kinds.0.iter().filter(|(_, octets)| *octets != 0);
-    let kinds: Vec<String> =
-        kinds.map(|(kind, octets)| format!("{kind} {}", percent(*octets, bus.moved + bus.aside))).collect();
-    if !kinds.is_empty() {
-        text += &format!("octets: {}\n", kinds.join(", "));
+    // With a cache, what is asked for is not what is moved: both are told, each in parts of its own sum.
+    let asked: u64 = bus.kinds.0.iter().map(|(_, octets)| octets).sum();
+    match &result.moved_kinds {
+        moved if moved.0 == bus.kinds.0 => text += &by_kind("octets", moved, asked),
+        moved => {
+            text += &by_kind("octets asked for", &bus.kinds, asked);
+            text += &by_kind("octets moved", moved, bus.moved + bus.aside);
+        }
     }
     text
 }
@@ -164,6 +225,13 @@ pub fn operation_times(times: &OperationTimes) -> String {
         list => format!("; at once: {list}"),
     };
     format!("clocks of an operation on words of {} bits: {}{units}\n", times.word, list(&times.clocks, 0))
+}
+
+/// One line on octets by kind of data, in parts of all of them; nothing where there are none.
+fn by_kind(what: &str, kinds: &KindOctets, all: u64) -> String {
+    let kinds = kinds.0.iter().filter(|(_, octets)| *octets != 0);
+    let kinds: Vec<String> = kinds.map(|(kind, octets)| format!("{kind} {}", percent(*octets, all))).collect();
+    if kinds.is_empty() { String::new() } else { format!("{what}: {}\n", kinds.join(", ")) }
 }
 
 /// Waits of the cores for the bus: the share of no wait, then bounds that so many waits keep.

@@ -158,7 +158,10 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    for target in [&arguments.csv, &arguments.svg].into_iter().flatten() {
+    let targets = || [&arguments.csv, &arguments.svg].into_iter().flatten().map(PathBuf::as_path);
+    files::check_distinct(targets()).map_err(Failure::usage)?;
+    let is_taken = files::takes_output(targets(), arguments.json).map_err(Failure::usage)?;
+    for target in targets() {
         files::check_target(target)?;
     }
     let choice = Choices {
@@ -209,10 +212,11 @@ pub(super) fn execute(
         refused,
     };
     let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&results, settings)),
-        false => text(&results),
-    })?;
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => terminal.print(&result::json(&WithSettings::new(&results, settings)))?,
+        (false, false) => terminal.tell(&text(&results))?,
+    }
     Ok(Exit::Done)
 }
 
@@ -253,7 +257,7 @@ fn text(results: &AccuracyResults) -> String {
                 short(one.clocks.round() as u64),
                 short(one.octets.round() as u64),
                 decibels(one.error.psnr_db),
-                one.error.off_pixels.to_string(),
+                short(one.error.off_pixels),
                 one.ssim.map_or_else(|| "-".into(), |ssim| format!("{ssim:.4}")),
                 decibels(one.stored_error.psnr_db),
                 format!("{:.0}", one.rays.misclassified_per_million),

@@ -71,15 +71,17 @@ pub(super) fn execute(
     }
     let annexes = Annexes::new(&measured, &scenes);
     let style = if arguments.markdown { Style::Markdown } else { Style::Text };
-    terminal.print(&match arguments {
+    match arguments {
         AnnexArguments { json: true, .. } => {
             let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
-            result::json(&WithSettings::new(&annexes, settings))
+            terminal.print(&result::json(&WithSettings::new(&annexes, settings)))?
         }
-        AnnexArguments { csv: true, .. } => text::csv(&annexes),
-        AnnexArguments { errata: true, .. } => text::errata(&annexes, style),
-        _ => text::annexes(&annexes, style),
-    })?;
+        AnnexArguments { csv: true, .. } => terminal.print(&text::csv(&annexes))?,
+        AnnexArguments { errata: true, markdown: true, .. } => terminal.print(&text::errata(&annexes, style))?,
+        AnnexArguments { markdown: true, .. } => terminal.print(&text::annexes(&annexes, style))?,
+        AnnexArguments { errata: true, .. } => terminal.tell(&text::errata(&annexes, style))?,
+        _ => terminal.tell(&text::annexes(&annexes, style))?,
+    }
     match measured.iter().all(annex::Measurement::is_explained) {
         true => Ok(Exit::Done),
         false => Ok(Exit::Tolerance),

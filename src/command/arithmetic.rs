@@ -147,10 +147,10 @@ fn check(
         return Err(report.into());
     }
     let settings = given.clone().with_hash(hash::texts([source.text.as_str()]));
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&checked, settings)),
-        false => text(&checked),
-    })?;
+    match arguments.json {
+        true => terminal.print(&result::json(&WithSettings::new(&checked, settings)))?,
+        false => terminal.tell(&text(&checked))?,
+    }
     match (report.has_errors(), checked.mismatches) {
         (true, _) => Err(report.into()),
         (false, 0) => Ok(Exit::Done),

@@ -8,10 +8,14 @@ use clap::Args;
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report, Source};
 
+use super::assemble_result::AssembledProgram;
+use super::invocation::CommandSettings;
 use crate::arguments::{self, ExtensionArguments};
 use crate::failure::{Exit, Failure};
 use crate::files::{self, program::ProgramFile};
 use crate::numeral::count;
+use crate::result::{self, WithSettings};
+use crate::settings::hash;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -20,6 +24,8 @@ Examples:
   lancer assemble first.s -o first.o            # everything, for lancer run and lancer disassemble
   lancer assemble first.s -o first.hex --list   # text for $readmemh, and a listing
   lancer assemble first.s -o first.bin --data first.dat --list=first.lst --map=first.map
+  lancer assemble first.s -o - | lancer run -   # - is standard input and output
+  lancer assemble first.s --json                # words, data, names and functions for a script
   lancer assemble triangle.s -D WIDTH=320 --format dir=30 -I kernels";
 
 /// In the place of a file's name, standard output.
@@ -48,6 +54,9 @@ pub struct AssembleArguments {
     /// Map of the names, functions and regions, with their places [default: standard output].
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, default_missing_value = PRINTED)]
     map: Option<PathBuf>,
+    /// Prints the program as JSON: words, data, names, functions.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Options for what a source cannot say for itself.
@@ -109,10 +118,22 @@ fn included(wanted: &str, from: &str, folders: &[PathBuf]) -> Result<Arc<Source>
 }
 
 /// Assembles, writes and prints.
-pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &AssembleArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     // Refuse before any work what would overwrite an input or another output.
     let outputs = [&arguments.output, &arguments.data, &arguments.list, &arguments.map];
     let all = outputs.into_iter().flatten().map(PathBuf::as_path).filter(|path| *path != Path::new(PRINTED));
+    // A listing and a map are both texts, which may follow each other.
+    let has_text = [&arguments.list, &arguments.map].iter().any(|path| path.as_deref() == Some(Path::new(PRINTED)));
+    let octets = [&arguments.output, &arguments.data].into_iter().flatten().map(PathBuf::as_path);
+    if has_text && arguments.json {
+        let message = Diagnostic::error("a listing and JSON would both go to standard output");
+        return Err(Failure::usage(message.hint("name a file: --list=FILE, --map=FILE")));
+    }
+    files::takes_output(octets, arguments.json || has_text).map_err(Failure::usage)?;
     files::check_distinct(all.clone()).map_err(Failure::usage)?;
     files::check_spared(all.clone(), arguments.extensions.extensions.iter().chain([&arguments.file]))
         .map_err(Failure::usage)?;
@@ -144,7 +165,16 @@ pub(super) fn execute(arguments: &AssembleArguments, terminal: &mut Terminal) ->
     }
     let program = &assembled.program;
     add_program(arguments, program, &mut results, terminal)?;
+    let written: Vec<PathBuf> = results.files.iter().map(|(path, _)| path.clone()).collect();
     results.write(terminal)?;
+    if arguments.json {
+        let file = files::shown(&arguments.file);
+        let assembled = AssembledProgram::new(file, program, &written);
+        let sources = program.sources.iter().map(|source| source.text.as_str());
+        let settings = given.clone().with_hash(hash::texts(sources));
+        terminal.print(&result::json(&WithSettings::new(&assembled, settings)))?;
+        return Ok(Exit::Done);
+    }
     // Who asked for no file is told that there are no errors.
     if outputs.iter().all(|output| output.is_none()) {
         let words = count(program.words.len() as u64, "word", "words");
@@ -169,7 +199,7 @@ fn add_program(
         ));
     }
     if let Some(path) = &arguments.output {
-        let format = ProgramFile::of(path).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+        let format = ProgramFile::written(path).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
         results.files.push((path.clone(), format.encode(program)));
         if format != ProgramFile::Object && arguments.data.is_none() && !program.buffer.is_empty() {
             let data = count(program.buffer.len() as u64, "octet", "octets");

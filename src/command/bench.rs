@@ -1,6 +1,7 @@
 //! `lancer bench`: how fast the engines compute pictures on this host, with native code beside them.
 
-use std::path::PathBuf;
+use std::cmp::Ordering;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
@@ -9,12 +10,15 @@ use kernels::KernelSet;
 use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::Value;
 
+use super::diff;
 use super::invocation::{CommandSettings, scene_hashes};
 use crate::arguments::{self, SettingsArguments, Size};
 use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
 use crate::job::Job;
+use crate::numeral::count;
 use crate::result::WithSettings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
@@ -27,7 +31,14 @@ const EXAMPLES: &str = "\
 Examples:
   lancer bench
   lancer bench cornell --profiles ray,vector --threads 2 --svg bench.svg
-  lancer bench my.dsc --size 320x240 --runs 9 --json";
+  lancer bench my.dsc --size 320x240 --runs 9 --json
+  lancer bench --json > before.json             # later, on the same host:
+  lancer bench --against before.json            # exit code 4 where something takes 10 % longer
+
+Exit codes: 0 done, 1 errors in the input, 2 usage, 4 slower than before.";
+
+/// Change of a time that is allowed unless the user says otherwise, in per cent.
+const SLOWER: f64 = 10.0;
 
 /// Measures how fast the engines compute pictures, beside native code.
 ///
@@ -60,6 +71,12 @@ pub struct BenchArguments {
     /// Chart of the times a pixel.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+    /// Earlier result (--json) that the times are set against; both need the same size and threads.
+    #[arg(long, value_name = "FILE")]
+    against: Option<PathBuf>,
+    /// Change to more time a pixel than in --against that is allowed, in per cent of the medians [default: 10].
+    #[arg(long, value_name = "PERCENT", value_parser = diff::tolerance, allow_hyphen_values = true, requires = "against")]
+    tolerance: Option<f64>,
 }
 
 fn profile(text: &str) -> Result<KernelSet, String> {
@@ -84,6 +101,64 @@ pub(super) struct Benches {
     features: &'static str,
     /// Measurements, scene by scene.
     measured: Vec<BenchResult>,
+    /// Times beside those of an earlier result, measurement by measurement; left out unless one was named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    against: Option<Vec<TimeChange>>,
+}
+
+/// A time beside an earlier one.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+struct TimeChange {
+    /// Name of the scene.
+    scene: String,
+    /// The kernel set.
+    profile: &'static str,
+    /// Runner that computed the picture, as in `measured`.
+    #[schemars(with = "String")]
+    runner: Runner,
+    /// Earlier nanoseconds a pixel; null where the earlier result has none of them.
+    before: Option<f64>,
+    /// Change of the time in per cent of the earlier one; more is slower.
+    percent: Option<f64>,
+    /// True where it takes no longer than the tolerance allows.
+    is_within: bool,
+}
+
+/// Reads an earlier result.
+fn earlier(path: &Path, arguments: &BenchArguments) -> Result<Value, Failure> {
+    let before = diff::read(path)?;
+    let shown = files::shown(path);
+    if before["schema"] != SCHEMA {
+        let message = Diagnostic::error(format!("{shown} is no result of `lancer bench --json`"));
+        return Err(message.hint(format!("the key `schema` of one is {SCHEMA}")).into());
+    }
+    let (width, height) = arguments.size;
+    let ours = [("width", width), ("height", height), ("threads", arguments.threads)];
+    match ours.into_iter().find(|(key, value)| before[key] != *value) {
+        None => Ok(before),
+        Some((key, value)) => {
+            let message = format!("the {key} in {shown} is {}, and {value} here: times do not compare", before[key]);
+            Err(Diagnostic::error(message).hint("choose the earlier one with `--size` or `--threads`").into())
+        }
+    }
+}
+
+/// The measurements beside those of an earlier result.
+fn changes(measured: &[BenchResult], before: &Value, tolerance: f64) -> Vec<TimeChange> {
+    let time = |one: &BenchResult| {
+        let runner = serde_json::to_value(one.runner).ok()?;
+        let same = |other: &&Value| {
+            other["scene"] == one.scene.as_str() && other["profile"] == one.profile && other["runner"] == runner
+        };
+        before["measured"].as_array()?.iter().find(same)?["nanoseconds"].as_f64().filter(|time| *time > 0.0)
+    };
+    let change = |one: &BenchResult| {
+        let before = time(one);
+        let percent = before.map(|before| 100.0 * (one.nanoseconds - before) / before);
+        let is_within = percent.is_none_or(|percent| percent <= tolerance);
+        TimeChange { scene: one.scene.clone(), profile: one.profile, runner: one.runner, before, percent, is_within }
+    };
+    measured.iter().map(change).collect()
 }
 
 /// Measures and prints.
@@ -92,9 +167,12 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    if let Some(path) = &arguments.svg {
+    let svg = arguments.svg.as_deref();
+    let is_taken = files::takes_output(svg, arguments.json).map_err(Failure::usage)?;
+    if let Some(path) = svg {
         files::check_target(path)?;
     }
+    let before = arguments.against.as_deref().map(|path| earlier(path, arguments)).transpose()?;
     let threads = arguments.threads as usize;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Diagnostic::error(format!("there are no {threads} threads: {error}")))?;
@@ -119,13 +197,31 @@ pub(super) fn execute(
     let (width, height) = arguments.size;
     let BenchArguments { runs, threads, .. } = *arguments;
     let features = HostSimd::best().name();
-    let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured };
+    let tolerance = arguments.tolerance.unwrap_or(SLOWER);
+    let against = before.map(|before| changes(&measured, &before, tolerance));
+    let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured, against };
     let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&benches, settings)),
-        false => text(&benches),
-    })?;
-    Ok(Exit::Done)
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => terminal.print(&result::json(&WithSettings::new(&benches, settings)))?,
+        (false, false) => terminal.tell(&text(&benches))?,
+    }
+    let slower: Vec<&TimeChange> = benches.against.iter().flatten().filter(|change| !change.is_within).collect();
+    let Some(worst) =
+        slower.iter().max_by(|one, other| one.percent.partial_cmp(&other.percent).unwrap_or(Ordering::Equal))
+    else {
+        return Ok(Exit::Done);
+    };
+    let message = format!(
+        "{} by more than {} %: {} of {} with {} takes {:.1} % longer",
+        count(slower.len() as u64, "time is larger", "times are larger"),
+        tolerance,
+        worst.runner.name(),
+        worst.scene,
+        worst.profile,
+        worst.percent.unwrap_or(0.0),
+    );
+    Err(Failure::Message { report: Diagnostic::error(message).into(), exit: Exit::Tolerance })
 }
 
 fn text(benches: &Benches) -> String {
@@ -141,6 +237,14 @@ fn text(benches: &Benches) -> String {
             number(one.instructions),
             format!("{:.2}", one.rays),
         ]);
+    }
+    // The change stands behind everything else.
+    if let Some(changes) = &benches.against {
+        rows[0].push("against before".to_owned());
+        for (row, change) in rows[1..].iter_mut().zip(changes) {
+            let mark = if change.is_within { "" } else { " *" };
+            row.push(change.percent.map_or("-".to_owned(), |percent| format!("{percent:+.1} %{mark}")));
+        }
     }
     let Benches { width, height, runs, threads, features, .. } = benches;
     format!(

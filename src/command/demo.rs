@@ -41,7 +41,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     })?;
     // Count the annexes, then draw the picture.
     let measured = annex::measure()?;
-    terminal.print(&annex::text::demo(&measured))?;
+    terminal.tell(&annex::text::demo(&measured))?;
     let job = Job::new(generate::scene(
         "cornell",
         &generate::GenerateOptions { size, ..generate::GenerateOptions::default() },
@@ -73,7 +73,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
         summary::hashes(&result),
         NEXT.to_owned(),
     ];
-    terminal.print(&parts.join("\n"))?;
+    terminal.tell(&parts.join("\n"))?;
     // A row whose difference is not explained is a mistake of this program.
     match measured.iter().all(annex::Measurement::is_explained) {
         true => Ok(Exit::Done),

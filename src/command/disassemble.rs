@@ -1,6 +1,6 @@
 //! `lancer disassemble`: words to assembly text.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -39,7 +39,7 @@ pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal)
         LoadedFile::Other(octets) => ProgramFile::Binary.decode(&arguments.file, octets)?,
     };
     let text = asm::disassemble_program(&program, &isa);
-    match &arguments.output {
+    match arguments.output.as_deref().filter(|path| *path != Path::new(files::STANDARD)) {
         Some(path) => files::write(path, text.as_bytes())?,
         None => terminal.print(&text)?,
     }

@@ -25,7 +25,7 @@ pub struct ExplainArguments {
 pub(super) fn execute(arguments: &ExplainArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let Some(name) = &arguments.code else {
         let lines: Vec<String> = CODES.iter().map(|code| format!("{}  {}\n", code.code, code.title)).collect();
-        terminal.print(&lines.concat())?;
+        terminal.tell(&lines.concat())?;
         return Ok(Exit::Done);
     };
     let Some(code) = find(name) else {
@@ -36,6 +36,6 @@ pub(super) fn execute(arguments: &ExplainArguments, terminal: &mut Terminal) -> 
         }
         .into());
     };
-    terminal.print(&format!("{}: {}\n\n{}\n", code.code, code.title, code.text))?;
+    terminal.tell(&format!("{}: {}\n\n{}\n", code.code, code.title, code.text))?;
     Ok(Exit::Done)
 }

@@ -19,7 +19,7 @@ use crate::settings::read::{self, COMMAND, StoredSettings};
 use crate::settings::{MachineSettings, hash};
 
 /// Arguments on which no result depends but for its form, place and time, by their long names.
-const NO_SETTINGS: [&str; 17] = [
+const NO_SETTINGS: [&str; 20] = [
     "settings",
     "json",
     "csv",
@@ -36,7 +36,10 @@ const NO_SETTINGS: [&str; 17] = [
     "full",
     "sidecar",
     "message-format",
+    "color",
     "against",
+    "tolerance",
+    "map",
 ];
 
 /// Arguments that say together which machine there is.

@@ -4,11 +4,14 @@ mod accuracy;
 mod annex;
 mod arithmetic;
 mod assemble;
+mod assemble_result;
 mod bench;
 mod completions;
 mod cores;
 mod demo;
+mod diff;
 mod disassemble;
+mod expectation;
 mod explain;
 mod extension;
 pub mod invocation;
@@ -23,15 +26,19 @@ mod scene;
 mod schema;
 mod skips;
 mod stress;
-mod sweep;
 mod trace;
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use invocation::CommandSettings;
+use messages::Diagnostic;
 
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
-use crate::terminal::Terminal;
+use crate::terminal::{self, StreamArguments, Terminal};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -46,11 +53,16 @@ tolerance, 5 step limit. Results go to standard output, messages to standard err
 ///
 /// Without a command, lancer runs the demo: it draws the Cornell box and writes pictures below out/.
 #[derive(Parser, Debug)]
-#[command(name = "lancer", version, after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+#[command(name = "lancer", version, after_help = EXAMPLES)]
 pub struct Lancer {
     /// Size of the demo's picture, in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "320x240")]
     size: Size,
+    #[command(flatten)]
+    streams: StreamArguments,
+    /// Host threads that compute; no result depends on them [default: all].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "Everywhere")]
+    threads: Option<u32>,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -67,11 +79,11 @@ enum Command {
     Skips(Box<skips::SkipsArguments>),
     Machine(machine::PresetArguments),
     Cores(Box<cores::CoresArguments>),
-    Sweep(sweep::SweepArguments),
     Trace(Box<trace::TraceArguments>),
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
+    Diff(diff::DiffArguments),
     Arithmetic(arithmetic::CheckedArithmeticArguments),
     Manual(manual::ManualArguments),
     Extension(extension::ExtensionsArguments),
@@ -80,27 +92,86 @@ enum Command {
     Completions(completions::CompletionsArguments),
 }
 
+/// Options that a picture's short help shows of those that decide it.
+const FIRST_OPTIONS: [&str; 5] = ["size", "profile", "machine", "cores", "word"];
+
+/// Headings of the options that decide a picture, and of those that all commands have.
+const FOLDED: [&str; 6] = ["View", "Kernels", "Machine", "Numbers", "Effort", "Everywhere"];
+
+/// A command with a short help (`-h`): what is first reached for, without examples; `--help` has all.
+fn with_short_help(command: clap::Command, columns: usize) -> clap::Command {
+    let command = match command.get_after_help().cloned() {
+        Some(examples) => {
+            // The parser would fold examples without indentation.
+            let examples = terminal::folded(&examples.to_string(), columns);
+            command.after_long_help(examples).after_help("--help says more, and has all options with examples.")
+        }
+        None => command,
+    };
+    let is_folded = |argument: &clap::Arg| {
+        let heading = argument.get_help_heading().unwrap_or_default();
+        FOLDED.contains(&heading) && !FIRST_OPTIONS.contains(&argument.get_id().as_str())
+    };
+    let command = command.mut_args(|argument| match is_folded(&argument) {
+        true => argument.hide_short_help(true),
+        false => argument,
+    });
+    command.mut_subcommands(|below| with_short_help(below, columns))
+}
+
+impl Lancer {
+    /// The arguments of a command line, and its options as settings.
+    ///
+    /// # Errors
+    /// What the parser refuses; help and version, which are asked for, come the same way.
+    pub fn parsed(words: Vec<OsString>, streams: StreamArguments) -> Result<(Lancer, CommandSettings), clap::Error> {
+        let columns = terminal::width();
+        let command = with_short_help(Lancer::command(), columns);
+        let mut command = command.color(streams.colour_choice()).term_width(columns);
+        let matches = command.try_get_matches_from_mut(words)?;
+        if let Some(name) = matches.subcommand_name()
+            && matches.value_source("size") == Some(ValueSource::CommandLine)
+        {
+            let message = format!("a size before `{name}` is the demo's: write `--size` behind it");
+            return Err(command.error(ErrorKind::ArgumentConflict, message));
+        }
+        let arguments = Lancer::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+        Ok((arguments, CommandSettings::new(&matches)))
+    }
+}
+
+/// Lets the host compute on so many threads.
+fn limit_threads(threads: Option<u32>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();
+    pool.map_err(|error| Diagnostic::error(format!("there are no {threads} threads: {error}")).into())
+}
+
 /// Executes a command line, of which `given` are the settings.
 ///
 /// # Errors
 /// Whatever keeps the command from doing its work.
 pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    // A measurement of time has a number of threads of its own.
+    if !matches!(arguments.command, Some(Command::Bench(_))) {
+        limit_threads(arguments.threads)?;
+    }
     match &arguments.command {
         None => demo::execute(arguments.size, terminal),
         Some(Command::Render(arguments)) => render::execute(arguments, terminal),
         Some(Command::Run(arguments)) => run::execute(arguments, given, terminal),
-        Some(Command::Assemble(arguments)) => assemble::execute(arguments, terminal),
+        Some(Command::Assemble(arguments)) => assemble::execute(arguments, given, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
         Some(Command::Annex(arguments)) => annex::execute(arguments, given, terminal),
         Some(Command::Scene(arguments)) => scene::execute(arguments, given, terminal),
         Some(Command::Profiles(arguments)) => profiles::execute(arguments, given, terminal),
         Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
-        Some(Command::Machine(arguments)) => machine::execute(arguments, terminal),
+        Some(Command::Machine(arguments)) => machine::execute(arguments, given, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
-        Some(Command::Sweep(arguments)) => sweep::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
+        Some(Command::Diff(arguments)) => diff::execute(arguments, terminal),
         Some(Command::Stress(arguments)) => stress::execute(arguments, given, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, given, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),

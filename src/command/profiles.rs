@@ -62,10 +62,10 @@ pub(super) fn execute(
     bar.finish_and_clear();
     let profiles = profiles?;
     let settings = given.clone().with_machine(&machine).with_scenes(&scene_hashes(&arguments.scenes, &scenes));
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&profiles, settings)),
-        false => text(&profiles),
-    })?;
+    match arguments.json {
+        true => terminal.print(&result::json(&WithSettings::new(&profiles, settings)))?,
+        false => terminal.tell(&text(&profiles))?,
+    }
     Ok(Exit::Done)
 }
 
@@ -90,8 +90,8 @@ fn text(profiles: &Profiles) -> String {
             short(picture.operations),
             short(picture.octets),
             short(picture.clocks),
-            picture.program_words.to_string(),
-            picture.off_pixels.to_string(),
+            short(picture.program_words as u64),
+            short(picture.off_pixels),
         ]
     }));
     let mut ratios = vec![row(["scene", "profile", "instructions", "search", "operations", "octets", "clocks"])];

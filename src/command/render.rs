@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use messages::Diagnostic;
 
+use super::expectation::ExpectationArguments;
 use crate::arguments::JobArguments;
 use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::{Exit, Failure};
@@ -13,8 +14,8 @@ use crate::files::picture::PictureFormat;
 use crate::files::{self, map};
 use crate::job::{Job, result_name};
 use crate::result::{Host, Render, loss_table};
-use crate::summary;
 use crate::terminal::Terminal;
+use crate::{machine, summary};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,19 +24,23 @@ Examples:
   lancer render bunny.off --size 640x480 --camera perspective --eye 0,-1,3 -o bunny.pfm
   lancer render sphereflake --json --cores 8 --word 24 > counts.json
   lancer render cornell --kernel triangle=my.s --pixel 160,120
+  lancer render cornell --size 80x60 -o - | magick - -scale 400% big.png
+  lancer render cornell --size 80x60 -q --min-psnr 60 --max-clocks 100,000,000
 
-Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 5 step limit.";
+Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 4 an expectation is not
+met, 5 step limit.";
 
 /// Draws a scene on the emulated coprocessor and says what it took.
 ///
-/// Files are written when the whole picture is done. Without -o, --json and --pixel, the picture goes to NAME.png in the current
-/// folder and a summary to standard output. PNG and PPM have the sRGB transfer curve, PFM is linear.
+/// Files are written when the whole picture is done. Without -o, --json, -q and --pixel, the picture goes to NAME.png in the
+/// current folder. A summary goes to standard output, unless a file does (`-`, as PNG). PNG and PPM have the sRGB transfer
+/// curve, PFM is linear.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct RenderArguments {
     #[command(flatten)]
     job: JobArguments,
-    /// Picture file: .png, .ppm or .pfm [default: NAME.png in the current folder, unless --json or --pixel].
+    /// Picture file: .png, .ppm or .pfm [default: NAME.png in the current folder, unless --json, -q or --pixel].
     #[arg(short, long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     output: Option<PathBuf>,
     /// Prints the results as JSON instead of tables.
@@ -44,6 +49,12 @@ pub struct RenderArguments {
     /// Writes the results as JSON beside the picture too: NAME.json for NAME.png.
     #[arg(long, help_heading = "Results")]
     sidecar: bool,
+    /// Prints all tables: operations by function and by class, each processor.
+    #[arg(long, conflicts_with_all = ["json", "quiet"], help_heading = "Results")]
+    full: bool,
+    /// Prints nothing but messages.
+    #[arg(short, long, conflicts_with = "json", help_heading = "Results")]
+    quiet: bool,
     /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
     #[arg(long, help_heading = "Results")]
     flags: bool,
@@ -59,6 +70,8 @@ pub struct RenderArguments {
     /// Leaves out the comparison with double precision, which saves its time.
     #[arg(long, conflicts_with = "error", help_heading = "Results")]
     no_error: bool,
+    #[command(flatten)]
+    expectations: ExpectationArguments,
 }
 
 fn picture(text: &str) -> Result<PathBuf, String> {
@@ -78,7 +91,8 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let load = start.elapsed();
     terminal.show(&job.warnings);
     // One pixel is looked at in the tables; it must not replace the picture.
-    let is_default = arguments.output.is_none() && !arguments.json && arguments.job.view.pixel.is_none();
+    let is_alone = arguments.output.is_none() && arguments.job.view.pixel.is_none();
+    let is_default = is_alone && !arguments.json && !arguments.quiet;
     let output = match is_default {
         true => Some(PathBuf::from(format!("{}.png", result_name(&job.scene)))),
         false => arguments.output.clone(),
@@ -90,6 +104,7 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     }
     let targets = [&output, &arguments.heat, &arguments.error, &sidecar].map(|path| path.as_deref());
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
+    let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
     files::check_spared(targets.into_iter().flatten(), &job.files).map_err(Failure::usage)?;
     for target in targets.into_iter().flatten() {
         files::check_target(target)?;
@@ -97,6 +112,7 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let comparison = if job.error { Comparison::Reference } else { Comparison::None };
     let drawing = draw(&job, comparison, terminal)?;
     terminal.show(&drawing.warnings);
+    terminal.show(&machine::notes(&job.machine));
     let mut result = Render::new(&job, &drawing);
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
     let [output, heat, error, sidecar] = targets;
@@ -104,14 +120,19 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     files.extend(output.map(|output| (output, format(output).encode(&drawing.picture))));
     files.extend(sidecar.map(|sidecar| (sidecar, result.json().into_bytes())));
     files::write_all(&files)?;
-    match arguments.json {
-        true => terminal.print(&result.json())?,
-        false => terminal.print(&text(&result, &drawing))?,
+    if arguments.json {
+        terminal.print(&result.json())?;
+    } else if !is_taken && !arguments.quiet {
+        terminal.tell(&if arguments.full { full(&result, &drawing) } else { brief(&result, &drawing) })?;
     }
     if is_default && let Some(output) = output {
         terminal.say(&format!("picture: {}", output.display()));
     }
-    Ok(Exit::Done)
+    let unmet = arguments.expectations.unmet(&result);
+    match unmet.0.is_empty() {
+        true => Ok(Exit::Done),
+        false => Err(Failure::Message { report: unmet, exit: Exit::Tolerance }),
+    }
 }
 
 /// Draws with a bar that shows how far it is.
@@ -136,7 +157,18 @@ fn format(path: &Path) -> PictureFormat {
     PictureFormat::of(path).expect("the parser lets only such names pass")
 }
 
-fn text(result: &Render, drawing: &Drawing) -> String {
+/// The picture in ten lines, and after them what was asked for.
+fn brief(result: &Render, drawing: &Drawing) -> String {
+    let mut parts = vec![summary::brief(result)];
+    if drawing.words.len() == 1 {
+        parts.insert(0, summary::pixel(drawing));
+    }
+    parts.extend(asked(result));
+    parts.join("\n")
+}
+
+/// All tables of the picture.
+fn full(result: &Render, drawing: &Drawing) -> String {
     let mut parts = vec![
         summary::title(result) + &summary::rays(result),
         summary::functions(result),
@@ -147,16 +179,22 @@ fn text(result: &Render, drawing: &Drawing) -> String {
     if drawing.words.len() == 1 {
         parts.push(summary::pixel(drawing));
     }
-    parts.extend(result.flags.as_deref().map(loss_table));
     parts.push(
         format!("elementary operations a pixel: {}\n", summary::spread(&drawing.operations()))
             + &summary::hashes(result),
     );
+    parts.extend(asked(result));
+    parts.join("\n")
+}
+
+/// Tables that options add to either.
+fn asked(result: &Render) -> Vec<String> {
+    let mut parts: Vec<String> = result.flags.as_deref().map(loss_table).into_iter().collect();
     if let Some(host) = &result.host {
         parts.push(format!(
             "host: load {:.2} s, build {:.2} s, run {:.2} s, reference {:.2} s (beside the run)\n",
             host.load_seconds, host.build_seconds, host.run_seconds, host.reference_seconds
         ));
     }
-    parts.join("\n")
+    parts
 }

@@ -112,7 +112,7 @@ pub(super) fn execute(
             let settings = given.clone().with_machine(&machine).with_hash(hash(arguments, &program)?);
             terminal.print(&result::json(&WithSettings::new(&shown, settings)))?
         }
-        false => terminal.print(&shown.text())?,
+        false => terminal.tell(&shown.text())?,
     }
     match &run.trap {
         None => Ok(Exit::Done),

@@ -9,18 +9,24 @@ use serde_json::Value;
 
 use super::accuracy::{self, AccuracyResults};
 use super::arithmetic::{self, CheckedFile};
+use super::assemble_result::{self, AssembledProgram};
 use super::bench::{self, Benches};
 use super::cores::CoresSettings;
 use super::extension::compare::CompareSettings;
 use super::extension::suggest::SuggestSettings;
 use super::invocation::CommandSettings;
+use super::machine::{self, MachineResult};
 use super::run_result::{self, RunResult};
+use super::scene::{self, WrittenScene};
 use super::stress::{self, Catalogue};
+use super::trace::{self, TraceResult};
 use crate::annex;
 use crate::annex::result::Annexes;
 use crate::cores::{self, CoresResult};
+use crate::difference::{self, DiffResult};
 use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
+use crate::message::{self, JsonMessage};
 use crate::profiles::{self, Profiles};
 use crate::result::{self, Render, WithSettings};
 use crate::settings::Settings;
@@ -80,6 +86,20 @@ const SCHEMAS: &[Known] = &[
         command: "lancer arithmetic check --json",
         make: printed::<CheckedFile, CommandSettings>,
     },
+    Known {
+        name: assemble_result::SCHEMA,
+        command: "lancer assemble --json",
+        make: printed::<AssembledProgram, CommandSettings>,
+    },
+    Known { name: machine::SCHEMA, command: "lancer machine --json", make: printed::<MachineResult, CommandSettings> },
+    Known {
+        name: scene::SCHEMA,
+        command: "lancer scene generate --json, lancer scene convert --json",
+        make: printed::<WrittenScene, CommandSettings>,
+    },
+    Known { name: trace::SCHEMA, command: "lancer trace --json", make: printed::<TraceResult, Settings> },
+    Known { name: difference::SCHEMA, command: "lancer diff --json", make: schema_of::<DiffResult> },
+    Known { name: message::SCHEMA, command: "--message-format json, a line each", make: schema_of::<JsonMessage> },
 ];
 
 /// Schema of a result as commands print it, with version and settings.
@@ -97,8 +117,8 @@ fn schema_of<T: JsonSchema>() -> Schema {
 /// Prints one schema, or the list.
 pub(super) fn execute(arguments: &SchemaArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let Some(name) = &arguments.name else {
-        let lines: Vec<String> = SCHEMAS.iter().map(|known| format!("{:<20}{}\n", known.name, known.command)).collect();
-        terminal.print(&lines.concat())?;
+        let lines: Vec<String> = SCHEMAS.iter().map(|known| format!("{:<24}{}\n", known.name, known.command)).collect();
+        terminal.tell(&lines.concat())?;
         return Ok(Exit::Done);
     };
     let known = SCHEMAS.iter().find(|known| known.name == name).expect("the parser lets only names pass");

@@ -50,11 +50,10 @@ pub(super) fn execute(arguments: &SkipsArguments, terminal: &mut Terminal) -> Re
     let savings = skips::measure(&job, &|| bar.inc(1));
     bar.finish_and_clear();
     let savings = savings?;
-    terminal.print(&if arguments.json {
-        result::json(&WithSettings::new(&savings, Settings::of(&job)))
-    } else {
-        text(&savings)
-    })?;
+    match arguments.json {
+        true => terminal.print(&result::json(&WithSettings::new(&savings, Settings::of(&job))))?,
+        false => terminal.tell(&text(&savings))?,
+    }
     let is_kept = savings.rows.iter().all(|saving| saving.is_identical || !saving.claims_identity);
     Ok(if is_kept { Exit::Done } else { Exit::Tolerance })
 }
@@ -71,7 +70,7 @@ fn text(savings: &SkipsResult) -> String {
             share(saving.octets_saved),
             short(saving.clocks),
             share(saving.clocks_saved),
-            saving.program_words.to_string(),
+            short(saving.program_words as u64),
             picture(saving),
         ]
     }));

@@ -158,11 +158,15 @@ pub(super) fn execute(
         false => arguments.cases.clone(),
     };
     if arguments.list {
-        terminal.print(&list(&chosen))?;
+        terminal.tell(&list(&chosen))?;
         return Ok(Exit::Done);
     }
     // Take up what a former run has left.
     let file = arguments.resume.as_deref();
+    if file == Some(Path::new(files::STANDARD)) {
+        let message = Diagnostic::error("what is done is kept in a file, which standard output is not");
+        return Err(Failure::usage(message.hint("choose a name: `--resume stress.json`")));
+    }
     let mut state = match file.filter(|path| path.exists()) {
         Some(path) => read(path, size)?,
         None => RunProgress { schema: STATE.to_owned(), size, cases: BTreeMap::new() },
@@ -176,7 +180,7 @@ pub(super) fn execute(
         let tally = try_case(case, size, &mut state, file, terminal)?;
         let verdict = verdict(case, tally);
         if !arguments.json {
-            terminal.print(&text(&verdict))?;
+            terminal.tell(&text(&verdict))?;
         }
         verdicts.push(verdict);
     }

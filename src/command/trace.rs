@@ -8,6 +8,8 @@ use emu::machine::trace::Window;
 use emu::machine::{Config, RunOptions, RunOutcome};
 use emu::quantity::Clocks;
 use messages::Diagnostic;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::arguments::{JobArguments, ungrouped};
 use crate::failure::{Exit, Failure};
@@ -15,6 +17,8 @@ use crate::files;
 use crate::job::result_name;
 use crate::load::{ANNEX, Load};
 use crate::numeral::{grouped, percent};
+use crate::result::{self, WithSettings};
+use crate::settings::Settings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::trace::{TracedScene, perfetto, wave};
@@ -24,6 +28,7 @@ Examples:
   lancer trace cornell --size 80x60 --pixel 40,30
   lancer trace cornell --size 80x60 --clocks 10000..20000 --fst bus.fst
   lancer trace annex --clocks 0..600000 --perfetto bus.json
+  lancer trace cornell --size 80x60 --pixel 40,30 --perfetto - | gzip > bus.json.gz
 
 GTKWave and Surfer show the FST file, https://ui.perfetto.dev the other one.";
 
@@ -54,6 +59,79 @@ pub struct TraceArguments {
     /// Trace file for Perfetto: .json.
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     perfetto: Option<PathBuf>,
+    /// Prints the shares of the window as JSON instead of a table.
+    #[arg(long, help_heading = "Results")]
+    json: bool,
+}
+
+/// Version of [`TraceResult`].
+pub(super) const SCHEMA: &str = "lancer-trace-1";
+
+/// A window of clocks.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(super) struct TraceResult {
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
+    #[schemars(extend("const" = SCHEMA))]
+    schema: &'static str,
+    /// Name of the scene, or `annex`.
+    scene: String,
+    /// Clock rate in hertz.
+    clock_hz: u64,
+    /// Length of the frame in clocks.
+    clocks: u64,
+    /// First clock of the window.
+    start: u64,
+    /// Clock behind the window, at most the end of the frame.
+    end: u64,
+    /// Clocks of the window in which the bus was busy.
+    bus_busy: u64,
+    /// The cores, and after them the main processor.
+    processors: Vec<TracedProcessor>,
+    /// Files that were written.
+    written: Vec<String>,
+}
+
+/// Clocks of a processor in a window.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(super) struct TracedProcessor {
+    /// Name of the processor: `core 0` and so on, or `main`.
+    name: String,
+    /// Clocks of computing.
+    busy: u64,
+    /// Clocks of waiting for the bus.
+    waiting: u64,
+    /// Clocks without anything to do.
+    idle: u64,
+    /// Bursts on the bus.
+    bursts: u64,
+}
+
+impl TraceResult {
+    fn new<'a>(scene: &TracedScene, frame: &RunOutcome, paths: impl Iterator<Item = &'a Path>) -> TraceResult {
+        let window = scene.trace.window;
+        let end = window.end.min(frame.clocks);
+        let bursts = |number: usize| scene.trace.bursts.iter().filter(|burst| burst.master as usize == number).count();
+        let shares = scene.shares(end).into_iter().enumerate();
+        TraceResult {
+            schema: SCHEMA,
+            scene: scene.name.to_owned(),
+            clock_hz: scene.clock_hz,
+            clocks: frame.clocks.0,
+            start: window.start.0,
+            end: end.0,
+            bus_busy: scene.bus_busy(end),
+            processors: shares
+                .map(|(number, [busy, waiting, idle])| TracedProcessor {
+                    name: scene.processor(number),
+                    busy,
+                    waiting,
+                    idle,
+                    bursts: bursts(number) as u64,
+                })
+                .collect(),
+            written: paths.map(|path| path.display().to_string()).collect(),
+        }
+    }
 }
 
 fn clocks(text: &str) -> Result<Range<u64>, String> {
@@ -72,7 +150,7 @@ fn clocks(text: &str) -> Result<Range<u64>, String> {
 
 /// Runs, writes and prints.
 pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let (name, load, config, width, read) = load(arguments, terminal)?;
+    let (name, load, config, width, read, settings) = load(arguments, terminal)?;
     // Without a name for either, both files are written beside each other.
     let is_default = arguments.fst.is_none() && arguments.perfetto.is_none();
     let target = |given: &Option<PathBuf>, ending: &str| match is_default {
@@ -82,6 +160,7 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     let targets = [target(&arguments.fst, "fst"), target(&arguments.perfetto, "trace.json")];
     let paths = || targets.iter().flatten().map(PathBuf::as_path);
     files::check_distinct(paths()).map_err(Failure::usage)?;
+    let is_taken = files::takes_output(paths(), arguments.json).map_err(Failure::usage)?;
     files::check_spared(paths(), &read).map_err(Failure::usage)?;
     for path in paths() {
         files::check_target(path)?;
@@ -106,19 +185,28 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     }
     files.extend(perfetto_target.as_ref().map(|path| (path, perfetto(&scene).into_bytes())));
     files::write_all(&files)?;
-    terminal.print(&text(&scene, &frame, paths()))?;
+    let traced = TraceResult::new(&scene, &frame, paths());
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => terminal.print(&result::json(&WithSettings::new(&traced, settings)))?,
+        (false, false) => terminal.tell(&traced.text())?,
+    }
     Ok(Exit::Done)
 }
 
-/// Name, load, machine, columns of the picture, and the files that were read.
-fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load, Config, u32, Vec<PathBuf>), Failure> {
+/// Name, load, machine, columns of the picture, the files that were read, and the settings.
+type LoadedTrace = (String, Load, Config, u32, Vec<PathBuf>, Settings);
+
+/// The load of the scene that is named.
+fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<LoadedTrace, Failure> {
     let mut job = arguments.job.clone();
     if job.scene == ANNEX && !Path::new(ANNEX).exists() {
-        let mut config = job.settings()?.machine.config;
+        let settings = job.settings()?;
+        let mut config = settings.machine.config.clone();
         config.main.traffic = false;
         let load = Load::annex()?;
         let width = load.build.crop.width;
-        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.keys.machine)]));
+        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.keys.machine)], settings));
     }
     job.view.pixel = None;
     let job = job.job()?;
@@ -126,7 +214,8 @@ fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<(String, Load
     let (load, _) = Load::picture(&job)?;
     terminal.show(&load.build.warnings);
     let width = load.build.crop.width;
-    Ok((result_name(&job.scene), load, job.machine, width, job.files))
+    let settings = Settings::of(&job);
+    Ok((result_name(&job.scene), load, job.machine, width, job.files, settings))
 }
 
 fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<RunOutcome, Failure> {
@@ -164,29 +253,27 @@ fn pixel(
     Ok(Window { start: item.start, end })
 }
 
-fn text<'a>(scene: &TracedScene, frame: &RunOutcome, paths: impl Iterator<Item = &'a Path>) -> String {
-    let window = scene.trace.window;
-    let end = window.end.min(frame.clocks);
-    let length = (end - window.start).0;
-    let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "bursts"])];
-    for (number, shares) in scene.shares(end).into_iter().enumerate() {
-        let bursts = scene.trace.bursts.iter().filter(|burst| burst.master as usize == number).count();
-        let mut cells = vec![scene.processor(number)];
-        cells.extend(shares.map(|clocks| percent(clocks, length)));
-        cells.push(grouped(bursts as u64));
-        rows.push(cells);
+impl TraceResult {
+    fn text(&self) -> String {
+        let length = self.end - self.start;
+        let mut rows = vec![row(["processor", "busy", "waiting for the bus", "idle", "bursts"])];
+        for processor in &self.processors {
+            let mut cells = vec![processor.name.clone()];
+            cells.extend([processor.busy, processor.waiting, processor.idle].map(|clocks| percent(clocks, length)));
+            cells.push(grouped(processor.bursts));
+            rows.push(cells);
+        }
+        format!(
+            "{}: clocks {} to {} of {}, bus busy {}\n{}files: {}\n",
+            self.scene,
+            grouped(self.start),
+            grouped(self.end),
+            grouped(self.clocks),
+            percent(self.bus_busy, length),
+            table(rows),
+            self.written.join(", "),
+        )
     }
-    let written: Vec<String> = paths.map(|path| path.display().to_string()).collect();
-    format!(
-        "{}: clocks {} to {} of {}, bus busy {}\n{}files: {}\n",
-        scene.name,
-        grouped(window.start.0),
-        grouped(end.0),
-        grouped(frame.clocks.0),
-        percent(scene.bus_busy(end), length),
-        table(rows),
-        written.join(", "),
-    )
 }
 
 #[cfg(test)]

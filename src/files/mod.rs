@@ -47,15 +47,13 @@ pub fn read_up_to(largest: u64, path: &Path) -> Result<Vec<u8>, Report> {
     if path.is_dir() {
         return Err(Diagnostic::error(format!("{shown} is a folder, not a file")).into());
     }
+    if path == Path::new(STANDARD) {
+        return scenes::read::standard_input(largest);
+    }
     let size = if largest < 1 << 20 { format!("{} KiB", largest >> 10) } else { format!("{} MiB", largest >> 20) };
     let too_large = || Diagnostic::error(format!("{shown} is larger than {size}"));
-    let (input, length): (Box<dyn Read>, u64) = if path == Path::new(STANDARD) {
-        (Box::new(io::stdin().lock()), 0)
-    } else {
-        let file = fs::File::open(path).map_err(refuse)?;
-        let length = file.metadata().map_or(0, |metadata| metadata.len());
-        (Box::new(file), length)
-    };
+    let input = fs::File::open(path).map_err(refuse)?;
+    let length = input.metadata().map_or(0, |metadata| metadata.len());
     if length > largest {
         return Err(too_large().into());
     }
@@ -104,6 +102,9 @@ pub fn text(octets: Vec<u8>) -> String {
 /// # Errors
 /// A folder that does not exist, or a folder in the place of the file.
 pub fn check_target(path: &Path) -> Result<(), Report> {
+    if path == Path::new(STANDARD) {
+        return Ok(());
+    }
     let shown = path.display();
     if path.is_dir() {
         return Err(Diagnostic::error(format!("{shown} is a folder, not a place for a file")).into());
@@ -123,9 +124,25 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
+/// True where a result goes to standard output, so that nothing else is printed there.
+///
+/// # Errors
+/// Two such results; `is_printed` says that what is printed is one by itself, such as JSON.
+pub fn takes_output<'a>(results: impl IntoIterator<Item = &'a Path>, is_printed: bool) -> Result<bool, Report> {
+    let named = results.into_iter().filter(|path| *path == Path::new(STANDARD)).count();
+    if named + usize::from(is_printed) > 1 && named > 0 {
+        let message = Diagnostic::error("two results would go to standard output");
+        return Err(message.hint("one `-`, or one `--json`, at a time: name a file for the other").into());
+    }
+    Ok(named > 0)
+}
+
 /// One path for each file however it is spelt: links are followed, and a file that is not there yet has the path of its
-/// folder. `None` for what cannot be overwritten, such as a pipe or a terminal.
+/// folder. `None` for what cannot be overwritten, such as a pipe, a terminal or a standard stream.
 fn identity(path: &Path) -> Option<PathBuf> {
+    if path == Path::new(STANDARD) {
+        return None;
+    }
     if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         return None;
     }
@@ -173,6 +190,16 @@ mod tests {
         assert!(check_distinct([Path::new("a"), Path::new("b")]).is_ok());
         assert!(check_distinct([Path::new("a"), Path::new("b"), Path::new("a")]).is_err());
         assert!(check_distinct([Path::new("a"), Path::new("./a")]).is_err());
+    }
+
+    #[test]
+    fn one_result_at_a_time_goes_to_standard_output() {
+        let taken = |paths: &[&str], is_printed| takes_output(paths.iter().map(Path::new), is_printed).ok();
+        assert_eq!(
+            (taken(&["a"], true), taken(&[], true), taken(&["-", "a"], false)),
+            (Some(false), Some(false), Some(true))
+        );
+        assert_eq!((taken(&["-", "-"], false), taken(&["-"], true)), (None, None));
     }
 
     #[cfg(unix)]

@@ -30,11 +30,14 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// The format that a file's name asks for.
+    /// The format that a file's name asks for; standard output (`-`) gets a PNG.
     ///
     /// # Errors
     /// Another extension, or none.
     pub fn of(path: &Path) -> Result<PictureFormat, String> {
+        if path == Path::new(super::STANDARD) {
+            return Ok(PictureFormat::Png);
+        }
         let extension = path.extension().map(|text| text.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
             Some("png") => Ok(PictureFormat::Png),

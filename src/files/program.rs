@@ -44,7 +44,15 @@ impl ProgramFile {
     /// See [`ProgramFile::of`].
     pub fn check(text: &str) -> Result<PathBuf, String> {
         let path = PathBuf::from(text);
-        ProgramFile::of(&path).map(|_| path)
+        ProgramFile::written(&path).map(|_| path)
+    }
+
+    /// The format in which a program is written to a place: standard output (`-`) gets an object file.
+    ///
+    /// # Errors
+    /// See [`ProgramFile::of`].
+    pub fn written(path: &Path) -> Result<ProgramFile, String> {
+        if path == Path::new(super::STANDARD) { Ok(ProgramFile::Object) } else { ProgramFile::of(path) }
     }
 
     /// The octets of a program's file.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use messages::{Diagnostic, Report};
 use tempfile::{Builder, NamedTempFile};
 
-use super::{check_target, folder_of};
+use super::{STANDARD, check_target, folder_of};
 
 /// First part of the names of files that are being written.
 const PREFIX: &str = ".lancer-";
@@ -16,8 +16,8 @@ const PREFIX: &str = ".lancer-";
 /// Entries of a folder among which leftovers are looked for: a folder of a million files must not make a result slow.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Writes a file as a whole: beside its place first, then renamed. What is no regular file, such as a pipe, is written
-/// in place.
+/// Writes a file as a whole: beside its place first, then renamed. What is no regular file, such as a pipe or standard output
+/// (`-`), is written in place.
 ///
 /// # Errors
 /// What [`check_target`] refuses, and a disk or folder that cannot be written.
@@ -55,6 +55,10 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
     let (mut ready, mut in_place) = (Vec::new(), Vec::new());
     for (path, octets) in files {
         let (path, octets) = (path.as_ref(), octets.as_ref());
+        if path == Path::new(STANDARD) {
+            in_place.push((path, octets));
+            continue;
+        }
         check_target(path)?;
         let target = behind_links(path);
         if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
@@ -67,12 +71,24 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
     }
     // Nothing more can fail but pipes and renames: hand over, then rename.
     for (path, octets) in in_place {
-        fs::write(path, octets).map_err(|error| refusal(path, &error))?;
+        written_in_place(path, octets).map_err(|error| refusal(path, &error))?;
     }
     for (file, target, path) in ready {
         file.persist(&target).map_err(|error| refusal(path, &error.error))?;
     }
     Ok(())
+}
+
+/// Writes what has no file to be renamed: standard output, pipes, terminals. A reader that went away wants no more.
+fn written_in_place(path: &Path, octets: &[u8]) -> io::Result<()> {
+    let written = match path == Path::new(STANDARD) {
+        true => {
+            let mut out = io::stdout().lock();
+            out.write_all(octets).and_then(|()| out.flush())
+        }
+        false => fs::write(path, octets),
+    };
+    written.or_else(|error| if error.kind() == ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
 }
 
 /// Links that are followed at most, as Linux does.
@@ -99,7 +115,10 @@ fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
         ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
         _ => error.to_string(),
     };
-    Diagnostic::error(format!("{} cannot be written: {reason}", path.display()))
+    match path == Path::new(STANDARD) {
+        true => Diagnostic::error(format!("standard output cannot be written: {reason}")),
+        false => Diagnostic::error(format!("{} cannot be written: {reason}", path.display())),
+    }
 }
 
 /// A file beside its place, locked for as long as this run lives, with the permissions of the file that it replaces.

@@ -6,7 +6,9 @@ mod hexadecimal;
 #[cfg(feature = "cli")]
 mod loss_table;
 mod losses;
+mod moved;
 mod provenance;
+mod regions;
 mod times;
 
 use std::borrow::Cow;
@@ -33,6 +35,7 @@ pub use hexadecimal::hexadecimal;
 pub use loss_table::loss_table;
 pub use losses::{Loss, losses};
 pub use provenance::WithSettings;
+pub use regions::regions;
 pub use times::OperationTimes;
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
@@ -136,6 +139,9 @@ pub struct Render {
     pub main: Main,
     /// The bus.
     pub bus: BusResult,
+    /// Octets over the bus, and beside it, by kind of data: of the kind that a cache holds, the lines that were filled. Without a
+    /// cache they are those of `bus.kinds`, which were asked for.
+    pub moved_kinds: KindOctets,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: FormatTable,
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
@@ -320,7 +326,7 @@ impl Render {
         let mut result = Render {
             schema: SCHEMA,
             version: VERSION,
-            settings: provenance::settings(job, drawing),
+            settings: settings(job, drawing),
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
             machine: job.machine_name.clone(),
@@ -372,6 +378,7 @@ impl Render {
                     filled: frame.cache.filled.0,
                 },
             },
+            moved_kinds: moved::moved_kinds(job, frame),
             formats: (&drawing.image.formats).into(),
             flags: drawing.flags.clone(),
             error: drawing.error,
@@ -388,6 +395,13 @@ impl Render {
     pub fn json(&self) -> String {
         json(self)
     }
+}
+
+/// The settings of a drawing: those of its job, with what was measured.
+fn settings(job: &Job, drawing: &Drawing) -> Settings {
+    let mut settings = Settings::of(job);
+    settings.results.error = drawing.reference.is_some();
+    settings
 }
 
 /// A result as JSON with two blanks of indentation and a line feed at its end.
@@ -427,19 +441,4 @@ impl ProcessorResult {
             waits: waits[..columns].to_vec(),
         }
     }
-}
-
-/// The functions of a profile, or the regions that are none, in the order of the program.
-pub fn regions(profile: Option<&Profile>, is_function: bool) -> Vec<RegionCounts> {
-    let regions = profile.map_or(&[][..], |profile| &profile.regions);
-    let chosen = regions.iter().filter(|region| region.is_function == is_function);
-    chosen
-        .map(|region| RegionCounts {
-            name: region.name.clone(),
-            calls: region.calls,
-            instructions: region.instructions,
-            inclusive: ByClass(region.inclusive),
-            exclusive: ByClass(region.exclusive),
-        })
-        .collect()
 }

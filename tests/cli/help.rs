@@ -11,7 +11,10 @@ fn help_and_messages_say_what_they_said() {
 pub fn commands(session: &Session, above: &str) -> Vec<String> {
     let help = session.succeed(&format!("{above} --help"));
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    let names = listed.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help");
+    // A name stands two columns from the left; what is said on it may go on below, further to the right.
+    let first = |line: &'_ str| line.strip_prefix("  ").is_some_and(|rest| !rest.starts_with(' '));
+    let names = listed.filter(|line| first(line)).filter_map(|line| line.split_whitespace().next());
+    let names = names.filter(|name| *name != "help");
     let below = names.flat_map(|name| commands(session, &format!("{above} {name}")));
     std::iter::once(above.to_owned()).chain(below).collect()
 }

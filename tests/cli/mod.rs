@@ -2,12 +2,14 @@
 
 mod annex;
 mod bench;
+mod comparisons;
 mod convert;
 mod cores;
 mod demo;
 mod extensions;
 mod files;
 mod help;
+mod messages;
 mod numbers;
 mod programs;
 mod render;
@@ -15,6 +17,7 @@ mod scene;
 mod schema;
 pub mod session;
 mod settings;
+mod standard;
 mod streams;
-mod sweep;
 mod trace;
+mod width;

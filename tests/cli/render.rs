@@ -153,11 +153,65 @@ fn a_picture_without_options_is_named_after_its_scene() {
     let run = session.run(TINY);
     assert_eq!((run.code, run.messages.as_str()), (0, "picture: cornell.png\n"));
     assert_eq!(session.names(), ["cornell.png"]);
-    for part in ["cornell: 676 triangles, 12 x 9 pixels", "ray_tree", "core 3", "PSNR", "image hash"] {
+    let widest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap();
+    for part in ["cornell: 676 triangles, 12 x 9 pixels", "a pixel", "4 cores: busy", "PSNR", "image hash"] {
         assert!(run.out.contains(part), "{part} is missing in\n{}", run.out);
     }
-    let widest = run.out.lines().map(|line| line.chars().count()).max();
-    assert!(widest <= Some(100), "a line has {widest:?} columns");
+    assert_eq!((run.out.lines().count(), widest(&run.out) <= 80), (10, true), "{}", run.out);
+    let full = session.run(&format!("{TINY} --full")).out;
+    for part in ["cornell: 676 triangles, 12 x 9 pixels", "ray_tree", "core 3", "PSNR", "image hash"] {
+        assert!(full.contains(part), "{part} is missing in\n{full}");
+    }
+    assert!(widest(&full) <= 100, "a line has {} columns", widest(&full));
+    // Quiet says nothing, and neither changes what a script gets.
+    let quiet = session.run(&format!("{TINY} -q"));
+    assert_eq!((quiet.code, quiet.out.as_str(), quiet.messages.as_str()), (0, "", ""));
+    session.fail(&format!("{TINY} --full --json"), 2, "cannot be used with");
+}
+
+#[test]
+fn octets_by_kind_add_up_with_every_cache() {
+    let session = Session::new();
+    for (kind, octets) in [("nodes", 1024), ("triangles", 8192), ("triangles", 64), ("references", 256)] {
+        session.write("m.toml", &format!("[cache]\noctets = {octets}\nkind = \"{kind}\"\n"));
+        let result = session.json(&format!("{TINY} --machine m.toml --no-error"));
+        let sum = |kinds: &Value| kinds.as_object().unwrap().values().map(number).sum::<u64>();
+        let bus = &result["bus"];
+        assert_eq!(sum(&result["moved_kinds"]), number(&bus["moved"]) + number(&bus["aside"]), "{kind} {octets}");
+        assert_eq!(sum(&bus["kinds"]), number(&bus["asked"]), "{kind} {octets}");
+        let text = session.succeed(&format!("{TINY} --machine m.toml --no-error --full -o x.png"));
+        for start in ["octets asked for: ", "octets moved: "] {
+            let line =
+                text.lines().find_map(|line| line.strip_prefix(start)).unwrap_or_else(|| panic!("{start}\n{text}"));
+            let shares = line.split(" %").filter_map(|part| part.split(' ').next_back()?.parse::<f64>().ok());
+            let shares: f64 = shares.sum();
+            assert!((99.5..100.5).contains(&shares), "{line}");
+        }
+    }
+    // Without a cache both are the same, and told once.
+    let plain = session.json(&format!("{TINY} --no-error"));
+    assert_eq!(plain["moved_kinds"], plain["bus"]["kinds"]);
+    assert!(session.succeed(&format!("{TINY} --no-error --full -o x.png")).contains("\noctets: nodes "));
+}
+
+#[test]
+fn another_engine_and_an_even_weighted_arbiter_are_said() {
+    let session = Session::new();
+    let picture = format!("{TINY} --no-error -o x.png");
+    // Whatever keeps native code from running is said, as the JSON says it.
+    let losses = session.json(&format!("{TINY} --no-error --flags --engine native"));
+    let run = session.run(&format!("{picture} --flags --engine native"));
+    let because =
+        losses["engine_because"].as_str().map(|why| format!("engine: {} ({why})", losses["engine"].as_str().unwrap()));
+    assert!(because.is_none_or(|line| run.out.contains(&line)), "{}", run.out);
+    assert_eq!(run.messages, "");
+    session.write("m.toml", "[bus]\narbiter = \"weighted\"\n");
+    let run = session.run(&format!("{picture} --machine m.toml"));
+    assert!(run.messages.contains("all weights are 1, which is round-robin"), "{}", run.messages);
+    session.write("m.toml", "[bus]\narbiter = \"weighted\"\nweights = [2]\n");
+    assert_eq!(session.run(&format!("{picture} --machine m.toml")).messages, "");
+    let table = session.succeed("cores triangle --size 4x3 --cores 1,2 --arbiter weighted --arbiter round-robin");
+    assert_eq!(table.matches("weighted (all weights are 1, which is round-robin)").count(), 1, "{table}");
 }
 
 #[test]

@@ -25,17 +25,32 @@ const RESULTS: &[(&str, &str)] = &[
     ("scene info empty", "lancer-scene-1"),
     ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
     ("stress --case normalising", "lancer-stress-1"),
-    ("extension compare half.isa --scene triangle --size 4x3", "lancer-extension-1"),
+    (
+        concat!(
+            "extension compare ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/extensions/fma/fma.isa --scene triangle --size 4x3 --kernel surface=",
+            env!("CARGO_MANIFEST_DIR"),
+            "/extensions/fma/surface.s",
+        ),
+        "lancer-extension-1",
+    ),
     ("extension suggest cornell --size 4x3", "lancer-suggestion-1"),
     ("extension suggest empty --size 4x3", "lancer-suggestion-1"),
     ("bench triangle --size 4x3 --runs 1", "lancer-bench-2"),
     ("arithmetic check vectors.csv", "lancer-arithmetic-1"),
+    ("assemble sum.s -o sum.o", "lancer-assemble-1"),
+    ("machine node_cache", "lancer-machine-1"),
+    ("scene generate triangle", "lancer-written-scene-1"),
+    ("scene convert triangle t.obj --dsc", "lancer-written-scene-1"),
+    ("trace triangle --size 4x4 --clocks 0..100", "lancer-trace-1"),
+    ("diff m.toml m.toml", "lancer-diff-1"),
 ];
 
 /// A conversion of 300/256, which is rounded to 19/16.
 const VECTOR: &str = "cvt,s,16,8,300,-,-,-,-,-,-,-,-,s,8,4,RND_CONV,WRAP,1,19,1,0";
 
-fn schema(session: &Session, name: &str) -> Value {
+pub fn schema(session: &Session, name: &str) -> Value {
     serde_json::from_str(&session.succeed(&format!("schema {name}"))).unwrap()
 }
 
@@ -48,13 +63,14 @@ fn session() -> Session {
     let session = Session::new();
     session.write("sum.s", ".func f\n    imul s1, s2, s3\n.endfunc\n    halt\n");
     session.write("half.isa", ".extension half\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
+    session.write("m.toml", "cores = 4\n");
     session.write("trap.s", "    trap 7\n");
     session.write("vectors.csv", &format!("{}\n{VECTOR}\n", conformance::HEADER));
     session
 }
 
 /// Faults of a value, by a schema's part of a root. Knows the keywords that occur; any other is a mistake.
-fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
+pub fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
     let mut found = Vec::new();
     if part.as_bool() == Some(true) {
         return found;
@@ -96,7 +112,11 @@ fn wrong(root: &Value, part: &Value, value: &Value, path: &str) -> Vec<String> {
                 found.push(format!("{path}: {value} has too many items"));
             }
             "const" | "minimum" | "maximum" | "minItems" | "maxItems" => {}
-            "anyOf" => {
+            "enum" if !argument.as_array().unwrap().contains(value) => {
+                found.push(format!("{path}: {value} is none of {argument}"));
+            }
+            "enum" => {}
+            "anyOf" | "oneOf" => {
                 if !argument.as_array().unwrap().iter().any(|one| wrong(root, one, value, path).is_empty()) {
                     found.push(format!("{path}: {value} is none of {argument}"));
                 }

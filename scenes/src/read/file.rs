@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use messages::{Diagnostic, Report, nearest, question, refuse_packed};
 
@@ -14,17 +15,33 @@ pub(super) const STANDARD: &str = "-";
 /// Octets of the largest file that is read.
 const LARGEST: u64 = 256 << 20;
 
+/// Standard input has been read.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// All octets of standard input, up to `largest`. Whoever reads a file by the name `-` gets them here, once.
+///
+/// Errors: it has been read before, is larger, or cannot be read.
+pub fn standard_input(largest: u64) -> Result<Vec<u8>, Report> {
+    if IS_TAKEN.swap(true, Ordering::Relaxed) {
+        let error = Diagnostic::error("standard input is named twice, and can be read once");
+        return Err(error.hint("name a file, or `<(command)` in the shell, in one of the places").into());
+    }
+    let mut bytes = Vec::new();
+    let read = std::io::stdin().lock().take(largest + 1).read_to_end(&mut bytes);
+    read.map_err(|error| Diagnostic::error(format!("standard input cannot be read: {error}")))?;
+    if bytes.len() as u64 > largest {
+        let size = if largest < 1 << 20 { format!("{} KiB", largest >> 10) } else { format!("{} MiB", largest >> 20) };
+        return Err(Diagnostic::error(format!("standard input is larger than {size}")).into());
+    }
+    Ok(bytes)
+}
+
 /// All octets of a file, or of standard input where the path is [`STANDARD`].
 ///
 /// Errors: it is missing (with a name nearby that may be meant), a folder, too large, compressed, or cannot be read.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, Report> {
     if path == Path::new(STANDARD) {
-        let mut bytes = Vec::new();
-        let read = std::io::stdin().lock().take(LARGEST + 1).read_to_end(&mut bytes);
-        read.map_err(|error| Diagnostic::error(format!("standard input cannot be read: {error}")))?;
-        if bytes.len() as u64 > LARGEST {
-            return Err(Diagnostic::error(format!("standard input is larger than {} MiB", LARGEST >> 20)).into());
-        }
+        let bytes = standard_input(LARGEST)?;
         refuse_packed(&bytes, "standard input")?;
         return Ok(bytes);
     }

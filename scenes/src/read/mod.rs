@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use messages::{Diagnostic, Report, question};
 
+pub use self::file::standard_input;
 use self::format::{MeshReader, SceneFormat};
 use self::mesh::Mesh;
 use crate::model::Scene;

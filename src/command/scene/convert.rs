@@ -8,10 +8,12 @@ use messages::{Diagnostic, Report};
 use scenes::read::Loaded;
 use scenes::write::{self, MeshFormat};
 
-use super::parts;
+use super::super::invocation::{CommandSettings, scene_hashes};
+use super::{WrittenScene, parts};
 use crate::failure::{Exit, Failure};
+use crate::result::WithSettings;
 use crate::terminal::Terminal;
-use crate::{files, input};
+use crate::{files, input, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,6 +21,7 @@ Examples:
   lancer scene convert house.dsc new.obj --dsc       # with new.mtl and new.dsc: nothing is lost
   lancer scene convert bunny.ply bunny.dsc           # with bunny.off, so that materials and lights can be edited
   lancer scene convert bunny.stl bunny.off
+  lancer scene convert cornell - --to stl > room.stl
   lancer scene convert cornell room --to ply         # a generated scene; the name does not say the format
 
 Nothing is written unless all files are whole. A file that is read is never overwritten.
@@ -45,6 +48,9 @@ pub struct ConvertArguments {
     /// Writes a .dsc beside the mesh OUT too, with the size of the picture, all materials and the lights.
     #[arg(long)]
     dsc: bool,
+    /// Prints as JSON what was written.
+    #[arg(long)]
+    json: bool,
 }
 
 /// Formats that a scene is converted to.
@@ -82,11 +88,20 @@ fn target() -> impl TypedValueParser<Value = ConversionTarget> {
 }
 
 /// Reads, converts and writes.
-pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &ConvertArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let output = &arguments.output;
     let target = arguments.to.map_or_else(|| ConversionTarget::of(output), Ok).map_err(Failure::usage)?;
     let has_description = arguments.dsc || target == ConversionTarget::Description;
     let paths = paths(output, target, has_description);
+    let is_taken = files::takes_output([output.as_path()], arguments.json).map_err(Failure::usage)?;
+    if is_taken && paths.len() > 1 {
+        let message = Diagnostic::error("a scene of several files does not go to standard output");
+        return Err(Failure::usage(message.hint("a mesh alone does: `--to off`, `--to ply` or `--to stl`")));
+    }
     files::check_distinct(paths.iter().map(PathBuf::as_path)).map_err(Failure::usage)?;
     for path in &paths {
         files::check_target(path)?;
@@ -106,7 +121,16 @@ pub(super) fn execute(arguments: &ConvertArguments, terminal: &mut Terminal) -> 
         ConversionTarget::Description => terminal.show(&write::losses_beside_description(&loaded, MeshFormat::Off)),
     }
     let shown: Vec<String> = paths.iter().rev().map(|path| path.display().to_string()).collect();
-    terminal.print(&format!("{}: {}\n", shown.join(" and "), parts(scene)))?;
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => {
+            let hashes = scene_hashes(std::slice::from_ref(&arguments.scene), std::slice::from_ref(scene));
+            let settings = given.clone().with_scenes(&hashes);
+            let written = WrittenScene::new(scene, paths.iter().rev());
+            terminal.print(&result::json(&WithSettings::new(&written, settings)))?;
+        }
+        (false, false) => terminal.print(&format!("{}: {}\n", shown.join(" and "), parts(scene)))?,
+    }
     Ok(Exit::Done)
 }
 

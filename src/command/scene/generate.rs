@@ -8,11 +8,13 @@ use messages::{Diagnostic, Report};
 use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::write;
 
-use super::parts;
+use super::super::invocation::CommandSettings;
+use super::{WrittenScene, parts};
 use crate::arguments::{self, Size};
 use crate::failure::{Exit, Failure};
-use crate::files;
+use crate::result::WithSettings;
 use crate::terminal::Terminal;
+use crate::{files, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -39,6 +41,9 @@ pub struct GenerateArguments {
     /// Size of the picture in the .dsc, in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "320x240")]
     size: Size,
+    /// Prints as JSON what was written.
+    #[arg(long)]
+    json: bool,
 }
 
 fn names() -> impl Iterator<Item = PossibleValue> {
@@ -73,9 +78,18 @@ fn check_folder(folder: &Path) -> Result<(), Report> {
 }
 
 /// Generates and writes.
-pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+pub(super) fn execute(
+    arguments: &GenerateArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
     let options = GenerateOptions { level: arguments.level, triangles: arguments.triangles, size: arguments.size };
     let folder = arguments.output.clone().unwrap_or_default();
+    if folder == Path::new(files::STANDARD) {
+        let message = Diagnostic::error("a scene of two files does not go to standard output");
+        let hint = format!("a mesh does: lancer scene convert {} - --to off", arguments.name);
+        return Err(Failure::usage(message.hint(hint)));
+    }
     let paths = ["dsc", "off"].map(|extension| folder.join(format!("{}.{extension}", arguments.name)));
     let is_new = !folder.as_os_str().is_empty() && !folder.exists();
     if is_new {
@@ -98,6 +112,9 @@ pub(super) fn execute(arguments: &GenerateArguments, terminal: &mut Terminal) ->
     }
     // The mesh first: a .dsc without its mesh would be no scene.
     files::write_all(&[(mesh_path, &mesh), (description_path, &description)])?;
-    terminal.print(&format!("{} and {}: {}\n", description_path.display(), mesh_path.display(), parts(&scene)))?;
+    terminal.print(&match arguments.json {
+        true => result::json(&WithSettings::new(&WrittenScene::new(&scene, &paths), given.clone())),
+        false => format!("{} and {}: {}\n", description_path.display(), mesh_path.display(), parts(&scene)),
+    })?;
     Ok(Exit::Done)
 }

@@ -75,10 +75,10 @@ pub(super) fn execute(
     };
     let facts = SceneInfo::new(&loaded.scene, &options)?;
     let hashes = scene_hashes(std::slice::from_ref(&arguments.scene), std::slice::from_ref(&loaded.scene));
-    terminal.print(&match arguments.json {
-        true => result::json(&WithSettings::new(&facts, given.clone().with_scenes(&hashes))),
-        false => text(&facts),
-    })?;
+    match arguments.json {
+        true => terminal.print(&result::json(&WithSettings::new(&facts, given.clone().with_scenes(&hashes))))?,
+        false => terminal.tell(&text(&facts))?,
+    }
     Ok(Exit::Done)
 }
 

@@ -178,7 +178,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
 }
 
 /// The part of the reference picture that is drawn.
-fn part(reference: &Reference, samples: &Samples, crop: &Crop) -> Picture {
+pub(crate) fn part(reference: &Reference, samples: &Samples, crop: &Crop) -> Picture {
     let row = |row: u32| -> Vec<_> {
         (0..crop.width).map(|column| reference.pixel(crop.column + column, crop.row + row, Some(samples)).0).collect()
     };
@@ -187,7 +187,7 @@ fn part(reference: &Reference, samples: &Samples, crop: &Crop) -> Picture {
 }
 
 /// The colours in the frame, where the drawn part lies row by row from its start.
-fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i32; 3]> {
+pub(crate) fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i32; 3]> {
     let start = image.region(MemoryKind::Frame).start;
     let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
     let octets = octets.expect("the image has a frame for the whole picture");
@@ -195,7 +195,8 @@ fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i3
     octets.chunks_exact(PIXEL.octets() as usize).map(|pixel| std::array::from_fn(|k| word(pixel, k))).collect()
 }
 
-fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
+/// The colours as numbers, from raw words.
+pub(crate) fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
     let scale = (-f64::from(image.formats.colour)).exp2();
     Picture { size, pixels: words.iter().map(|colour| colour.map(|raw| f64::from(raw) * scale)).collect() }
 }

@@ -29,6 +29,7 @@ pub mod skips;
 pub mod stress;
 #[cfg(feature = "cli")]
 pub mod summary;
+pub mod sweep;
 #[cfg(feature = "cli")]
 pub mod table;
 #[cfg(feature = "cli")]

@@ -186,8 +186,9 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResu
     Ok((whole, settings(arguments, Settings::of(&jobs[0]), all)))
 }
 
-fn settings(arguments: &CoresArguments, job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
-    let machines = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
+fn settings(arguments: &CoresArguments, mut job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
+    let machines: Vec<_> = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
+    job.machine.clone_from(&machines[0]);
     CoresSettings { job, cores: cores_of(arguments), machines }
 }
 

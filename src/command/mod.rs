@@ -26,6 +26,7 @@ mod scene;
 mod schema;
 mod skips;
 mod stress;
+mod sweep;
 mod trace;
 
 use std::ffi::OsString;
@@ -79,6 +80,7 @@ enum Command {
     Skips(Box<skips::SkipsArguments>),
     Machine(machine::PresetArguments),
     Cores(Box<cores::CoresArguments>),
+    Sweep(sweep::SweepArguments),
     Trace(Box<trace::TraceArguments>),
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
@@ -168,6 +170,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, given, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
+        Some(Command::Sweep(arguments)) => sweep::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),

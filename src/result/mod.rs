@@ -326,7 +326,7 @@ impl Render {
         let mut result = Render {
             schema: SCHEMA,
             version: VERSION,
-            settings: settings(job, drawing),
+            settings: provenance::settings(job, drawing),
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
             machine: job.machine_name.clone(),
@@ -395,13 +395,6 @@ impl Render {
     pub fn json(&self) -> String {
         json(self)
     }
-}
-
-/// The settings of a drawing: those of its job, with what was measured.
-fn settings(job: &Job, drawing: &Drawing) -> Settings {
-    let mut settings = Settings::of(job);
-    settings.results.error = drawing.reference.is_some();
-    settings
 }
 
 /// A result as JSON with two blanks of indentation and a line feed at its end.

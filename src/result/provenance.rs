@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::settings::VERSION;
+use crate::drawing::Drawing;
+use crate::job::Job;
+use crate::settings::{Settings, VERSION};
 
 /// A result with the version and the settings that give it again.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -22,4 +24,11 @@ impl<R, S> WithSettings<R, S> {
     pub fn new(result: R, settings: S) -> WithSettings<R, S> {
         WithSettings { result, version: VERSION, settings }
     }
+}
+
+/// The settings of a drawing: those of its job, with what was measured.
+pub(super) fn settings(job: &Job, drawing: &Drawing) -> Settings {
+    let mut settings = Settings::of(job);
+    settings.results.error = drawing.reference.is_some();
+    settings
 }

@@ -1,5 +1,8 @@
 //! Changes to settings, key by key: values as people type them become what the key holds.
 
+use std::sync::LazyLock;
+
+use emu::machine::preset::{PRESETS, Preset};
 use messages::{Diagnostic, Report, did_you_mean};
 use serde_json::{Map, Number, Value};
 
@@ -67,6 +70,17 @@ pub fn change(settings: &mut Value, key: &str, value: Value) -> Result<(), Repor
     Ok(())
 }
 
+/// Keys of each preset; studies choose presets for each of many points.
+static PRESET_KEYS: LazyLock<Vec<(&str, Value)>> = LazyLock::new(|| {
+    let keys =
+        |preset: &Preset| machine_keys(&MachineSettings { name: preset.name.to_owned(), config: preset.config() });
+    PRESETS.iter().map(|preset| (preset.name, keys(preset))).collect()
+});
+
+fn machine_keys(machine: &MachineSettings) -> Value {
+    serde_json::to_value(machine).expect("a machine has string keys")
+}
+
 /// Puts a value in the place of a key's; a group takes the keys of an object one by one.
 ///
 /// # Errors
@@ -74,8 +88,10 @@ pub fn change(settings: &mut Value, key: &str, value: Value) -> Result<(), Repor
 pub fn put(settings: &mut Value, key: &str, value: Value) -> Result<(), Report> {
     match (key, value) {
         ("machine" | "machine.from", Value::String(name)) => {
-            let machine = MachineSettings::find(&name)?;
-            settings["machine"] = serde_json::to_value(machine).expect("a machine has string keys");
+            settings["machine"] = match PRESET_KEYS.iter().find(|(preset, _)| *preset == name) {
+                Some((_, keys)) => keys.clone(),
+                None => machine_keys(&MachineSettings::find(&name)?),
+            };
         }
         ("scene", Value::String(name)) => {
             settings["scene"] = serde_json::json!({ "name": name, "mesh": null, "hash": null });

@@ -72,7 +72,8 @@ pub struct SceneSettings {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ViewSettings {
-    /// The camera.
+    /// Camera: orthographic or perspective; null for what the other keys imply.
+    #[schemars(with = "Option<String>")]
     pub camera: Option<CameraKind>,
     /// Position of the eye, in scene units; null for in front of the box.
     pub eye: Option<[f64; 3]>,
@@ -93,10 +94,9 @@ pub struct ViewSettings {
 }
 
 /// A camera by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
-#[schemars(inline)]
 pub enum CameraKind {
     /// Parallel rays along -z, centred on the scene's box.
     Orthographic,

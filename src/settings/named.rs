@@ -85,15 +85,15 @@ impl NamedChoice for Depth {
 /// A name, or a number that is one.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Word {
+enum NameOrNumber {
     Text(String),
     Number(u64),
 }
 
-fn find<T: NamedChoice, E: Error>(word: Word) -> Result<T, E> {
+fn find<T: NamedChoice, E: Error>(word: NameOrNumber) -> Result<T, E> {
     let name = match word {
-        Word::Text(text) => text,
-        Word::Number(number) => number.to_string(),
+        NameOrNumber::Text(text) => text,
+        NameOrNumber::Number(number) => number.to_string(),
     };
     T::named(&name)
         .ok_or_else(|| E::custom(format!("unknown name `{name}`, expected one of `{}`", T::names().join("`, `"))))
@@ -106,12 +106,12 @@ pub fn serialize<T: NamedChoice, S: Serializer>(choice: &T, serializer: S) -> Re
 
 /// Reads a choice by its name.
 pub fn deserialize<'de, T: NamedChoice, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    find(Word::deserialize(deserializer)?)
+    find(NameOrNumber::deserialize(deserializer)?)
 }
 
 /// A choice that may be left to what goes with the others.
 pub mod option {
-    use super::{Deserialize, Deserializer, NamedChoice, Serializer, Word, find};
+    use super::{Deserialize, Deserializer, NameOrNumber, NamedChoice, Serializer, find};
 
     /// Writes the name, or null.
     pub fn serialize<T: NamedChoice, S: Serializer>(choice: &Option<T>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -123,7 +123,7 @@ pub mod option {
 
     /// Reads a name, or null.
     pub fn deserialize<'de, T: NamedChoice, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-        Option::<Word>::deserialize(deserializer)?.map(find).transpose()
+        Option::<NameOrNumber>::deserialize(deserializer)?.map(find).transpose()
     }
 }
 
@@ -152,7 +152,7 @@ pub mod skips {
     use kernels::Skips;
     use serde::ser::SerializeSeq;
 
-    use super::{Deserialize, Deserializer, Serializer, Skip, Word, find};
+    use super::{Deserialize, Deserializer, NameOrNumber, Serializer, Skip, find};
 
     /// Writes the names of the skips that there are.
     pub fn serialize<S: Serializer>(skips: &Skips, serializer: S) -> Result<S::Ok, S::Error> {
@@ -165,7 +165,7 @@ pub mod skips {
 
     /// Reads names.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Skips, D::Error> {
-        let words = Vec::<Word>::deserialize(deserializer)?;
+        let words = Vec::<NameOrNumber>::deserialize(deserializer)?;
         words.into_iter().try_fold(Skips::NONE, |skips, word| Ok(skips.with(find(word)?)))
     }
 }

@@ -62,7 +62,11 @@ fn json(source: &Arc<Source>) -> Result<Map<String, Value>, Report> {
     })
 }
 
-fn toml(source: &Arc<Source>) -> Result<Map<String, Value>, Report> {
+/// The tables of a TOML text.
+///
+/// # Errors
+/// A text that is no TOML.
+pub fn toml(source: &Arc<Source>) -> Result<Map<String, Value>, Report> {
     toml::from_str(&source.text).map_err(|error| {
         let message = Diagnostic::error(error.message().lines().next().unwrap_or_default().to_owned());
         match error.span() {

@@ -19,5 +19,6 @@ pub mod session;
 mod settings;
 mod standard;
 mod streams;
+mod sweep;
 mod trace;
 mod width;

@@ -1,0 +1,48 @@
+//! `lancer sweep plan`: the points of a study.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{planned, study};
+use crate::failure::{Exit, Failure};
+use crate::files;
+use crate::sweep::contents::Contents;
+use crate::terminal::Terminal;
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer sweep plan study.toml > plan.jsonl
+  lancer sweep plan examples/study.toml -o plan.jsonl";
+
+/// Lists the points of a study, each with the hash of all that its result depends on.
+///
+/// The number of points and recordings, and a rough time, go to standard error. A hash covers version, settings and contents of files, never
+/// paths, names, order, host or engine; points with the same hash are one.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct PlanArguments {
+    /// Study: a TOML file.
+    #[arg(value_name = "STUDY.toml")]
+    study: PathBuf,
+    /// Plan [default: standard output].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Plans and prints.
+pub(super) fn execute(arguments: &PlanArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let output = arguments.output.as_deref().filter(|path| path.as_os_str() != files::STANDARD);
+    if let Some(path) = output {
+        files::check_target(path)?;
+        files::check_spared([path], [&arguments.study]).map_err(Failure::usage)?;
+    }
+    let plan = planned(&study(&arguments.study)?, &Contents::default(), terminal)?;
+    let mut octets = Vec::new();
+    plan.write(&mut octets).expect("memory can be written");
+    match output {
+        Some(path) => files::write(path, &octets)?,
+        None => terminal.print_octets(&octets)?,
+    }
+    Ok(Exit::Done)
+}

@@ -1,0 +1,115 @@
+//! Contents of the files that points depend on, each read once; settings get their hashes and what goes by the scene.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+
+use isa::Isa;
+use kernels::Function;
+use messages::Source;
+use scenes::read::Loaded;
+
+use crate::extension;
+use crate::failure::Failure;
+use crate::files;
+use crate::settings::{CameraKind, FIELD, Settings, hash};
+
+/// Scenes by name and mesh.
+type SceneTable = HashMap<(String, Option<String>), Arc<SceneContents>>;
+
+/// Everything that was read.
+#[derive(Default)]
+pub struct Contents {
+    scenes: Mutex<SceneTable>,
+    files: Mutex<HashMap<String, Arc<Source>>>,
+    extensions: Mutex<HashMap<String, String>>,
+    kernels: Mutex<HashMap<String, String>>,
+}
+
+/// A scene with its hash.
+pub struct SceneContents {
+    /// The scene, with likely mistakes in its files.
+    pub loaded: Loaded,
+    /// SHA-256 of it.
+    pub hash: String,
+}
+
+impl Contents {
+    /// The scene of settings.
+    ///
+    /// # Errors
+    /// What is wrong in its files.
+    pub fn scene(&self, settings: &Settings) -> Result<Arc<SceneContents>, Failure> {
+        let name = (settings.scene.name.clone(), settings.scene.mesh.clone());
+        let mut scenes = self.scenes.lock().expect("no reader panics");
+        if let Some(known) = scenes.get(&name) {
+            return Ok(known.clone());
+        }
+        // The size in the settings is no part of the scene.
+        let mut plain = settings.clone();
+        plain.view.size = None;
+        let loaded = plain.scene()?;
+        let hash = hash::scene(&loaded.scene);
+        let known = Arc::new(SceneContents { loaded, hash });
+        scenes.insert(name, known.clone());
+        Ok(known)
+    }
+
+    /// Fills in what settings leave to the scene and to each other, and all hashes.
+    ///
+    /// # Errors
+    /// Files that cannot be read, values out of their ranges.
+    pub fn resolve(&self, settings: &mut Settings) -> Result<(), Failure> {
+        settings.check()?;
+        let scene = self.scene(settings)?;
+        settings.scene.hash = Some(scene.hash.clone());
+        let view = &mut settings.view;
+        view.size.get_or_insert(scene.loaded.scene.size.into());
+        let is_perspective = view.eye.is_some() || view.look.is_some() || view.fov.is_some();
+        let kind = if is_perspective { CameraKind::Perspective } else { CameraKind::Orthographic };
+        if *view.camera.get_or_insert(kind) == CameraKind::Perspective {
+            view.fov.get_or_insert(FIELD);
+        }
+        let layout = *settings.layout.get_or_insert(settings.kernels.profile.layout());
+        // Kernels: the user's files, then all that the set has beside them.
+        let mut replaced = Vec::new();
+        for (function, file) in &mut settings.kernels.replaced {
+            let source = self.file(&file.file)?;
+            file.hash = Some(hash::texts([source.text.as_str()]));
+            let function: Function = function.parse().map_err(|message: Box<messages::Diagnostic>| *message)?;
+            replaced.push((function, source));
+        }
+        for file in &mut settings.kernels.extensions {
+            file.hash = Some(self.extension(&file.file)?);
+        }
+        let profile = settings.kernels.profile;
+        let own: Vec<String> =
+            settings.kernels.replaced.iter().map(|(function, file)| format!("{function}={:?}", file.hash)).collect();
+        let name = format!("{profile} {} {}", layout.name(), own.join(" "));
+        let mut kernels = self.kernels.lock().expect("no reader panics");
+        let hash = kernels.entry(name).or_insert_with(|| hash::kernels(profile, layout, &replaced));
+        settings.kernels.hash = Some(hash.clone());
+        Ok(())
+    }
+
+    fn file(&self, name: &str) -> Result<Arc<Source>, Failure> {
+        let mut files = self.files.lock().expect("no reader panics");
+        if let Some(known) = files.get(name) {
+            return Ok(known.clone());
+        }
+        let source = files::source(Path::new(name))?;
+        files.insert(name.to_owned(), source.clone());
+        Ok(source)
+    }
+
+    fn extension(&self, name: &str) -> Result<String, Failure> {
+        let mut extensions = self.extensions.lock().expect("no reader panics");
+        if let Some(known) = extensions.get(name) {
+            return Ok(known.clone());
+        }
+        let (_, texts) = extension::extend(&mut Isa::base(), Path::new(name))?;
+        let hash = hash::texts(texts.iter().map(|text| text.text.as_str()));
+        extensions.insert(name.to_owned(), hash.clone());
+        Ok(hash)
+    }
+}

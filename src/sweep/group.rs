@@ -1,0 +1,184 @@
+//! Points that share a recording, run together: the work items run once, and each point is a replay of them.
+
+use std::collections::HashMap;
+
+use emu::code::Code;
+use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
+use kernels::build::Crop;
+use kernels::twin::samples::Samples;
+use rayon::prelude::*;
+use scenes::image::MemoryImage;
+use scenes::metrics::{self, PictureError};
+use scenes::model::Picture;
+use scenes::reference::{Reference, SearchMethod};
+
+use super::contents::Contents;
+use super::row::{PointFigures, PointLabels};
+use crate::drawing::{colour_words, part, picture};
+use crate::failure::{Exit, Failure};
+use crate::job::{Job, result_name};
+use crate::load::Load;
+use crate::result::image_hash;
+use crate::settings::Settings;
+
+/// Pixels of the largest picture whose recordings are kept as a whole, for any number of machines: 16 octets a transfer, thousands of transfers
+/// a pixel. Larger ones are handed to some dozens of machines at a time as they are made.
+const MOST_KEPT: u64 = 8_192;
+
+/// Outcome of a point: its labels, and its figures or the reason for which it cannot be drawn.
+pub type GroupResult = (PointLabels, Result<PointFigures, String>);
+
+/// Runs points whose settings have the same recording.
+///
+/// # Errors
+/// Files that cannot be read. A scene that does not fit its formats, or a trap, is a result.
+pub fn run(points: &[Settings], contents: &Contents) -> Result<Vec<GroupResult>, Failure> {
+    let Some(first) = points.first() else { return Ok(Vec::new()) };
+    let scene = contents.scene(first)?;
+    let job = first.job_of(scene.loaded.clone())?;
+    let labels = |settings: &Settings| labels(settings, &job);
+    let (load, image) = match Load::picture(&job) {
+        Ok(made) => made,
+        Err(failure) => {
+            let reason = reason(failure)?;
+            return Ok(points.iter().map(|settings| (labels(settings), Err(reason.clone()))).collect());
+        }
+    };
+    // Each machine's frame, from one recording.
+    let configs: Vec<Config> = points.iter().map(|settings| settings.machine.config.clone()).collect();
+    let frames = frames(&load, &configs);
+    // Pictures differ only where a machine was stepped and its programs depend on time.
+    let crop = load.build.crop;
+    let mut errors: HashMap<String, PictureError> = HashMap::new();
+    let mut reference: Option<Picture> = None;
+    let code = Code::new(&load.build.cores, &load.isa, configs[0].timing());
+    let mut results = Vec::with_capacity(points.len());
+    for (settings, frame) in points.iter().zip(frames) {
+        let frame = match frame {
+            Ok(frame) => frame,
+            Err(failure) => {
+                results.push((labels(settings), Err(reason(failure.into())?)));
+                continue;
+            }
+        };
+        let words = colour_words(&image, &frame, &crop);
+        let hash = image_hash((crop.width, crop.height), &words);
+        if settings.results.error && !errors.contains_key(&hash) {
+            let drawn = picture(&image, &words, (crop.width, crop.height));
+            let reference = match &reference {
+                Some(known) => known,
+                None => reference.insert(in_double_precision(&job, &image, &crop)?),
+            };
+            errors.extend(metrics::compare(&drawn, reference).map(|error| (hash.clone(), error)));
+        }
+        let error = errors.get(&hash).filter(|_| settings.results.error);
+        let counts = frame.tally.counts(&code);
+        results.push((labels(settings), Ok(figures(settings, &job, &load, &frame, counts, error, hash))));
+    }
+    Ok(results)
+}
+
+/// The drawn part in double precision, which decides samples on edges as the kernels do.
+fn in_double_precision(job: &Job, image: &MemoryImage, crop: &Crop) -> Result<Picture, Failure> {
+    let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
+    let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
+    Ok(part(&reference, &samples, crop))
+}
+
+/// The reason for which a point cannot be drawn, where that is a result and not a mistake of the user's.
+fn reason(failure: Failure) -> Result<String, Failure> {
+    match failure {
+        Failure::Message { report, exit: Exit::Input | Exit::Trap | Exit::StepLimit } => {
+            Ok(report.0.iter().map(|message| message.message.as_str()).collect::<Vec<_>>().join("; "))
+        }
+        other => Err(other),
+    }
+}
+
+/// Each machine's frame.
+fn frames(load: &Load, configs: &[Config]) -> Vec<Result<RunOutcome, RunFailure>> {
+    let options = || RunOptions { engine: load.engine, ..RunOptions::default() };
+    let first = load.setup(&configs[0], options());
+    let crop = load.build.crop;
+    // A few machines take recordings as they come; many would have them made again.
+    if configs.len() == 1 || u64::from(crop.width) * u64::from(crop.height) > MOST_KEPT {
+        return emu::run_all(&first, configs, &load.memory, &mut |_| {});
+    }
+    let step = |setup: &Setup| emu::step(setup, load.memory.clone(), &mut |_| {});
+    let recorded = emu::replay::Recorded::new(&first, &load.memory);
+    let one = |config: &Config| {
+        let setup = load.setup(config, options());
+        match &recorded {
+            Ok(recorded) => recorded.replay(&setup, load.memory.clone())?.or_else(|_| step(&setup)),
+            Err(_) => step(&setup),
+        }
+    };
+    configs.par_iter().map(one).collect()
+}
+
+fn labels(settings: &Settings, job: &Job) -> PointLabels {
+    let config = &settings.machine.config;
+    let [width, height] = settings.view.size.unwrap_or_else(|| job.view.size.into());
+    PointLabels {
+        scene: result_name(&job.scene),
+        profile: settings.kernels.profile.name().to_owned(),
+        layout: job.layout().name().to_owned(),
+        machine: settings.machine.name.clone(),
+        cores: config.cores.into(),
+        arbiter: config.bus.arbiter.name().to_owned(),
+        word: config.arithmetic.word.into(),
+        rounding: config.arithmetic.quantization.name().to_owned(),
+        overflow: config.arithmetic.overflow.to_string(),
+        width: width.into(),
+        height: height.into(),
+        shift_x: settings.view.shift[0],
+        shift_y: settings.view.shift[1],
+        bounces: settings.effort.bounces.into(),
+    }
+}
+
+fn figures(
+    settings: &Settings,
+    job: &Job,
+    load: &Load,
+    frame: &RunOutcome,
+    counts: isa::Counts,
+    error: Option<&PictureError>,
+    image_hash: String,
+) -> PointFigures {
+    let config = &settings.machine.config;
+    let (cores, main) = frame.processors.split_at(config.cores as usize);
+    let sum = |part: fn(&emu::machine::ProcessorUse) -> u64| cores.iter().map(part).sum::<u64>();
+    let share = |part: u64, whole: u64| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
+    let whole = frame.clocks.0 * u64::from(config.cores);
+    let pixels = u64::from(load.build.crop.width) * u64::from(load.build.crop.height);
+    PointFigures {
+        pixels,
+        interpolated: pixels.saturating_sub(frame.item_count),
+        triangles: job.scene.triangles.len() as u64,
+        clocks: frame.clocks.0,
+        seconds: frame.seconds(config.clock_hz),
+        pixel_clocks: share(frame.clocks.0, pixels),
+        instructions: sum(|core| core.instructions),
+        operations: counts.operations(),
+        elementary: counts.elementary(),
+        octets: sum(|core| core.octets.0),
+        bus_busy: frame.bus.busy.0,
+        utilisation: frame.utilisation(),
+        waiting: share(sum(|core| core.waiting.0), whole),
+        idle: share(sum(|core| core.idle.0), whole),
+        longest_wait: frame.bus.longest_wait.0,
+        main_load: share(main.iter().map(|main| (main.busy + main.waiting).0).sum(), frame.clocks.0),
+        cache_hits: frame.cache.hits,
+        cache_misses: frame.cache.misses,
+        program_words: load.build.cores.words.len() as u64,
+        position_bits: load.formats.map_or(0.0, |formats| f64::from(formats.position)),
+        off_pixels: error.map(|error| error.off_pixels),
+        rmse: error.map(|error| error.rmse),
+        max_error: error.map(|error| error.max),
+        psnr_db: error.and_then(|error| error.psnr_db),
+        psnr_others_db: error.and_then(|error| error.psnr_others_db),
+        method: frame.method.name().to_owned(),
+        image_hash,
+    }
+}

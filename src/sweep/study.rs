@@ -1,0 +1,268 @@
+//! A study file: settings that all points share, and what varies. Products, zips, lists and Latin hypercubes are factors, each a list of
+//! alternatives; the points are their product.
+
+use std::sync::Arc;
+
+use messages::{Diagnostic, Place, Report, Source, did_you_mean};
+use serde_json::{Map, Value};
+
+use super::latin;
+use crate::numeral::{grouped, numbers};
+use crate::settings::apply::change;
+use crate::settings::read::{span, toml};
+use crate::settings::{Settings, key};
+
+/// Keys with their values, in the order in which they are set.
+pub type Assignments = Vec<(String, Value)>;
+
+/// Most points of a study.
+pub const MOST_POINTS: u64 = 10_000_000;
+
+/// Tables of a study file.
+const TABLES: [&str; 6] = ["name", "settings", "product", "zip", "list", "latin"];
+
+/// Keys of a Latin hypercube.
+const LATIN: [&str; 3] = ["points", "seed", "keys"];
+
+/// Variation of settings: those that all points share, and the factors whose product the points are.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// Name of the study.
+    pub name: String,
+    /// Settings of every point before its own, as JSON with every key.
+    pub base: Value,
+    /// The factors: each key of `product` in the order of their full names, zips, the list, the Latin hypercube.
+    pub factors: Vec<Vec<Assignments>>,
+}
+
+impl Study {
+    /// Reads a study file. Keys may have their short names, ranges such as `"1-8"` stand for their numbers.
+    ///
+    /// # Errors
+    /// All mistakes of the file, each with its place.
+    pub fn parse(source: &Arc<Source>, name: &str) -> Result<Study, Report> {
+        let mut file = StudyFile { source, messages: Vec::new(), base: Settings::default().value() };
+        let root = toml(source)?;
+        for table in root.keys().filter(|table| !TABLES.contains(&table.as_str())) {
+            let message = Diagnostic::error(format!("`{table}` is no part of a study"));
+            let hint = did_you_mean(table, TABLES).unwrap_or_else(|| format!("the parts are {}", TABLES.join(", ")));
+            file.refuse(message.hint(hint), table);
+        }
+        let name = root.get("name").and_then(Value::as_str).unwrap_or(name).to_owned();
+        // What all points share comes first, since what varies is tried on it.
+        if let Some(table) = root.get("settings") {
+            for (key, value) in file.assigned(table, "settings") {
+                let mut base = file.base.clone();
+                match change(&mut base, &key, value).and_then(|()| Settings::of_value(&base)) {
+                    Ok(_) => file.base = base,
+                    Err(report) => {
+                        report.0.into_iter().for_each(|message| file.refuse(message, &format!("settings.{key}")))
+                    }
+                }
+            }
+        }
+        let mut factors = Vec::new();
+        let product = root.get("product").map(|table| file.assigned(table, "product"));
+        for (key, value) in product.unwrap_or_default() {
+            let values = file.values(&key, value, "product");
+            factors.push(values.into_iter().map(|value| vec![(key.clone(), value)]).collect());
+        }
+        for table in tables(&root, "zip") {
+            factors.extend(file.zip(table));
+        }
+        let list: Vec<Assignments> = tables(&root, "list").map(|table| file.assigned(table, "list")).collect();
+        factors.extend((!list.is_empty()).then_some(list));
+        if let Some(table) = root.get("latin") {
+            factors.extend(file.latin(table));
+        }
+        // Every value is tried by itself, so that a mistake is named once and not for each point.
+        for (key, value) in factors.iter().flatten().flatten() {
+            let mut one = file.base.clone();
+            if let Err(report) = change(&mut one, key, value.clone()).and_then(|()| Settings::of_value(&one)) {
+                let blamed =
+                    |message: Diagnostic| Diagnostic { message: format!("`{key}`: {}", message.message), ..message };
+                file.messages.extend(report.0.into_iter().map(blamed));
+            }
+        }
+        file.messages.dedup();
+        if !file.messages.is_empty() {
+            return Err(Report(file.messages));
+        }
+        let study = Study { name, base: file.base, factors };
+        if study.count() > MOST_POINTS {
+            let message = format!("the study has more than {} points", grouped(MOST_POINTS));
+            return Err(Diagnostic::error(message).hint("a Latin hypercube covers many keys with few points").into());
+        }
+        Ok(study)
+    }
+
+    /// Number of points; those that are the same count each.
+    pub fn count(&self) -> u64 {
+        self.factors.iter().map(|factor| factor.len() as u64).try_fold(1u64, u64::checked_mul).unwrap_or(u64::MAX)
+    }
+
+    /// Keys that a point sets, by its number below [`Study::count`]; the last factor varies fastest.
+    pub fn assignments(&self, mut number: u64) -> Assignments {
+        let mut chosen: Vec<&Assignments> = Vec::with_capacity(self.factors.len());
+        for factor in self.factors.iter().rev() {
+            let length = factor.len() as u64;
+            chosen.push(&factor[(number % length) as usize]);
+            number /= length;
+        }
+        ordered(chosen.into_iter().rev().flatten().cloned().collect())
+    }
+}
+
+/// Assignments in the order in which they are set: a scene or a machine as a whole before single keys.
+pub fn ordered(mut assignments: Assignments) -> Assignments {
+    assignments.sort_by_key(|(key, _)| (key != "machine.from", key.matches('.').count()));
+    assignments.sort_by_key(|(key, _)| !["machine", "machine.from", "scene"].contains(&key.as_str()));
+    assignments
+}
+
+/// The tables of a list of tables, or of one table.
+fn tables<'v>(root: &'v Map<String, Value>, name: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
+    let found = root.get(name);
+    let list = found.and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
+    list.iter().chain(found.filter(|value| value.is_object()))
+}
+
+/// A study file that is being read.
+struct StudyFile<'s> {
+    source: &'s Arc<Source>,
+    messages: Vec<Diagnostic>,
+    base: Value,
+}
+
+impl StudyFile<'_> {
+    fn refuse(&mut self, message: Diagnostic, path: &str) {
+        let place = span(&self.source.text, path).filter(|_| message.place.is_none());
+        self.messages.push(match place {
+            Some(span) => message.at(Place::new(self.source, span), ""),
+            None => message,
+        });
+    }
+
+    /// Keys of a table in full, with their values; dotted keys and tables in tables are the same.
+    fn assigned(&mut self, table: &Value, path: &str) -> Assignments {
+        let mut found = Assignments::new();
+        for (name, value) in key::leaves(table) {
+            match key::resolve(&name) {
+                Ok(key) => found.push((key, value.clone())),
+                Err(report) => {
+                    report.0.into_iter().for_each(|message| self.refuse(message, &format!("{path}.{name}")));
+                }
+            }
+        }
+        ordered(found)
+    }
+
+    /// Values of a key: those of a list, the numbers of a range, or one.
+    fn values(&mut self, key: &str, value: Value, path: &str) -> Vec<Value> {
+        let is_number = key::KEYS.get(key).is_some_and(Value::is_number);
+        let values = match value {
+            Value::Array(values) => values,
+            value => vec![value],
+        };
+        let expand = |value: Value| match value.as_str().filter(|_| is_number) {
+            Some(text) => match numbers(text, 0, u32::MAX, "number") {
+                Ok(numbers) => numbers.into_iter().map(Value::from).collect(),
+                Err(_) => vec![value],
+            },
+            None => vec![value],
+        };
+        let values: Vec<Value> = values.into_iter().flat_map(expand).collect();
+        if values.is_empty() {
+            self.refuse(Diagnostic::error(format!("`{key}` has no value")), &format!("{path}.{key}"));
+        }
+        values
+    }
+
+    /// Lists of one length that go together.
+    fn zip(&mut self, table: &Value) -> Option<Vec<Assignments>> {
+        let columns: Vec<(String, Vec<Value>)> = self
+            .assigned(table, "zip")
+            .into_iter()
+            .map(|(key, value)| (key.clone(), self.values(&key, value, "zip")))
+            .collect();
+        let length = columns.first()?.1.len();
+        if let Some((key, values)) = columns.iter().find(|(_, values)| values.len() != length) {
+            let (first, many) = (&columns[0].0, values.len());
+            let message = format!("`{key}` has {many} values in a zip in which `{first}` has {length}");
+            self.refuse(Diagnostic::error(message), "zip");
+            return None;
+        }
+        let row = |at: usize| columns.iter().map(|(key, values)| (key.clone(), values[at].clone())).collect();
+        Some((0..length).map(row).collect())
+    }
+
+    /// Points of a Latin hypercube.
+    fn latin(&mut self, table: &Value) -> Option<Vec<Assignments>> {
+        for name in table.as_object()?.keys().filter(|name| !LATIN.contains(&name.as_str())) {
+            let message = Diagnostic::error(format!("`{name}` is no key of a Latin hypercube"));
+            self.refuse(message.hint(format!("the keys are {}", LATIN.join(", "))), &format!("latin.{name}"));
+        }
+        let points = table["points"].as_u64().filter(|points| (1..=MOST_POINTS).contains(points));
+        let Some(points) = points else {
+            let message = format!("a Latin hypercube has `points`, 1 to {}", grouped(MOST_POINTS));
+            self.refuse(Diagnostic::error(message), "latin.points");
+            return None;
+        };
+        let keys = self.assigned(table.get("keys")?, "latin.keys");
+        let mut columns = Vec::new();
+        for (key, value) in keys {
+            match latin::Range::new(&value) {
+                Some(range) => columns.push((key, range)),
+                None => self.refuse(
+                    Diagnostic::error(format!("`{key}` has neither two numbers nor a list of choices")),
+                    &format!("latin.keys.{key}"),
+                ),
+            }
+        }
+        Some(latin::points(points, table["seed"].as_u64().unwrap_or(1), &columns))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(text: &str) -> Result<Study, String> {
+        Study::parse(&Source::new("study.toml", text), "study").map_err(|report| report.render(false))
+    }
+
+    #[test]
+    fn factors_multiply() {
+        let text = "[settings]\nsize = \"8x6\"\n[product]\nscene = [\"cornell\", \"slabs\"]\ncores = \"1-3\"\n\
+                    [[zip]]\nword = [32, 24]\nkd-depth = [16, 8]\n[[list]]\nprofile = \"ray\"\n[[list]]\nprofile = \"report\"\nbounces = 1\n\
+                    [latin]\npoints = 5\nkeys = { setup_clocks = [0, 9] }\n";
+        let study = study(text).unwrap();
+        assert_eq!(study.count(), 2 * 3 * 2 * 2 * 5);
+        assert_eq!(study.base["view"]["size"], serde_json::json!([8, 6]));
+        let keys: Vec<String> = study.assignments(119).into_iter().map(|(key, _)| key).collect();
+        assert_eq!(keys[0], "scene");
+        assert!(keys.contains(&"machine.arithmetic.word".to_owned()) && keys.contains(&"effort.bounces".to_owned()));
+        let cores: Vec<Value> = (0..120)
+            .flat_map(|at| study.assignments(at))
+            .filter(|(key, _)| key == "machine.cores")
+            .map(|(_, value)| value)
+            .collect();
+        assert_eq!(cores.iter().filter(|value| **value == 2).count(), 40);
+    }
+
+    #[test]
+    fn all_mistakes_of_a_study_are_named() {
+        let text = "prodct = 1\n[product]\ncors = [1]\nprofile = [\"rai\"]\nword = []\n[[zip]]\ncores = [1, 2]\nword = [20]\n[latin]\npoints = 0\n";
+        let shown = study(text).expect_err("nothing is right");
+        for part in [
+            "did you mean `product`?",
+            "did you mean `cores`?",
+            "did you mean `ray`?",
+            "has no value",
+            "in a zip in which",
+            "has `points`",
+        ] {
+            assert!(shown.contains(part), "{part}\n{shown}");
+        }
+    }
+}

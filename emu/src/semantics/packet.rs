@@ -11,10 +11,19 @@ use crate::code::trap::Fault;
 /// The packet of so many triangles at an address.
 #[inline(always)]
 fn packet(buffer: &Buffer, address: u32, triangles: i32) -> Result<PacketWords<'_>, Fault> {
-    // More octets than there are addresses are more than any buffer has.
+    let octets = buffer.octets().get(address as usize..).unwrap_or_default();
+    match PacketWords::at_start(octets, triangles as u32 as usize) {
+        Some(packet) if address as usize <= buffer.octets().len() => Ok(packet),
+        _ => Err(beyond_end(buffer, address, triangles)),
+    }
+}
+
+/// The fault of a packet that leaves the buffer. More octets than there are addresses are more than any buffer has.
+#[cold]
+fn beyond_end(buffer: &Buffer, address: u32, triangles: i32) -> Fault {
     let octets = u64::from(triangles as u32) * 4 * PACKET_WORDS as u64;
-    let octets = u32::try_from(octets).unwrap_or(u32::MAX);
-    Ok(PacketWords::new(buffer.slice(address, octets)?))
+    let size = buffer.octets().len() as u32;
+    Fault::Buffer { address, octets: u32::try_from(octets).unwrap_or(u32::MAX), size }
 }
 
 impl<T: Arithmetic> PacketRoom for T {

@@ -34,6 +34,7 @@ pub struct Ray {
 }
 
 impl From<[Vector; 2]> for Ray {
+    #[inline]
     fn from([origin, direction]: [Vector; 2]) -> Ray {
         Ray { origin, direction }
     }

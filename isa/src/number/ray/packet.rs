@@ -48,6 +48,14 @@ impl<'a> PacketWords<'a> {
         PacketWords { octets, count: octets.len() / (4 * PACKET_WORDS) }
     }
 
+    /// The packet of so many triangles at the beginning of octets that go on behind it: four lanes are read at once wherever they do. `None` where
+    /// the octets do not hold it.
+    #[inline(always)]
+    pub fn at_start(octets: &'a [u8], count: usize) -> Option<PacketWords<'a>> {
+        let needed = count.checked_mul(4 * PACKET_WORDS)?;
+        (needed <= octets.len()).then_some(PacketWords { octets, count })
+    }
+
     /// A word of a triangle: 0 for its name, then the components of its vertices.
     #[inline(always)]
     fn word(&self, kind: usize, triangle: usize) -> i32 {
@@ -63,26 +71,31 @@ impl<'a> PacketWords<'a> {
         [1, 4, 7].map(|kind| [0, 1, 2].map(|axis| self.word(kind + axis, triangle)))
     }
 
-    /// The words of one kind of the lanes from a triangle on; lanes without a triangle have 0.
+    /// The words of one kind of the lanes from a triangle on; lanes without a triangle have any.
     #[inline(always)]
     fn lanes(&self, kind: usize, first: usize) -> LaneNumbers {
-        let mut lanes = [0.0; LANES];
-        let octets = &self.octets[4 * (kind * self.count + first)..];
-        match octets.first_chunk::<{ 4 * LANES }>() {
-            // What follows in memory stands in lanes that nobody looks at.
-            Some(octets) => {
-                let (words, _) = octets.as_chunks::<4>();
-                for (lane, &word) in lanes.iter_mut().zip(words) {
-                    *lane = f64::from(i32::from_le_bytes(word));
-                }
-            }
+        let start = 4 * (kind * self.count + first);
+        // What follows in memory stands in lanes that nobody looks at. At the end of it the last octets are moved to where they belong.
+        let octets = match self.octets[start..].first_chunk::<{ 4 * LANES }>() {
+            Some(octets) => *octets,
             None => {
-                for (triangle, lane) in (first..self.count).zip(&mut lanes) {
-                    *lane = f64::from(self.word(kind, triangle));
-                }
+                let last = self.octets.last_chunk().map_or(0, |&last| u128::from_le_bytes(last));
+                let left = self.octets.len() - start;
+                (last >> (8 * (4 * LANES - left))).to_le_bytes()
             }
+        };
+        let (words, _) = octets.as_chunks::<4>();
+        let mut lanes = [0.0; LANES];
+        for (lane, &word) in lanes.iter_mut().zip(words) {
+            *lane = f64::from(i32::from_le_bytes(word));
         }
         lanes
+    }
+
+    /// The components of a vertex of the lanes from a triangle on; `kind` is that of x.
+    #[inline(always)]
+    fn vertex_lanes(&self, kind: usize, first: usize) -> [LaneNumbers; 3] {
+        [self.lanes(kind, first), self.lanes(kind + 1, first), self.lanes(kind + 2, first)]
     }
 
     /// The nearest of a hit and those of the packet: the least rounded t, then the least name. t is scaled by 2^shift.
@@ -277,10 +290,20 @@ fn largest(a: LaneNumbers, b: LaneNumbers) -> LaneNumbers {
     each(a, b, |a, b| if a > b { a } else { b })
 }
 
+/// The number with its sign turned where that of another one is set.
+#[inline(always)]
+fn turned(a: LaneNumbers, sign: LaneNumbers) -> LaneNumbers {
+    each(a, sign, |a, sign| a * 1f64.copysign(sign))
+}
+
+#[inline(always)]
+fn minor(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3], j: usize, k: usize) -> LaneNumbers {
+    subtract(multiply(a[j], b[k]), multiply(a[k], b[j]))
+}
+
 #[inline(always)]
 fn cross(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> [LaneNumbers; 3] {
-    let minor = |j: usize, k: usize| subtract(multiply(a[j], b[k]), multiply(a[k], b[j]));
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
+    [minor(a, b, 1, 2), minor(a, b, 2, 0), minor(a, b, 0, 1)]
 }
 
 #[inline(always)]
@@ -298,25 +321,27 @@ fn difference(a: &[LaneNumbers; 3], b: &[LaneNumbers; 3]) -> [LaneNumbers; 3] {
     [subtract(a[0], b[0]), subtract(a[1], b[1]), subtract(a[2], b[2])]
 }
 
+/// A vector for all lanes.
+#[inline(always)]
+fn beside([x, y, z]: Vector) -> [LaneNumbers; 3] {
+    [[f64::from(x); LANES], [f64::from(y); LANES], [f64::from(z); LANES]]
+}
+
 impl Beam {
     #[inline(always)]
     fn new(ray: &Ray) -> Beam {
-        let beside = |component: i32| [f64::from(component); LANES];
-        let ([x, y, z], [along_x, along_y, along_z]) = (ray.origin, ray.direction);
-        let direction = [beside(along_x), beside(along_y), beside(along_z)];
+        let direction = beside(ray.direction);
         let size = size(&direction)[0];
-        Beam { origin: [beside(x), beside(y), beside(z)], direction, size }
+        Beam { origin: beside(ray.origin), direction, size }
     }
 
     /// Tries the triangles from a number on, by the formulas and the bounds of [`super::filter`].
     #[inline(always)]
     fn judge(&self, packet: &PacketWords, first: usize) -> Judged {
         // Find edges and start, which doubles hold exactly.
-        let vertex =
-            |kind: usize| [packet.lanes(kind, first), packet.lanes(kind + 1, first), packet.lanes(kind + 2, first)];
-        let corner = vertex(1);
-        let edge1 = difference(&vertex(4), &corner);
-        let edge2 = difference(&vertex(7), &corner);
+        let corner = packet.vertex_lanes(1, first);
+        let edge1 = difference(&packet.vertex_lanes(4, first), &corner);
+        let edge2 = difference(&packet.vertex_lanes(7, first), &corner);
         let start = difference(&self.origin, &corner);
 
         // Compute the determinants, and how far each may be off.
@@ -333,8 +358,8 @@ impl Beam {
         let t_error = scaled(multiply(ab, s), DETERMINANT);
 
         // Turn the tests so that a hit passes them with positive numbers.
-        let turned = |x: LaneNumbers| each(x, determinant, |x, sign| x * 1f64.copysign(sign));
-        let (inside_u, inside_v, inside_w, ahead) = (turned(u), turned(v), turned(w), turned(t));
+        let (inside_u, inside_v) = (turned(u, determinant), turned(v, determinant));
+        let (inside_w, ahead) = (turned(w, determinant), turned(t, determinant));
         let absolute = magnitude(determinant);
         let above = largest(subtract(magnitude(u), u_error), subtract(magnitude(v), v_error));
         Judged {

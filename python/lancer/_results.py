@@ -1,7 +1,5 @@
 """Results of commands: dictionaries as the program prints them, tables as data frames."""
 
-import concurrent.futures
-import itertools
 import json
 import os
 import tempfile
@@ -10,6 +8,7 @@ import pandas
 
 from ._command import call
 from ._pictures import read_picture
+from ._toml import document
 
 
 class Render:
@@ -80,29 +79,36 @@ def render(scene, picture=True, **options):
         return Render(data, read_picture(path) if picture else None)
 
 
-def sweep(scenes, jobs=None, **options):
-    """Draws a scene, or several, with every combination of the options that are lists; one row a picture.
+def sweep(study, **keys):
+    """Runs a study and gives its table, one row a point; docs/sweep.md describes studies and columns.
 
-    `lancer.sweep(["cornell", "slabs"], word=[32, 24], cores=[1, 4], size=(32, 24))` draws 8 pictures: a list is an axis, a
-    tuple is one value. The columns are the axes, then the results as `frame` names them. `jobs` pictures are drawn at the
-    same time, as many as the host has processors by default; the rows do not depend on it, nor on the order.
+    `study` is the path of a study file (.toml), a dictionary with what such a file holds, or a scene or a list of them. In the
+    last case keywords are keys of the settings, and lists of values are axes: `lancer.sweep(["cornell", "slabs"],
+    word=[32, 24], cores=[1, 4], size=(32, 24))` has 8 points, of which those that differ in cores share a recording.
     """
-    axes = {name: value for name, value in options.items() if isinstance(value, list)}
-    fixed = {name: value for name, value in options.items() if name not in axes}
-    axes = {"scene": list(scenes) if isinstance(scenes, (list, tuple)) else [scenes], **axes}
-    points = [dict(zip(axes, values)) for values in itertools.product(*axes.values())]
-    jobs = jobs or os.cpu_count() or 1
+    is_file = isinstance(study, (str, os.PathLike)) and str(study).endswith(".toml")
+    if keys and (is_file or isinstance(study, dict)):
+        raise TypeError("a study has its keys in itself")
+    with tempfile.TemporaryDirectory() as folder:
+        path = study
+        if not is_file:
+            if not isinstance(study, dict):
+                study = _product(study, keys)
+            path = os.path.join(folder, "study.toml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(document(study))
+        table = os.path.join(folder, "study.csv")
+        call("sweep", path, output=table)
+        return pandas.read_csv(table)
 
-    def one(point):
-        chosen = {name: value for name, value in point.items() if name != "scene"}
-        # The pictures share the host's processors, not the threads of one.
-        return render(point["scene"], picture=False, threads=1 if jobs > 1 else None, **fixed, **chosen)
 
-    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        results = list(pool.map(one, points))
-    table = frame(results)
-    chosen = pandas.DataFrame(points)
-    return pandas.concat([chosen, table.drop(columns=[name for name in chosen if name in table])], axis=1)
+def _product(scenes, keys):
+    """A study of every combination of the keys that are lists."""
+    keys = {name.replace("_", "-"): value for name, value in keys.items() if value is not None}
+    axes = {name: value for name, value in keys.items() if isinstance(value, list)}
+    fixed = {name: value for name, value in keys.items() if name not in axes}
+    scenes = list(scenes) if isinstance(scenes, (list, tuple)) else [scenes]
+    return {"name": "sweep", "settings": fixed, "product": {"scene": scenes, **axes}}
 
 
 def run(source, **options):

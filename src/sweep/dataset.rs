@@ -100,7 +100,8 @@ impl Dataset {
                 let _ = match cell {
                     Cell::Empty => Ok(()),
                     Cell::Whole(number) => write!(text, "{number}"),
-                    Cell::Real(number) => write!(text, "{number}"),
+                    // With a point or an exponent, so that the column reads back as one of real numbers.
+                    Cell::Real(number) => write!(text, "{number:?}"),
                     Cell::Text(word) => write!(text, "{}", quoted(word)),
                 };
             }

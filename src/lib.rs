@@ -11,6 +11,7 @@ pub mod cores;
 #[cfg(feature = "cli")]
 pub mod difference;
 pub mod drawing;
+pub mod energy;
 pub mod extension;
 pub mod failure;
 pub mod files;

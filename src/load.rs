@@ -11,6 +11,7 @@ use messages::Report;
 use scenes::cadrage::Formats;
 use scenes::image::{self, MemoryImage, MemoryKind};
 
+use crate::energy::MeasuredPrograms;
 use crate::failure::Failure;
 use crate::job::Job;
 
@@ -70,6 +71,11 @@ impl Load {
         let build = Build { cores, main, crop, warnings: Report::default() };
         let memory = Memory::new(vec![0; load::MEMORY]);
         Ok(Load { isa, build, memory, kinds: Vec::new(), formats: None, engine: EngineKind::default() })
+    }
+
+    /// The programs, for their energy.
+    pub fn programs(&self) -> MeasuredPrograms<'_> {
+        MeasuredPrograms { isa: &self.isa, cores: &self.build.cores, main: &self.build.main }
     }
 
     /// The load on a machine.

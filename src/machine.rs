@@ -4,10 +4,13 @@ use std::path::Path;
 
 use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
+use emu::machine::config::formula::Dimension;
+use emu::machine::config::ledger::{AREA_ITEMS, ENERGY_ITEMS};
 use emu::machine::preset::PRESETS;
 use isa::Class;
 use messages::{Diagnostic, Report, did_you_mean};
 
+use crate::energy::{Pricing, Width};
 use crate::files;
 use crate::settings::MachineSettings;
 use crate::settings::apply::explained;
@@ -111,6 +114,15 @@ const COMMENTS: &[(&str, &str)] = &[
     ("main.traffic", "whether its transfers and messages use the bus; otherwise they take no time (ours: they do)"),
     ("main.buffer_octets", "octets of its local buffer (ours; the report has none)"),
     ("main.step_limit", "instructions that its whole program may take (ours)"),
+    (
+        "[energy]",
+        "figures of energy: \"tables\" (those of the published tables below), names of tables, \"none\", or a figure of your own with \
+         its unit and its source, by the bits b of a number or the binary logarithm L of the bits of a memory: \
+         \"0.0007 b^2 + 0.002 b pJ; my synthesis\" (docs/energy.md)",
+    ),
+    ("energy.tables", "published tables, between commas; several give a range (ours: all)"),
+    ("[area]", "figures of area, in um2 or mm2, as those of energy"),
+    ("area.tables", "published tables, between commas; several give a range (ours: all)"),
 ];
 
 /// Sentence on an arbiter that does not do what its name says: weights of 1 make round-robin.
@@ -139,9 +151,46 @@ fn filled(comment: &str) -> String {
     comment.replace("{arbiters}", &format!("{} or {last}", first.join(", ")))
 }
 
+/// Comment on an item of `[energy]` or `[area]`.
+fn item_comment(key: &str) -> Option<String> {
+    let (table, name) = key.split_once('.')?;
+    let items = match table {
+        "energy" => &ENERGY_ITEMS[..],
+        "area" => &AREA_ITEMS[..],
+        _ => return None,
+    };
+    items.iter().find(|(item, _)| *item == name).map(|(_, text)| (*text).to_owned())
+}
+
+/// Comment behind an item of `[energy]` or `[area]`: its figures by each table for words of the machine's length.
+fn figures(config: &Config, dimension: Dimension, name: &str) -> String {
+    let Some((item, _)) = ENERGY_ITEMS.iter().chain(&AREA_ITEMS).find(|(item, _)| *item == name) else {
+        return String::new();
+    };
+    let pricings = Pricing::all(config, dimension);
+    let (decimals, unit) = match dimension {
+        Dimension::Energy => (1_000_000.0, "pJ"),
+        Dimension::Area => (1_000_000.0, "um2"),
+    };
+    let shown: Vec<String> = pricings
+        .iter()
+        .filter_map(|pricing| Some((pricing.table.name, pricing.price(item)?)))
+        .map(|(table, price)| {
+            let derived = if price.is_derived { ", derived" } else { "" };
+            format!("{} {unit} by {table}{derived}", price.figures[Width::Word as usize] as f64 / decimals)
+        })
+        .collect();
+    if shown.is_empty() { " # no figure: nothing is counted".to_owned() } else { format!(" # {}", shown.join(", ")) }
+}
+
 /// A comment behind a law: the number that it comes to. Nothing behind other keys.
 fn resolved(config: &Config, key: &str) -> String {
     let (timing, word) = (config.timing(), config.arithmetic.word);
+    match key.split_once('.') {
+        Some(("energy", name)) => return figures(config, Dimension::Energy, name),
+        Some(("area", name)) => return figures(config, Dimension::Area, name),
+        _ => {}
+    }
     let class = |name| Class::from_name(name);
     let (law, number) = match key.split_once('.').and_then(|(table, name)| Some((table, class(name)?))) {
         Some(("clocks", class)) => (config.clocks.0[class], timing.clocks[class]),
@@ -158,12 +207,13 @@ pub fn comment(key: &str) -> Option<String> {
     // Classes of operations mean the same in each section.
     let class =
         || key.split_once('.').and_then(|(_, name)| Class::from_name(name)).map(|class| class.doc().trim().to_owned());
-    found.map(|(_, text)| filled(text)).or_else(class)
+    found.map(|(_, text)| filled(text)).or_else(|| item_comment(key)).or_else(class)
 }
 
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
 pub fn commented(name: &str, config: &Config) -> String {
     let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| filled(text));
+    let comment = |key: &str| item_comment(key).or_else(|| comment(key));
     let mut text = format!("# Machine `{name}`. Keys that a file leaves out have the values of `{DEFAULT}`.\n\n");
     // The keys come from the text itself, so that none of them can be missing here.
     let mut section = String::new();

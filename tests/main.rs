@@ -8,6 +8,7 @@ mod case;
 mod cases;
 mod cli;
 mod contract;
+mod energy;
 mod extension;
 mod faults;
 mod laws;

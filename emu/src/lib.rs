@@ -17,5 +17,5 @@ mod run;
 pub mod semantics;
 
 pub use code::{octets, quantity, registers, tally, timing, trap};
-pub use replay::count;
+pub use replay::{count, weigh};
 pub use run::{run, run_all, step};

@@ -20,6 +20,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::drawing::{self, Comparison};
+use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
 use crate::result::{ByClass, Render};
@@ -163,6 +164,8 @@ pub struct MeasuredVariant {
     pub instructions: f64,
     /// Octets that the cores moved, a pixel.
     pub octets: f64,
+    /// Energy and area, as a range over published tables.
+    pub energy: EnergySummary,
     /// Nanoseconds of the host a pixel; only when asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub host_nanoseconds: Option<f64>,
@@ -227,6 +230,7 @@ pub fn measure(
         operations: result.counts,
         instructions: each(result.instructions),
         octets: each(result.octets),
+        energy: EnergyResult::of(&job, &drawing, None).summary,
         host_nanoseconds: has_times.then(|| host.as_nanos() as f64 / pixels),
         formats: result.formats,
         is_on_front: false,

@@ -79,6 +79,9 @@ pub struct AccuracyArguments {
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
+    /// Adds nanojoules a pixel as a range over published tables.
+    #[arg(long)]
+    energy: bool,
     /// Adds the host's nanoseconds a pixel.
     #[arg(long)]
     timing: bool,
@@ -215,7 +218,7 @@ pub(super) fn execute(
     match (is_taken, arguments.json) {
         (true, _) => {}
         (false, true) => terminal.print(&result::json(&WithSettings::new(&results, settings)))?,
-        (false, false) => terminal.tell(&text(&results))?,
+        (false, false) => terminal.tell(&text(&results, arguments.energy))?,
     }
     Ok(Exit::Done)
 }
@@ -224,7 +227,7 @@ fn decibels(psnr: Option<f64>) -> String {
     psnr.map_or_else(|| "-".into(), |psnr| format!("{psnr:.1}"))
 }
 
-fn text(results: &AccuracyResults) -> String {
+fn text(results: &AccuracyResults, has_energy: bool) -> String {
     // Scenes in the order in which they were measured, a table each.
     let mut scenes: Vec<&str> = results.variants.iter().map(|one| one.scene.as_str()).collect();
     scenes.dedup();
@@ -250,6 +253,9 @@ fn text(results: &AccuracyResults) -> String {
             "N p99",
             "dominated by",
         ])];
+        if has_energy {
+            rows[0].insert(3, "nJ".to_owned());
+        }
         for one in results.variants.iter().filter(|one| one.scene == scene) {
             let ulp = |error: Option<f64>| error.map_or_else(|| "-".into(), |error| format!("{error:.2}"));
             rows.push(vec![
@@ -267,6 +273,9 @@ fn text(results: &AccuracyResults) -> String {
                 ulp(one.rays.normal_p99),
                 one.dominated_by.clone().unwrap_or_default(),
             ]);
+            if has_energy && let Some(last) = rows.last_mut() {
+                last.insert(3, one.energy.pixel_nj.to_string());
+            }
         }
         text += &table(rows);
         text.push('\n');
@@ -281,7 +290,7 @@ fn text(results: &AccuracyResults) -> String {
 fn csv(measured: &[MeasuredVariant]) -> String {
     let mut text = String::from(
         "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,ssim,stored_psnr_db,\
-         stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by\n",
+         stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by,pixel_nj_least,pixel_nj_most,energy_delay_js_least,energy_delay_js_most,area_um2_least,area_um2_most\n",
     );
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     // Names may hold commas; RFC 4180 doubles the quotes inside.
@@ -318,6 +327,12 @@ fn csv(measured: &[MeasuredVariant]) -> String {
             number(one.rays.normal_max),
             number(one.host_nanoseconds),
             quoted(one.dominated_by.as_deref().unwrap_or("")),
+            one.energy.pixel_nj.least.to_string(),
+            one.energy.pixel_nj.most.to_string(),
+            one.energy.energy_delay_js.least.to_string(),
+            one.energy.energy_delay_js.most.to_string(),
+            one.energy.area_um2.least.to_string(),
+            one.energy.area_um2.most.to_string(),
         ];
         text += &(cells.join(",") + "\n");
     }

@@ -65,6 +65,9 @@ pub struct CoresArguments {
     /// Structures of global memory [default: report for the profile report, else wide].
     #[arg(long, value_name = "NAME", value_parser = arguments::layout())]
     layout: Option<Layout>,
+    /// Adds energy and area as ranges over published tables.
+    #[arg(long, help_heading = "Results")]
+    energy: bool,
     /// Writes the points as comma-separated values.
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     csv: Option<PathBuf>,
@@ -128,10 +131,11 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         files.push((path, cores::svg(&scaling)?));
     }
     files::write_all(&files)?;
+    let energy = if arguments.energy { cores::energy_text(&scaling) } else { String::new() };
     match (is_taken, arguments.json) {
         (true, _) => {}
         (false, true) => terminal.print(&result::json(&WithSettings::new(&scaling, settings)))?,
-        (false, false) => terminal.tell(&cores::text(&scaling))?,
+        (false, false) => terminal.tell(&(cores::text(&scaling) + &energy))?,
     }
     Ok(Exit::Done)
 }

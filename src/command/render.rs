@@ -9,6 +9,7 @@ use messages::Diagnostic;
 use super::expectation::ExpectationArguments;
 use crate::arguments::JobArguments;
 use crate::drawing::{self, Comparison, Drawing};
+use crate::energy::{self, EnergyResult};
 use crate::failure::{Exit, Failure};
 use crate::files::picture::PictureFormat;
 use crate::files::{self, map};
@@ -26,6 +27,7 @@ Examples:
   lancer render cornell --kernel triangle=my.s --pixel 160,120
   lancer render cornell --size 80x60 -o - | magick - -scale 400% big.png
   lancer render cornell --size 80x60 -q --min-psnr 60 --max-clocks 100,000,000
+  lancer render cornell --size 80x60 --energy --word 20
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 4 an expectation is not
 met, 5 step limit.";
@@ -58,12 +60,18 @@ pub struct RenderArguments {
     /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
     #[arg(long, help_heading = "Results")]
     flags: bool,
+    /// Adds energy and area: a range over published tables, by operation, function and core, with the source of every figure.
+    #[arg(long, help_heading = "Results")]
+    energy: bool,
     /// Adds the host's times, in seconds.
     #[arg(long, help_heading = "Results")]
     timing: bool,
     /// Map of the elementary operations of each pixel, logarithmic: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     heat: Option<PathBuf>,
+    /// Map of the nanojoules of each pixel by the machine's first table, logarithmic: .png, .ppm or .pfm.
+    #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
+    energy_map: Option<PathBuf>,
     /// Map of each pixel's difference from double precision, logarithmic: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     error: Option<PathBuf>,
@@ -102,7 +110,8 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
         let message = Diagnostic::error("there is no picture to write the results beside");
         return Err(Failure::usage(message.hint("name one with `-o FILE`")));
     }
-    let targets = [&output, &arguments.heat, &arguments.error, &sidecar].map(|path| path.as_deref());
+    let targets =
+        [&output, &arguments.heat, &arguments.error, &sidecar, &arguments.energy_map].map(|path| path.as_deref());
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
     let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
     files::check_spared(targets.into_iter().flatten(), &job.files).map_err(Failure::usage)?;
@@ -113,17 +122,26 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let drawing = draw(&job, comparison, terminal)?;
     terminal.show(&drawing.warnings);
     terminal.show(&machine::notes(&job.machine));
+    let energies = arguments.energy_map.as_ref().map(|_| energy::pixels(&job)).transpose()?;
     let mut result = Render::new(&job, &drawing);
+    result.energy = arguments.energy.then(|| EnergyResult::of(&job, &drawing, Some(result.rays.all())));
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
-    let [output, heat, error, sidecar] = targets;
+    let [output, heat, error, sidecar, energy_map] = targets;
     let mut files = maps(&drawing, heat, error);
     files.extend(output.map(|output| (output, format(output).encode(&drawing.picture))));
     files.extend(sidecar.map(|sidecar| (sidecar, result.json().into_bytes())));
+    let size = drawing.picture.size;
+    let energy_map = energy_map.zip(energies.as_ref());
+    files.extend(energy_map.map(|(path, energies)| (path, format(path).encode_pixels(&map::heat(size, energies)))));
     files::write_all(&files)?;
     if arguments.json {
         terminal.print(&result.json())?;
     } else if !is_taken && !arguments.quiet {
-        terminal.tell(&if arguments.full { full(&result, &drawing) } else { brief(&result, &drawing) })?;
+        terminal.tell(&if arguments.full {
+            full(&result, &drawing, energies.as_deref())
+        } else {
+            brief(&result, &drawing, energies.as_deref())
+        })?;
     }
     if is_default && let Some(output) = output {
         terminal.say(&format!("picture: {}", output.display()));
@@ -157,24 +175,32 @@ fn format(path: &Path) -> PictureFormat {
     PictureFormat::of(path).expect("the parser lets only such names pass")
 }
 
+/// Energy of the picture and of its pixels, where they were asked for.
+fn energy_parts(result: &Render, energies: Option<&[u64]>) -> impl Iterator<Item = String> {
+    let pixels = energies.map(|energies| format!("energy of a pixel: {}\n", energy::spread(energies)));
+    result.energy.as_ref().map(energy::text).into_iter().chain(pixels)
+}
+
 /// The picture in ten lines, and after them what was asked for.
-fn brief(result: &Render, drawing: &Drawing) -> String {
+fn brief(result: &Render, drawing: &Drawing, energies: Option<&[u64]>) -> String {
     let mut parts = vec![summary::brief(result)];
     if drawing.words.len() == 1 {
         parts.insert(0, summary::pixel(drawing));
     }
+    parts.extend(energy_parts(result, energies));
     parts.extend(asked(result));
     parts.join("\n")
 }
 
 /// All tables of the picture.
-fn full(result: &Render, drawing: &Drawing) -> String {
+fn full(result: &Render, drawing: &Drawing, energies: Option<&[u64]>) -> String {
     let mut parts = vec![
         summary::title(result) + &summary::rays(result),
         summary::functions(result),
         summary::classes(result),
         summary::processors(result),
     ];
+    parts.extend(energy_parts(result, energies));
     parts.extend(result.error.as_ref().map(summary::error));
     if drawing.words.len() == 1 {
         parts.push(summary::pixel(drawing));

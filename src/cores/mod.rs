@@ -15,8 +15,9 @@ use serde::Serialize;
 pub use chart::svg;
 pub use demand::PixelDemand;
 #[cfg(feature = "cli")]
-pub use text::{csv, text};
+pub use text::{csv, energy_text, text};
 
+use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::load::Load;
 use crate::machine::arbiter_note;
@@ -109,6 +110,8 @@ pub struct Point {
     pub queueing_pixel_seconds: f64,
     /// `replayed`, or `stepped`.
     pub method: &'static str,
+    /// Energy and area, as a range over published tables.
+    pub energy: EnergySummary,
     /// True where the machine is saturated from this number of cores on.
     pub is_saturated: bool,
 }
@@ -145,7 +148,7 @@ pub fn measure(
     // Frames come back in the order of the configurations: machine by machine, fewest cores first.
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
         let points: Vec<(u32, &RunOutcome)> = cores.iter().copied().zip(frames).collect();
-        Curve { formats: load.formats.as_ref().map(FormatTable::from), ..curve(name, config, &points) }
+        Curve { formats: load.formats.as_ref().map(FormatTable::from), ..curve(name, config, load, &points) }
     });
     Ok(CoresResult {
         schema: SCHEMA,
@@ -165,7 +168,7 @@ fn share(part: u64, whole: u64) -> f64 {
 }
 
 /// The curve of a machine from its frames, that of one core first.
-fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
+fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]) -> Curve {
     let (_, alone) = frames[0];
     let pixels = alone.item_count.max(1) as f64;
     // Computing and transfers of a pixel, as one core shows them.
@@ -173,8 +176,10 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
         computing: alone.processors[0].busy.0 as f64 / pixels,
         transfer: alone.bus.busy.0 as f64 / pixels,
     };
-    let mut points: Vec<Point> =
-        frames.iter().map(|&(cores, frame)| point(cores, frame, alone, &demand, config)).collect();
+    let mut points: Vec<Point> = frames
+        .iter()
+        .map(|&(cores, frame)| point(&Config { cores, ..config.clone() }, load, frame, alone, &demand))
+        .collect();
     let saturation = saturation(&points);
     for point in &mut points {
         point.is_saturated = saturation.is_some_and(|saturation| f64::from(point.cores) >= saturation.cores);
@@ -194,8 +199,8 @@ fn curve(name: &str, config: &Config, frames: &[(u32, &RunOutcome)]) -> Curve {
     }
 }
 
-fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDemand, config: &Config) -> Point {
-    let (clock_hz, overlaps) = (config.clock_hz, config.bus.overlap);
+fn point(config: &Config, load: &Load, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDemand) -> Point {
+    let (cores, clock_hz, overlaps) = (config.cores, config.clock_hz, config.bus.overlap);
     let (workers, main) = frame.processors.split_at(cores as usize);
     let sum = |part: fn(&machine::ProcessorUse) -> u64| workers.iter().map(part).sum::<u64>();
     let whole = frame.clocks.0 * u64::from(cores);
@@ -226,6 +231,7 @@ fn point(cores: u32, frame: &RunOutcome, alone: &RunOutcome, demand: &PixelDeman
         bound_pixel_seconds: seconds(bound),
         queueing_pixel_seconds: seconds(demand.queueing(cores)),
         method: frame.method.name(),
+        energy: EnergyResult::new(config, load.programs(), frame, frame.item_count, None).summary,
         is_saturated: false,
     }
 }
@@ -271,6 +277,7 @@ mod tests {
                 bound_pixel_seconds: 1.0,
                 queueing_pixel_seconds: 1.0,
                 method: "replayed",
+                energy: EnergySummary::default(),
                 is_saturated: false,
             };
             change(&mut point);

@@ -98,10 +98,30 @@ fn starved(curve: &Curve) -> String {
     })
 }
 
+/// The energies and areas of all machines, number of cores by number of cores.
+pub fn energy_text(scaling: &CoresResult) -> String {
+    let one = |curve: &Curve| {
+        let mut rows = vec![row(["cores", "nJ a pixel", "energy x delay in J s", "cores' area in um2", "larger part"])];
+        rows.extend(curve.points.iter().map(|point| {
+            let energy = &point.energy;
+            let [pixel, delay, area] =
+                [energy.pixel_nj, energy.energy_delay_js, energy.area_um2].map(|range| range.to_string());
+            vec![point.cores.to_string(), pixel, delay, area, energy.decides.to_owned()]
+        }));
+        format!(
+            "\n{}: energy and area on machine `{}`, by the published tables (docs/energy.md)\n{}",
+            scaling.scene,
+            curve.machine,
+            table(rows)
+        )
+    };
+    scaling.machines.iter().map(one).collect()
+}
+
 /// A column of the comma-separated values: its head and what it holds.
 type Column = (&'static str, fn(&Curve, &Point) -> String);
 
-const COLUMNS: [Column; 16] = [
+const COLUMNS: [Column; 22] = [
     ("machine", |curve, _| quoted(&curve.machine)),
     ("arbiter", |curve, _| curve.arbiter.clone()),
     ("cores", |_, point| point.cores.to_string()),
@@ -118,6 +138,12 @@ const COLUMNS: [Column; 16] = [
     ("bound_pixel_seconds", |_, point| point.bound_pixel_seconds.to_string()),
     ("queueing_pixel_seconds", |_, point| point.queueing_pixel_seconds.to_string()),
     ("method", |_, point| point.method.to_owned()),
+    ("frame_nj_least", |_, point| point.energy.frame_nj.least.to_string()),
+    ("frame_nj_most", |_, point| point.energy.frame_nj.most.to_string()),
+    ("energy_delay_js_least", |_, point| point.energy.energy_delay_js.least.to_string()),
+    ("energy_delay_js_most", |_, point| point.energy.energy_delay_js.most.to_string()),
+    ("area_um2_least", |_, point| point.energy.area_um2.least.to_string()),
+    ("area_um2_most", |_, point| point.energy.area_um2.most.to_string()),
 ];
 
 /// A text as a comma-separated value (RFC 4180).

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::drawing::{self, Comparison, Drawing};
+use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::result::{ByClass, FormatTable, Render};
@@ -30,6 +31,8 @@ pub struct VariantResult {
     pub octets: u64,
     /// Length of the frame in clocks.
     pub clocks: u64,
+    /// Energy and area, as a range over published tables; the area is that of the machine's units, without those of the extension.
+    pub energy: EnergySummary,
     /// Words of the cores' program and the main processor's.
     pub words: u64,
     /// Bits of a word and fraction bits of each quantity.
@@ -86,6 +89,7 @@ impl VariantResult {
             busy_clocks: render.cores.iter().map(|core| core.busy).sum(),
             octets: render.octets,
             clocks: render.clocks,
+            energy: EnergyResult::of(job, drawing, None).summary,
             words: size(&drawing.build.cores) + size(&drawing.build.main),
             formats: render.formats,
             error: render.error,

@@ -3,8 +3,15 @@
 use isa::Class;
 
 use super::{ExtensionResult, VariantResult};
+use crate::energy::EnergySummary;
 use crate::numeral::{count, grouped};
 use crate::table::{row, table};
+
+/// A row of energy: its name and its figure.
+type EnergyRow = (&'static str, fn(&EnergySummary) -> f64);
+
+const ENERGIES: [EnergyRow; 2] =
+    [("nJ a pixel, least", |energy| energy.pixel_nj.least), ("nJ a pixel, most", |energy| energy.pixel_nj.most)];
 
 /// A change in per cent.
 fn change(from: u64, to: u64) -> String {
@@ -17,7 +24,7 @@ fn change(from: u64, to: u64) -> String {
 
 impl ExtensionResult {
     /// Head and rows of the table.
-    fn rows(&self) -> Vec<Vec<String>> {
+    fn rows(&self, has_energy: bool) -> Vec<Vec<String>> {
         let variants = [&self.without, &self.with, &self.expanded];
         let mut rows = vec![row(["", "without", "with", "change", "expanded", "change"])];
         let mut add = |name: &str, value: &dyn Fn(&VariantResult) -> u64| {
@@ -45,6 +52,21 @@ impl ExtensionResult {
         for (name, &count) in self.instructions.iter().zip(&self.executions) {
             let none = String::new;
             rows.push(vec![format!("times `{name}` ran"), none(), grouped(count), none(), none(), none()]);
+        }
+        for (name, figure) in ENERGIES.iter().filter(|_| has_energy) {
+            let [without, with, expanded] = variants.map(|variant| figure(&variant.energy));
+            let change = |to: f64| {
+                if without == 0.0 { String::new() } else { format!("{:+.1} %", 100.0 * (to / without - 1.0)) }
+            };
+            let number = |figure: f64| format!("{figure:.3}");
+            rows.push(vec![
+                (*name).to_owned(),
+                number(without),
+                number(with),
+                change(with),
+                number(expanded),
+                change(expanded),
+            ]);
         }
         let psnr = |variant: &VariantResult| match variant.error.and_then(|error| error.psnr_db) {
             Some(psnr) => format!("{psnr:.2}"),
@@ -80,14 +102,14 @@ impl ExtensionResult {
         }
     }
 
-    /// The table for people.
-    pub fn text(&self) -> String {
-        format!("{}\n{}\n{}", self.title(), table(self.rows()), self.verdict())
+    /// The table for people, with energy or without.
+    pub fn text(&self, has_energy: bool) -> String {
+        format!("{}\n{}\n{}", self.title(), table(self.rows(has_energy)), self.verdict())
     }
 
-    /// The table as Markdown.
-    pub fn markdown(&self) -> String {
-        let rows = self.rows();
+    /// The table as Markdown, with energy or without.
+    pub fn markdown(&self, has_energy: bool) -> String {
+        let rows = self.rows(has_energy);
         let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
         let rule = format!("|---|{}\n", "---:|".repeat(rows[0].len() - 1));
         let body: String = rows[1..].iter().map(|cells| line(cells)).collect();

@@ -8,6 +8,7 @@ mod loss_table;
 mod losses;
 mod moved;
 mod provenance;
+mod rays;
 mod regions;
 mod times;
 
@@ -17,9 +18,8 @@ use std::time::Duration;
 
 use emu::machine::ProcessorUse;
 use emu::machine::waits::Waits;
-use emu::profile::{Profile, RegionProfile};
+use emu::profile::Profile;
 use isa::{Class, Counts};
-use kernels::Function;
 use scenes::cadrage;
 use scenes::metrics::PictureError;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -27,6 +27,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::drawing::Drawing;
+use crate::energy::EnergyResult;
 use crate::job::{Job, result_name};
 use crate::settings::{Settings, VERSION};
 pub use hash::{image_hash, run_hash};
@@ -35,6 +36,7 @@ pub use hexadecimal::hexadecimal;
 pub use loss_table::loss_table;
 pub use losses::{Loss, losses};
 pub use provenance::WithSettings;
+pub use rays::RaysByKind;
 pub use regions::regions;
 pub use times::OperationTimes;
 
@@ -147,6 +149,9 @@ pub struct Render {
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flags: Option<Vec<Loss>>,
+    /// Energy and area; left out unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<EnergyResult>,
     /// Difference from double precision; null when it was not measured.
     pub error: Option<PictureError>,
     /// SHA-256 of the picture; see [`image_hash`].
@@ -156,19 +161,6 @@ pub struct Render {
     /// Seconds of the host; only when asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub host: Option<Host>,
-}
-
-/// Rays by kind, counted from calls of the kernels' functions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-pub struct RaysByKind {
-    /// One a pixel that is not interpolated.
-    pub camera: u64,
-    /// Reflected ones, total reflection included.
-    pub reflected: u64,
-    /// Refracted ones.
-    pub refracted: u64,
-    /// Rays towards lights.
-    pub shadow: u64,
 }
 
 /// Clocks of a processor; `busy + waiting + idle` are the clocks of the frame.
@@ -381,6 +373,7 @@ impl Render {
             moved_kinds: moved::moved_kinds(job, frame),
             formats: (&drawing.image.formats).into(),
             flags: drawing.flags.clone(),
+            energy: None,
             error: drawing.error,
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),
             run_hash: String::new(),
@@ -402,21 +395,6 @@ pub fn json(result: &impl Serialize) -> String {
     let mut text = serde_json::to_string_pretty(result).expect("results have string keys and finite numbers");
     text.push('\n');
     text
-}
-
-impl RaysByKind {
-    /// The rays of a picture of `pixels` pixels. Each secondary and each shadow ray calls `own_packet` once.
-    fn new(pixels: u64, profile: Option<&Profile>) -> RaysByKind {
-        let calls = |function: Function| {
-            let regions = profile.map_or(&[][..], |profile| &profile.regions);
-            let named = |region: &&RegionProfile| region.is_function && region.name == function.name();
-            regions.iter().find(named).map_or(0, |region| region.calls)
-        };
-        // Each ray but a camera ray starts in its own packet; those that are neither reflected nor refracted are shadow rays.
-        let (reflected, refracted) = (calls(Function::Reflect), calls(Function::Refract));
-        let shadow = calls(Function::OwnPacket).saturating_sub(reflected + refracted);
-        RaysByKind { camera: pixels, reflected, refracted, shadow }
-    }
 }
 
 impl ProcessorResult {

@@ -21,7 +21,7 @@ use serde_json::Value;
 use super::session::Session;
 
 /// Options of `lancer render` on which no result depends but for its place, its form and the host's time.
-const NO_SETTINGS: [&str; 15] = [
+const NO_SETTINGS: [&str; 17] = [
     "settings",
     "set",
     "json",
@@ -34,6 +34,8 @@ const NO_SETTINGS: [&str; 15] = [
     "sidecar",
     "timing",
     "heat",
+    "energy",
+    "energy-map",
     "error",
     "help",
     "message-format",

@@ -81,6 +81,17 @@ pub struct Pass {
     cost: Option<(Op, u8)>,
 }
 
+/// Rows that a pass counts by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PassRows {
+    /// The word for which it counts.
+    pub word: u32,
+    /// The row and its outcome whose operations it has; `None` for nothing.
+    pub counted: Option<(Op, u8)>,
+    /// The instruction of the program that ends with it, or the step of an expanded body; `None` for other steps of bodies.
+    pub instruction: Option<Op>,
+}
+
 /// A slot behind the words.
 #[derive(Clone, Copy, Debug)]
 struct Inner {
@@ -378,6 +389,20 @@ impl<'a> Code<'a> {
             (Some(&start), Some(&end)) => start as usize..end as usize,
             _ => 0..0,
         }
+    }
+
+    /// Rows that a pass counts by.
+    ///
+    /// # Panics
+    /// On a number that no pass has.
+    pub fn pass_rows(&self, pass: usize) -> PassRows {
+        let (Pass { word, cost: counted, .. }, is_inner) = (self.passes[pass], self.costs[pass].is_inner);
+        let own = self.op(word);
+        let instruction = match own {
+            Some(op) if self.has_body(word) && self.isa.is_expanded(op) => counted.map(|(op, _)| op),
+            own => own,
+        };
+        PassRows { word, counted, instruction: instruction.filter(|_| !is_inner) }
     }
 
     /// Cost of a pass, and what each of its units adds.

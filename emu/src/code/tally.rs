@@ -75,6 +75,11 @@ impl Tally {
         (&mut self.passes, &mut self.losses)
     }
 
+    /// All passes, by number.
+    pub fn all(&self) -> &[Passes] {
+        &self.passes
+    }
+
     /// Losses of the results of each word, those of its body included.
     pub fn losses(&self, code: &Code) -> Vec<Losses> {
         let mut words = vec![Losses::default(); code.words() as usize];

@@ -1,7 +1,10 @@
 //! The machine as a file describes it: every key with its unit and where its default comes from.
 
 mod file;
+pub mod formula;
 pub mod law;
+pub mod ledger;
+pub mod published;
 
 use isa::Counts;
 use isa::number::{Modes, Overflow, Quantization};
@@ -12,6 +15,7 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::code::timing::{PACKET_LANES, Timing};
 use crate::semantics::Watching;
 pub use law::{ClassClocks, ClassUnits};
+pub use ledger::{AreaConfig, EnergyConfig};
 
 /// Most cores that a machine may have.
 pub const MOST_CORES: u32 = 256;
@@ -54,6 +58,10 @@ pub struct Config {
     pub cache: CacheConfig,
     /// The main processor.
     pub main: MainConfig,
+    /// Figures of energy; those of the published tables. Nothing but energies depends on them.
+    pub energy: EnergyConfig,
+    /// Figures of area; those of the published tables. Nothing but areas depends on them.
+    pub area: AreaConfig,
 }
 
 impl Default for Config {
@@ -70,6 +78,8 @@ impl Default for Config {
             bus: BusConfig::default(),
             cache: CacheConfig::default(),
             main: MainConfig::default(),
+            energy: EnergyConfig::default(),
+            area: AreaConfig::default(),
         }
     }
 }
@@ -274,6 +284,8 @@ impl Config {
             bus: _,
             cache: _,
             main: _,
+            energy: _,
+            area: _,
         } = self;
         (buffer_octets, step_limit) == (&other.buffer_octets, &other.step_limit)
             && arithmetic == &other.arithmetic

@@ -11,6 +11,7 @@ mod prerun;
 mod record;
 mod recorded;
 mod recording;
+pub mod weigh;
 
 use std::cell::RefCell;
 use std::sync::Arc;

@@ -40,6 +40,9 @@ pub struct CompareArguments {
     /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
+    /// Adds nanojoules a pixel by the published tables that give least and most.
+    #[arg(long, help_heading = "Results")]
+    energy: bool,
     /// Prints the result as JSON.
     #[arg(long, conflicts_with = "markdown", help_heading = "Results")]
     json: bool,
@@ -100,8 +103,8 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
     }
     match (arguments.json, arguments.markdown) {
         (true, _) => terminal.print(&result::json(&WithSettings::new(&comparison, settings)))?,
-        (_, true) => terminal.print(&comparison.markdown())?,
-        _ => terminal.tell(&comparison.text())?,
+        (_, true) => terminal.print(&comparison.markdown(arguments.energy))?,
+        _ => terminal.tell(&comparison.text(arguments.energy))?,
     }
     Ok(Exit::Done)
 }

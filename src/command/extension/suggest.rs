@@ -111,7 +111,7 @@ pub(super) fn execute(arguments: &SuggestArguments, terminal: &mut Terminal) -> 
             terminal.print(&json(result))?;
         }
         false => {
-            let all = format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(), names.join(", "));
+            let all = format!("{}\n{}written: {}\n", text(&suggestions), comparison.text(false), names.join(", "));
             terminal.tell(&all)?;
         }
     }

@@ -136,6 +136,8 @@ mod tests {
         config.units.0[Class::Add] = Law::times(Growth::Inverse, 96);
         config.clocks.0[Class::Mul] = Law::Grown { growth: Growth::Linear, times: 1, by: 4, plus: 2 };
         config.main.traffic = false;
+        let energy = "tables = \"aladdin\"\nmul = \"1.5/32 b pJ; a paper, table 2\"\nmove = \"none\"\n";
+        config.energy = parse(&format!("[energy]\n{energy}")).expect("it is right").energy;
         assert_eq!(parse(&config.text()), Ok(config));
         assert_eq!(parse(&Config::default().text()), Ok(Config::default()));
     }
@@ -160,6 +162,15 @@ mod tests {
                 "2048000 for words of 32 bits, but may be at most 1000000",
             ),
             ("[clocks]\nmul = \"linear 2 3\"", "m.toml:2:7", "no whole number from 1"),
+            ("[energy]\nmul = \"0.2 b pJ\"", "m.toml:2:7", "a line is a figure, a unit, `;` and where it comes from"),
+            ("[energy]\nmul = \"0.2 b um2; me\"", "m.toml:2:7", "it is one of aJ, fJ, pJ, nJ"),
+            (
+                "[area]\nmul = 12",
+                "m.toml:2:7",
+                "a text such as \"0.003 b um2; my synthesis\" is expected, not number `12`",
+            ),
+            ("[energy]\ntables = \"horowits\"", "m.toml:2:10", "did you mean `horowitz`?"),
+            ("[energy]\nmull = \"none\"", "m.toml", "did you mean `mul`?"),
             ("[units]\nmul = 0", "m.toml:2:7", "the nearest possible value is 1"),
             ("[arithmetic]\nquantization = \"RNG\"", "m.toml:2:16", "did you mean `RND`?"),
             ("cores = \"four\"", "m.toml:1:9", ""),

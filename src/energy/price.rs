@@ -1,0 +1,213 @@
+//! Prices of a machine's items by a published table and the machine's own lines, each with its source.
+
+use emu::machine::Config;
+use emu::machine::config::formula::{Dimension, FigureLine};
+use emu::machine::config::ledger::LineChoice;
+use emu::machine::config::published::{PUBLISHED, PublishedTable};
+use isa::Class;
+
+use super::activity::{Activity, INTEGER_BITS, Width};
+
+/// Price of an item.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ItemPrice {
+    /// Name of the item, as a machine file has it.
+    pub item: &'static str,
+    /// Attojoules or square nanometres of one, by [`Width`]; all the same where the item has no width of its own.
+    pub figures: [u64; Width::ALL.len()],
+    /// Formula and unit, as they are written.
+    pub formula: String,
+    /// Source of the figure.
+    pub source: String,
+    /// True where no line was published, so that the figure is put together from others.
+    pub is_derived: bool,
+}
+
+/// A published table on a machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Pricing<'c> {
+    config: &'c Config,
+    dimension: Dimension,
+    /// The table.
+    pub table: &'static PublishedTable,
+}
+
+impl<'c> Pricing<'c> {
+    /// Pricings of energy or area by each table that the machine names.
+    pub fn all(config: &'c Config, dimension: Dimension) -> Vec<Pricing<'c>> {
+        let tables = match dimension {
+            Dimension::Energy => &config.energy.tables,
+            Dimension::Area => &config.area.tables,
+        };
+        tables.iter().map(|&place| Pricing { config, dimension, table: PUBLISHED[place] }).collect()
+    }
+
+    /// Bits of a word of the machine.
+    pub fn word(&self) -> u32 {
+        self.config.arithmetic.word
+    }
+
+    /// The line of an item: the machine's own, the table's, or that of another table; `None` where nobody has one.
+    fn line(&self, item: &str) -> Option<&'c FigureLine> {
+        let config = self.config;
+        let choice = match self.dimension {
+            Dimension::Energy => config.energy.line(item),
+            Dimension::Area => config.area.line(item),
+        };
+        let tables: Vec<&'static PublishedTable> = match choice? {
+            LineChoice::Own(line) => return Some(line),
+            LineChoice::Nothing => return None,
+            LineChoice::AsTables => vec![self.table],
+            LineChoice::Tables(places) => places.iter().map(|&place| PUBLISHED[place]).collect(),
+        };
+        let mut first =
+            tables.iter().copied().filter(|table| std::ptr::eq(*table, self.table)).chain(tables.iter().copied());
+        let named = first.find_map(|table| table.line(self.dimension, item));
+        named.or_else(|| PUBLISHED.iter().find_map(|table| table.line(self.dimension, item)))
+    }
+
+    /// Nothing is to be counted for an item, as the machine's file says.
+    fn is_left_out(&self, item: &str) -> bool {
+        let choice = match self.dimension {
+            Dimension::Energy => self.config.energy.line(item),
+            Dimension::Area => self.config.area.line(item),
+        };
+        choice == Some(&LineChoice::Nothing)
+    }
+
+    /// Bits of the memory that a bit of an item is in; 1 for what is no memory.
+    fn memory_bits(&self, item: &str) -> u64 {
+        match item {
+            "buffer" => 8 * u64::from(self.config.buffer_octets),
+            "cache" => 8 * u64::from(self.config.cache.octets),
+            _ => 1,
+        }
+    }
+
+    /// Price of an item; `None` where there is no line and nothing that it could be derived from.
+    pub fn price(&self, item: &'static str) -> Option<ItemPrice> {
+        let word = self.config.arithmetic.word;
+        let figures = |line: &FigureLine| {
+            let at = |width: Width| line.at(width.bits(word), self.memory_bits(item));
+            let [a, b, c] = Width::ALL.map(at);
+            Some([a?, b?, c?])
+        };
+        match self.line(item) {
+            Some(line) => Some(ItemPrice {
+                item,
+                figures: figures(line)?,
+                formula: line.formula().to_owned(),
+                source: line.source().to_owned(),
+                is_derived: false,
+            }),
+            None if self.is_left_out(item) => None,
+            None => self.derived(item),
+        }
+    }
+
+    /// Price of an item without a line, from those of others.
+    fn derived(&self, item: &'static str) -> Option<ItemPrice> {
+        let made = |figures, formula: &str, source: String| {
+            Some(ItemPrice { item, figures, formula: formula.to_owned(), source, is_derived: true })
+        };
+        let word = self.config.arithmetic.word;
+        match (item, self.dimension) {
+            ("div", dimension) => {
+                let (sub, cmp) = (self.price("sub")?, self.price("cmp")?);
+                let step = |at: usize| sub.figures[at] + cmp.figures[at];
+                let sources = format!("sub: {}; cmp: {}", sub.source, cmp.source);
+                match dimension {
+                    Dimension::Energy => {
+                        let steps = |width: Width| u64::from(width.bits(word)) * step(width as usize);
+                        let source = format!(
+                            "derived: no published line; b bit-serial steps, each a subtraction and a comparison ({sources})"
+                        );
+                        made(Width::ALL.map(steps), "b (sub + cmp)", source)
+                    }
+                    Dimension::Area => {
+                        let source = format!(
+                            "derived: no published line; a subtractor and a comparator, used a step a bit ({sources})"
+                        );
+                        made(Width::ALL.map(|width| step(width as usize)), "sub + cmp", source)
+                    }
+                }
+            }
+            ("address", Dimension::Energy) => {
+                let add = self.price("add")?;
+                let source = format!("derived: an addition of {INTEGER_BITS} bits ({})", add.source);
+                made([add.figures[Width::Integer as usize]; 3], "add", source)
+            }
+            ("buffer" | "cache", Dimension::Area) => {
+                let register = self.price("register")?;
+                let source = format!(
+                    "derived: no published line; as bits of registers, which is an upper bound ({})",
+                    register.source
+                );
+                made(register.figures, "register", source)
+            }
+            _ => None,
+        }
+    }
+
+    /// Prices of energy, as an activity meets them.
+    pub fn prices(&self) -> Prices {
+        Prices {
+            classes: std::array::from_fn(|at| self.price(class_item(Class::ALL[at])?)),
+            register: self.price("register"),
+            buffer: self.price("buffer"),
+            cache: self.price("cache"),
+            bus: self.price("bus"),
+            memory: self.price("memory"),
+        }
+    }
+}
+
+/// The item that prices a class; `None` for classes whose bits are priced instead.
+pub fn class_item(class: Class) -> Option<&'static str> {
+    match class {
+        Class::Mem | Class::Octet | Class::Local => None,
+        class => Some(class.name()),
+    }
+}
+
+/// Energies of everything that an activity consists of.
+#[derive(Clone, Debug)]
+pub struct Prices {
+    /// Of an operation of each class.
+    pub classes: [Option<ItemPrice>; Class::ALL.len()],
+    /// Of a bit of a register.
+    pub register: Option<ItemPrice>,
+    /// Of a bit of a buffer.
+    pub buffer: Option<ItemPrice>,
+    /// Of a bit of a cache.
+    pub cache: Option<ItemPrice>,
+    /// Of a bit on the bus.
+    pub bus: Option<ItemPrice>,
+    /// Of a bit of global memory.
+    pub memory: Option<ItemPrice>,
+}
+
+/// The figure of an item whose width does not matter; nothing where it has no price.
+pub fn figure(price: Option<&ItemPrice>) -> i128 {
+    price.map_or(0, |price| price.figures[0].into())
+}
+
+impl Prices {
+    /// Attojoules of an activity, all octets over the bus and none from a cache.
+    pub fn energy(&self, activity: &Activity) -> i128 {
+        let mut sum = 0;
+        for (price, counts) in self.classes.iter().zip(&activity.operations) {
+            let Some(price) = price else { continue };
+            sum += counts
+                .iter()
+                .zip(price.figures)
+                .map(|(&count, figure)| i128::from(count) * i128::from(figure))
+                .sum::<i128>();
+        }
+        let memory = i128::from(8 * activity.memory_octets);
+        sum + i128::from(activity.register_bits) * figure(self.register.as_ref())
+            + i128::from(activity.buffer_bits) * figure(self.buffer.as_ref())
+            + memory * figure(self.memory.as_ref())
+            + (memory + i128::from(8 * activity.message_octets)) * figure(self.bus.as_ref())
+    }
+}

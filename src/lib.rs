@@ -9,6 +9,8 @@ pub mod benchmark;
 pub mod command;
 pub mod cores;
 #[cfg(feature = "cli")]
+pub mod debug;
+#[cfg(feature = "cli")]
 pub mod difference;
 pub mod drawing;
 pub mod energy;
@@ -24,6 +26,8 @@ pub mod manual;
 pub mod message;
 pub mod numeral;
 pub mod profiles;
+#[cfg(feature = "cli")]
+pub mod registers;
 pub mod result;
 pub mod settings;
 pub mod skips;

@@ -54,6 +54,32 @@ fn every_case_does_what_it_says_on_every_engine() {
     );
 }
 
+/// Each instruction has an example in the manual, which does what it says on every engine.
+#[test]
+fn examples_of_the_manual_do_what_they_say() {
+    let mut failures = String::new();
+    let mut named = BTreeSet::new();
+    for (name, program) in lancer::manual::examples::all() {
+        assert!(named.insert(name), "{name} has two examples");
+        let case = Case::parse(format!("example of {name}"), Default::default(), program.to_owned());
+        let case = case.unwrap_or_else(|problem| panic!("{problem}"));
+        let is_about_it = program.lines().any(|line| {
+            let claim = line.split_once(';').map_or("", |(_, claim)| claim);
+            line.split_whitespace().any(|word| word == name) && !claim.trim().is_empty()
+        });
+        assert!(is_about_it || ["halt", "ret"].contains(&name), "the example of {name} says nothing of it");
+        for engine in ENGINES {
+            for difference in differences(&case, &observe(&case, engine)) {
+                let (line, problem) = (difference.line, &difference.problem);
+                let _ = writeln!(failures, "example of {name}, line {line}: {problem} ({})", engine.name);
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures}");
+    let missing: Vec<&str> = INSTRUCTIONS.iter().map(|row| &*row.name).filter(|name| !named.contains(name)).collect();
+    assert!(missing.is_empty(), "src/manual/examples has no example of {missing:?}");
+}
+
 #[test]
 fn a_third_of_the_cases_are_about_errors() {
     let cases = case::all();

@@ -16,12 +16,15 @@ use crate::explain;
 use crate::expression::{EvaluationStep, Expression};
 use crate::extension::Template;
 use crate::frame::OpenText;
+use crate::holding::{AliasSpan, OpenHolding};
 use crate::instruction::Argument;
 use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
 use crate::line::OriginLine;
 use crate::listing::Record;
+use crate::live_name::NameUse;
 use crate::macros::Macro;
 use crate::message::{Among, At, Messages, Problem};
+use crate::operand::Register;
 use crate::pseudo::PSEUDOS;
 use crate::region::OpenRegion;
 use crate::structure::OpenStructure;
@@ -56,6 +59,14 @@ pub(crate) struct Assembler<'a> {
     pub names: Names,
     pub macros: HashMap<Rc<str>, Rc<Macro>>,
     pub aliases: Vec<HashMap<Rc<str>, Alias>>,
+    /// All names of registers that there were, in order.
+    pub alias_spans: Vec<AliasSpan>,
+    /// Formats of registers, a scope each.
+    pub holdings: Vec<HashMap<Register, OpenHolding>>,
+    /// Uses of names of registers by the words of the program.
+    pub name_uses: Vec<NameUse>,
+    /// The register of which the statement said what it holds.
+    pub held: Option<(Register, Option<Name>)>,
     pub frames: Vec<OpenText>,
     pub section: Section,
     pub structure: Option<OpenStructure>,
@@ -108,6 +119,10 @@ pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
         names: Names::default(),
         macros: HashMap::new(),
         aliases: vec![HashMap::new()],
+        alias_spans: Vec::new(),
+        holdings: vec![HashMap::new()],
+        name_uses: Vec::new(),
+        held: None,
         frames: Vec::new(),
         section: Section::Code,
         structure: None,
@@ -252,6 +267,9 @@ impl Assembler<'_> {
     }
 
     pub(crate) fn finish(mut self) -> Attempt {
+        // Names that a mistake may have meant are sought among those of the outermost scope.
+        let outermost: Vec<Rc<str>> = self.aliases.iter().flat_map(|scope| scope.keys().cloned()).collect();
+        self.finish_naming();
         let symbols = self.map();
         self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
         // Constants that were known late appear in the listing with their values.
@@ -279,7 +297,7 @@ impl Assembler<'_> {
                 Among::Formats => self.names.formats().collect(),
                 Among::Sizes => self.names.sized().collect(),
                 Among::Registers => {
-                    let aliases = self.aliases.iter().flat_map(|scope| scope.keys().map(|name| &**name));
+                    let aliases = outermost.iter().map(|name| &**name);
                     aliases.chain(registers.iter().map(String::as_str)).collect()
                 }
             }

@@ -43,6 +43,11 @@ impl Decimal {
         Ok(Decimal { is_negative: false, integer, fraction, places: places as u32 })
     }
 
+    /// Number of the same magnitude, negated where it is to be negative.
+    pub fn signed(self, is_negative: bool) -> Decimal {
+        Decimal { is_negative, ..self }
+    }
+
     /// The nearest multiple of 2^-`bits` (at most 63), as a count of them; ties go up. `None` beyond 64 bits.
     ///
     /// -1.3 with 2 bits: 0.3 is 1 quarter and 0.2 of one, so the number is -5 quarters; -1.375 lies half-way between -6 and -5 and becomes -5,

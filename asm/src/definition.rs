@@ -18,6 +18,8 @@ use crate::symbol::{Name, SymbolValue};
 pub(crate) struct Alias {
     pub register: Register,
     pub at: At,
+    /// Number among all names of registers.
+    pub number: usize,
 }
 
 impl Assembler<'_> {
@@ -219,8 +221,11 @@ impl Assembler<'_> {
                     .also(Some(other.at), "first definition")
                     .hint(format!("`.unreg {text}` frees the name")))
             }
-            _ => {
-                scope.insert(text.into(), Alias { register, at });
+            Some(_) => Ok(()),
+            None => {
+                let number = self.begin_alias(text, register);
+                let scope = self.aliases.last_mut().expect("the outermost scope is never closed");
+                scope.insert(text.into(), Alias { register, at, number });
                 Ok(())
             }
         }
@@ -230,7 +235,8 @@ impl Assembler<'_> {
     pub(crate) fn remove_alias(&mut self, cursor: &mut Cursor) -> Parsed<()> {
         let (text, at) = cursor.name("a register's other name")?;
         cursor.end()?;
-        if self.aliases.iter_mut().rev().any(|scope| scope.remove(text).is_some()) {
+        if let Some(alias) = self.aliases.iter_mut().rev().find_map(|scope| scope.remove(text)) {
+            self.end_alias(alias.number);
             return Ok(());
         }
         let message = format!("`{text}` is not the name of a register here");

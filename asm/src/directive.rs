@@ -20,6 +20,7 @@ enum Action {
     Format,
     Reg,
     Unreg,
+    Holds,
     Include,
     Struct,
     Field,
@@ -64,6 +65,7 @@ impl Action {
                 | Action::Org
                 | Action::Open { .. }
                 | Action::Close { .. }
+                | Action::Holds
                 | Action::End
         )
     }
@@ -103,6 +105,8 @@ directives! {
         "Names a fixed-point format with that many fraction bits, for literals such as `0.5:name`.";
     ".reg" "name, register" Action::Reg, "Another name of a register, up to the end of the function around it.";
     ".unreg" "name" Action::Unreg, "Ends what `.reg` began.";
+    ".holds" "register, format" Action::Holds,
+        "Says what format the number in a register has from here on, up to the end of the function around it; without a format, that it has none. It makes no word: traces and debuggers show real values by it.";
     ".include" "\"file\"" Action::Include, "Reads another file here.";
     ".struct" "name" Action::Struct, "Begins a structure; its fields are constants `name.field`, its size is `sizeof(name)`.";
     ".field" "name, octets, count" Action::Field, "A field of that many octets, or of that many times `count`, at the next offset.";
@@ -233,6 +237,7 @@ impl Assembler<'_> {
             Action::Format => self.define_format(cursor),
             Action::Reg => self.define_alias(cursor),
             Action::Unreg => self.remove_alias(cursor),
+            Action::Holds => self.hold(cursor),
             Action::Include => self.include(at, cursor),
             Action::Struct => self.open_structure(at, cursor),
             Action::Field => self.field(at, cursor),

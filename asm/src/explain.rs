@@ -249,6 +249,15 @@ been given, writes every destination on every way to an outcome, and neither cal
 "The program says so itself, by `.warning`.
 
     .warning \"built without shadows\"";
+    MEETING "W002" "two names of one register meet"
+"A register is read by a name although on every way there it was written last by another name that is known at the
+same place: what the first name meant is gone, or both mean the same and one is enough. Calls are followed, too.
+
+    .reg count, s5
+    .reg total, s5
+    movi count, 3
+    movi total, 0
+    bnez count, .+1         ; reads the 0 of `total`";
 }
 
 #[cfg(test)]

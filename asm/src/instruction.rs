@@ -27,7 +27,7 @@ pub(crate) enum Value {
 }
 
 /// The description of a kind of operand, for messages and manuals.
-pub(crate) fn describe(kind: Kind) -> &'static str {
+pub fn describe(kind: Kind) -> &'static str {
     match kind {
         Kind::S => "a scalar register",
         Kind::V => "a vector register",
@@ -99,6 +99,7 @@ impl Assembler<'_> {
             self.emit(0, cursor.line);
             return;
         }
+        let (first_use, first_word) = (self.name_uses.len(), self.program.words.len() as u32);
         let operands = match self.operands(cursor) {
             Ok(operands) => operands,
             Err(problem) => {
@@ -112,6 +113,7 @@ impl Assembler<'_> {
             (None, Some(pseudo)) => self.pseudo_instruction(pseudo, &operands, at, cursor),
             (None, None) => unreachable!("refused above"),
         }
+        self.place_uses(first_use, first_word);
     }
 
     /// The first word of a statement means nothing.

@@ -20,6 +20,8 @@ pub(crate) struct Record {
     pub made: std::ops::Range<u32>,
     /// The number that it names.
     pub value: Option<i64>,
+    /// Note on a register, from `.holds`.
+    pub note: Option<String>,
     /// The text with arguments put in, where that differs from the file's.
     pub text: Option<Arc<str>>,
 }
@@ -68,6 +70,9 @@ fn made(attempt: &Attempt, record: &Record) -> Vec<String> {
     let range = record.made.start as usize..record.made.end as usize;
     if let Some(value) = record.value {
         return vec![format!("{:>13}= {value}", "")];
+    }
+    if let Some(note) = &record.note {
+        return vec![format!("{:>13}  {note}", "")];
     }
     match record.section {
         Section::Code => {

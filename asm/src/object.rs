@@ -12,15 +12,22 @@
 //! | lines | for each word a source (u16) and a line from 1 (u32) |
 //! | regions | number (u32), each a text, 1 for a function or 0 (u8), and the region around it (u16) |
 //! | places | for each word its innermost region (u16) |
+//! | formats | number (u32), each a text and its fraction bits (u8), in the order of the texts |
+//! | names | number (u32), each a text, a register's file (u8, ASCII) and number (u8), first word and word behind (u32 each) |
+//! | holds | number (u32), each a register, a text (empty for no format), first word and word behind |
+//! | records | number (u32), each a text, octets (u32), and its fields: number (u32), each a text, offset and octets (u32 each) |
 //! | check | CRC-32 (IEEE) of all octets before |
 //!
-//! No region is 65535.
+//! No region is 65535. Version 1 ends behind the places; such files are read as programs of which nothing is known of formats, names and
+//! structures.
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use isa::Program;
+use isa::naming::{FieldMap, HeldFormat, NamedRegister, RecordMap, RegisterId};
 use isa::program::{Line, Region};
 use messages::Source;
 use nom::bytes::complete::take;
@@ -28,13 +35,13 @@ use nom::multi::length_data;
 use nom::number::complete::{le_i64, le_u8, le_u16, le_u32};
 use nom::{IResult, Parser};
 
-use crate::limits::{BUFFER, REGIONS, SOURCES, WORDS};
+use crate::limits::{BUFFER, FRACTION_BITS, REGIONS, SOURCES, WORDS};
 
 /// The first octets of every object file.
 pub const MAGIC: &[u8; 8] = b"lancer\x1a\n";
 
-/// The version that is written, and the only one that is read.
-pub const VERSION: u16 = 1;
+/// The version that is written; all from 1 on are read.
+pub const VERSION: u16 = 2;
 
 const NONE: u16 = u16::MAX;
 
@@ -58,7 +65,7 @@ impl fmt::Display for ObjectError {
         match self {
             ObjectError::Magic => write!(f, "this is not an object file of lancer"),
             ObjectError::Version(version) => {
-                write!(f, "the object file has version {version} of the format, but only {VERSION} is known here")
+                write!(f, "the object file has version {version} of the format, but only 1 to {VERSION} are known here")
             }
             ObjectError::Truncated => write!(f, "the object file ends in the middle"),
             ObjectError::Checksum => write!(f, "the object file is damaged: its checksum does not hold"),
@@ -117,6 +124,40 @@ pub fn write(program: &Program) -> Vec<u8> {
         file.extend(region.parent.unwrap_or(NONE).to_le_bytes());
     }
     program.region_of.iter().for_each(|region| file.extend(region.unwrap_or(NONE).to_le_bytes()));
+    // Write what readers are told of registers and records.
+    count(&mut file, program.formats.len());
+    for (name, bits) in &program.formats {
+        text(&mut file, name);
+        file.push(u8::try_from(*bits).expect("formats have at most 63 bits"));
+    }
+    let register = |file: &mut Vec<u8>, (letter, number): RegisterId| file.extend([letter as u8, number]);
+    let words = |file: &mut Vec<u8>, words: &Range<u32>| {
+        file.extend(words.start.to_le_bytes());
+        file.extend(words.end.to_le_bytes());
+    };
+    count(&mut file, program.register_names.len());
+    for named in &program.register_names {
+        text(&mut file, &named.name);
+        register(&mut file, named.register);
+        words(&mut file, &named.words);
+    }
+    count(&mut file, program.holds.len());
+    for held in &program.holds {
+        register(&mut file, held.register);
+        text(&mut file, held.format.as_deref().unwrap_or(""));
+        words(&mut file, &held.words);
+    }
+    count(&mut file, program.records.len());
+    for record in &program.records {
+        text(&mut file, &record.name);
+        file.extend(record.octets.to_le_bytes());
+        count(&mut file, record.fields.len());
+        for field in &record.fields {
+            text(&mut file, &field.name);
+            file.extend(field.offset.to_le_bytes());
+            file.extend(field.octets.to_le_bytes());
+        }
+    }
     // The checksum covers everything before it.
     file.extend(crc32fast::hash(&file).to_le_bytes());
     file
@@ -132,14 +173,14 @@ pub fn read(file: &[u8]) -> Result<Program, ObjectError> {
         return Err(ObjectError::Magic);
     }
     let (_, version) = le_u16::<_, nom::error::Error<&[u8]>>(rest).map_err(|_| ObjectError::Truncated)?;
-    if version != VERSION {
+    if !(1..=VERSION).contains(&version) {
         return Err(ObjectError::Version(version));
     }
     // The last four octets are the checksum of what stands before them.
     let body_end = file.len().checked_sub(4).filter(|&end| end >= MAGIC.len() + 4).ok_or(ObjectError::Truncated)?;
     let (body, check) = file.split_at(body_end);
     let (rest, program) =
-        parts(&body[MAGIC.len() + 2..]).map_err(|_| damaged_or(body, check, ObjectError::Truncated))?;
+        parts(&body[MAGIC.len() + 2..], version).map_err(|_| damaged_or(body, check, ObjectError::Truncated))?;
     if crc32fast::hash(body).to_le_bytes() != check {
         return Err(ObjectError::Checksum);
     }
@@ -182,7 +223,7 @@ fn list<'a, T>(
     Ok((input, items))
 }
 
-fn parts(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
+fn parts(input: &[u8], version: u16) -> ObjectPiece<'_, Result<Program, &'static str>> {
     let (input, (reserved, entry, word_count)) = (le_u16, le_u32, le_u32).parse(input)?;
     // Sizes come from the file, so octets are taken before anything is allocated for them.
     let count = word_count as usize;
@@ -197,6 +238,7 @@ fn parts(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
     let (input, region_count) = le_u32(input)?;
     let (input, regions) = list(input, region_count as usize, |input| (text, le_u8, le_u16).parse(input))?;
     let (input, places) = list(input, count, le_u16)?;
+    let (input, naming) = if version == 1 { (input, Ok(Program::default())) } else { naming(input)? };
     let region = |number: u16| (number != NONE).then_some(number);
     // The shape was right; contents may still be wrong, which is another error.
     let build = || {
@@ -226,7 +268,63 @@ fn parts(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
             lines: lines.into_iter().map(|(source, line)| Line { source, line }).collect(),
             regions: regions.collect::<Result<_, _>>()?,
             region_of: places.into_iter().map(region).collect(),
+            ..naming?
         })
+    };
+    Ok((input, build()))
+}
+
+/// Parts that version 2 has behind the places, as a program that has nothing else.
+fn naming(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
+    let many = |input| le_u32(input).map(|(rest, number): (_, u32)| (rest, number as usize));
+    let (input, number) = many(input)?;
+    let (input, formats) = list(input, number, |input| (text, le_u8).parse(input))?;
+    let (input, number) = many(input)?;
+    let (input, names) = list(input, number, |input| (text, le_u8, le_u8, le_u32, le_u32).parse(input))?;
+    let (input, number) = many(input)?;
+    let (input, holds) = list(input, number, |input| (le_u8, le_u8, text, le_u32, le_u32).parse(input))?;
+    let (input, number) = many(input)?;
+    let (input, records) = list(input, number, |input| {
+        let (input, (name, octets)) = (text, le_u32).parse(input)?;
+        let (input, number) = many(input)?;
+        let (input, fields) = list(input, number, |input| (text, le_u32, le_u32).parse(input))?;
+        Ok((input, (name, octets, fields)))
+    })?;
+    let register = |file: u8, number: u8| {
+        let name = format!("{}{number}", char::from(file));
+        isa::parse_register(&name).ok_or("a register does not exist")
+    };
+    let build = || {
+        let mut program = Program::default();
+        for (name, bits) in formats {
+            let name = name?;
+            if i64::from(bits) > FRACTION_BITS {
+                return Err("a format has too many fraction bits");
+            }
+            if program.formats.last_key_value().is_some_and(|(last, _)| *last >= name) {
+                return Err("formats are out of order");
+            }
+            program.formats.insert(name, bits.into());
+        }
+        for (name, file, number, start, end) in names {
+            program.register_names.push(NamedRegister {
+                name: name?,
+                register: register(file, number)?,
+                words: start..end,
+            });
+        }
+        for (file, number, format, start, end) in holds {
+            let format = Some(format?).filter(|format| !format.is_empty());
+            program.holds.push(HeldFormat { register: register(file, number)?, format, words: start..end });
+        }
+        for (name, octets, fields) in records {
+            let field = |(name, offset, octets): (Result<String, &'static str>, u32, u32)| {
+                Ok(FieldMap { name: name?, offset, octets })
+            };
+            let fields = fields.into_iter().map(field).collect::<Result<_, &'static str>>()?;
+            program.records.push(RecordMap { name: name?, octets, fields });
+        }
+        Ok(program)
     };
     Ok((input, build()))
 }
@@ -249,6 +347,22 @@ fn consistent(program: &Program) -> Result<(), &'static str> {
             (program.regions.iter().enumerate())
                 .all(|(index, region)| region.parent.is_none_or(|parent| usize::from(parent) < index)),
             "a region is around itself",
+        ),
+        (
+            (program.register_names.iter().map(|named| &named.words))
+                .chain(program.holds.iter().map(|held| &held.words))
+                .all(|range| range.start < range.end && range.end as usize <= words),
+            "a register's name or format stands for no words",
+        ),
+        (
+            program.holds.iter().flat_map(|held| &held.format).all(|format| program.formats.contains_key(format)),
+            "a register holds a number of no format",
+        ),
+        (
+            (program.records.iter())
+                .flat_map(|record| record.fields.iter().map(move |field| (record, field)))
+                .all(|(record, field)| field.offset.checked_add(field.octets).is_some_and(|end| end <= record.octets)),
+            "a field lies outside of its structure",
         ),
     ];
     holds.into_iter().try_for_each(|(holds, what)| if holds { Ok(()) } else { Err(what) })

@@ -158,10 +158,15 @@ impl Assembler<'_> {
         Ok(ParsedOperand { written: Written::Number(expression), at: cursor.since(first), component })
     }
 
-    fn register_here(&self, cursor: &mut Cursor) -> Parsed<Option<(Register, At)>> {
+    fn register_here(&mut self, cursor: &mut Cursor) -> Parsed<Option<(Register, At)>> {
         let Some(token) = cursor.peek().filter(|token| token.kind == TokenKind::Name) else { return Ok(None) };
         let at = cursor.at(token);
         let register = self.register(cursor.text(token), at)?;
+        if self.body.is_none()
+            && let Some(number) = self.alias(cursor.text(token)).map(|alias| alias.number)
+        {
+            self.use_name(number, at);
+        }
         cursor.position += usize::from(register.is_some());
         match (&self.body, register) {
             (Some(template), Some(register)) => template.member(register, at, cursor).map(Some),

@@ -1,7 +1,5 @@
 //! Functions and regions: which stretch of code a word is counted for.
 
-use std::collections::HashMap;
-
 use isa::program::Region;
 
 use crate::assembler::{Assembler, Section};
@@ -60,7 +58,7 @@ impl Assembler<'_> {
         self.regions.push(OpenRegion { index, is_function, at: name_at });
         // Register names of a function end with it.
         if is_function {
-            self.aliases.push(HashMap::new());
+            self.open_scope();
         }
         header?;
         if self.section == Section::Buffer {
@@ -111,7 +109,7 @@ impl Assembler<'_> {
         if let Some(closed) = self.regions.pop()
             && closed.is_function
         {
-            self.aliases.pop();
+            self.close_scope();
         }
     }
 }

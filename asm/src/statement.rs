@@ -19,11 +19,14 @@ impl Assembler<'_> {
         let place = self.records.len();
         self.record(line);
         self.named = None;
+        self.held = None;
         self.read_line(line);
         // The record has the section behind the line, so that a line which changes it shows no address.
         let (section, end) = (self.section, self.location() as u32);
         let value = self.named.map(|name| self.names.get(name).map(|symbol| symbol.value.clone()));
+        let note = self.held.take().map(|(register, format)| self.held_note(register, format));
         let record = &mut self.records[place];
+        record.note = note;
         if record.section == section {
             record.made.end = end;
         }
@@ -47,6 +50,7 @@ impl Assembler<'_> {
             section: self.section,
             made: here..here,
             value: None,
+            note: None,
             text: line.is_substituted().then(|| Arc::from(&*line.text)),
         });
     }

@@ -1,5 +1,7 @@
 //! Structures: names for the octets of records, down to odd offsets.
 
+use isa::naming::{FieldMap, RecordMap};
+
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::data::next_multiple;
@@ -13,6 +15,7 @@ use crate::symbol::SymbolValue;
 pub(crate) struct OpenStructure {
     name: String,
     size: i64,
+    fields: Vec<FieldMap>,
     pub at: At,
 }
 
@@ -33,7 +36,7 @@ impl Assembler<'_> {
                 .also(Some(at), "the next one starts here"));
         }
         let (name, name_at) = *header.as_ref().unwrap_or(&("", at));
-        self.structure = Some(OpenStructure { name: name.into(), size: 0, at: name_at });
+        self.structure = Some(OpenStructure { name: name.into(), size: 0, fields: Vec::new(), at: name_at });
         header?;
         let interned = self.names.intern(name);
         if self.names.size(interned).is_some() {
@@ -62,6 +65,10 @@ impl Assembler<'_> {
             let name = self.define(&name, name_at, SymbolValue::Constant(offset))?;
             self.named = Some(name);
             self.names.set_size(name, octets);
+            if let Some(open) = &mut self.structure {
+                let field = FieldMap { name: text.into(), offset: offset as u32, octets: octets as u32 };
+                open.fields.push(field);
+            }
         }
         size.map(|_| ())
     }
@@ -121,6 +128,8 @@ impl Assembler<'_> {
             let name = self.names.intern(&closed.name);
             if self.names.size(name).is_none() {
                 self.names.set_size(name, closed.size);
+                let OpenStructure { name, size, fields, .. } = closed;
+                self.program.records.push(RecordMap { name, octets: size as u32, fields });
             }
         }
         cursor.end()

@@ -83,6 +83,11 @@ impl Names {
         self.formats.get(&name).copied()
     }
 
+    /// Fraction bits of the format of a text.
+    pub fn format_named(&self, text: &str) -> Option<u32> {
+        self.by_text.get(text).and_then(|&name| self.format(name))
+    }
+
     /// Defines a format.
     pub fn set_format(&mut self, name: Name, bits: u32) {
         self.formats.insert(name, bits);

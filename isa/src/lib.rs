@@ -4,6 +4,7 @@ pub mod class;
 pub mod definition;
 pub mod extension;
 mod isa;
+pub mod naming;
 pub mod number;
 pub mod pattern;
 pub mod program;

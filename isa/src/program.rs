@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use messages::Source;
 
+use crate::naming::{HeldFormat, NamedRegister, RecordMap};
+
 /// A line of one of a program's sources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Line {
@@ -45,6 +47,14 @@ pub struct Program {
     pub regions: Vec<Region>,
     /// The innermost region of each word.
     pub region_of: Vec<Option<u16>>,
+    /// Number formats by name, with their fraction bits (0 to 63).
+    pub formats: BTreeMap<String, u32>,
+    /// Other names of registers, with the words where they are known.
+    pub register_names: Vec<NamedRegister>,
+    /// Formats of what registers hold, with the words where that is said.
+    pub holds: Vec<HeldFormat>,
+    /// Structures of records in memory.
+    pub records: Vec<RecordMap>,
 }
 
 impl Program {

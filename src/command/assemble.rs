@@ -64,16 +64,16 @@ pub struct AssembleArguments {
 pub(super) struct SourceArguments {
     /// Constant that is known before the first line; may be repeated.
     #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = definition)]
-    defines: Vec<(String, i64)>,
+    pub(super) defines: Vec<(String, i64)>,
     /// Number format that is known before the first line, by its fraction bits; may be repeated.
     #[arg(long = "format", value_name = "NAME=BITS", value_parser = definition)]
-    formats: Vec<(String, i64)>,
+    pub(super) formats: Vec<(String, i64)>,
     /// Folder in which included files are looked for, after that of the including file; may be repeated.
     #[arg(short = 'I', long = "include", value_name = "FOLDER")]
-    folders: Vec<PathBuf>,
+    pub(super) folders: Vec<PathBuf>,
 }
 
-fn definition(text: &str) -> Result<(String, i64), String> {
+pub(super) fn definition(text: &str) -> Result<(String, i64), String> {
     let (name, value) = arguments::setting::<String>(text)?;
     asm::check_outside_name(&name, &Isa::base())?;
     Ok((name, arguments::numbered(&value)?))
@@ -99,7 +99,7 @@ pub(super) fn assembled(
 }
 
 /// Assembles a source as far as that is possible.
-fn attempted(source: &Arc<Source>, arguments: &SourceArguments, isa: &Isa) -> Attempt {
+pub(super) fn attempted(source: &Arc<Source>, arguments: &SourceArguments, isa: &Isa) -> Attempt {
     let include = |wanted: &str, from: &str| included(wanted, from, &arguments.folders);
     let (defines, formats) = (arguments.defines.clone(), arguments.formats.clone());
     asm::attempt(source, isa, &asm::Options { include: &include, defines, formats })

@@ -35,7 +35,7 @@ pub(super) fn execute(arguments: &DisassembleArguments, terminal: &mut Terminal)
     files::check_spared(arguments.output.as_deref(), [&arguments.file]).map_err(Failure::usage)?;
     let isa = arguments.extensions.isa()?;
     let program = match load_any(&arguments.file)? {
-        LoadedFile::Program(program) => program,
+        LoadedFile::Program(program) => *program,
         LoadedFile::Other(octets) => ProgramFile::Binary.decode(&arguments.file, octets)?,
     };
     let text = asm::disassemble_program(&program, &isa);

@@ -1,23 +1,26 @@
-//! `lancer explain`: what a code of the assembler's messages means, with an example.
+//! `lancer explain`: what a code of the assembler's messages means, or an instruction does, with an example.
 
 use asm::explain::{CODES, find};
 use clap::Args;
+use isa::Isa;
 use messages::{Diagnostic, did_you_mean};
 
 use crate::failure::{Exit, Failure};
+use crate::manual;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
 Examples:
   lancer explain E003
+  lancer explain vdot         as lancer manual vdot
   lancer explain              all codes, a line each";
 
-/// Explains a code of the assembler's messages.
+/// Explains a code of the assembler's messages, or an instruction, a directive or a function.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct ExplainArguments {
-    /// The code, such as E003; without one, all codes are listed.
-    #[arg(value_name = "CODE")]
+    /// Code such as E003, or a name such as vdot; without one, all codes are listed.
+    #[arg(value_name = "CODE|NAME")]
     code: Option<String>,
 }
 
@@ -28,9 +31,16 @@ pub(super) fn execute(arguments: &ExplainArguments, terminal: &mut Terminal) -> 
         terminal.tell(&lines.concat())?;
         return Ok(Exit::Done);
     };
+    let isa = Isa::base();
+    if let Some(page) = manual::page(name, &isa) {
+        terminal.print(&page)?;
+        return Ok(Exit::Done);
+    }
     let Some(code) = find(name) else {
-        let message = Diagnostic::error(format!("`{name}` is no code of the assembler's messages"));
-        return Err(match did_you_mean(name, CODES.iter().map(|code| code.code)) {
+        let message = Diagnostic::error(format!("`{name}` is no code of the assembler's messages, and no instruction"));
+        let names = manual::names(&isa);
+        let known = CODES.iter().map(|code| code.code).chain(names.iter().map(String::as_str));
+        return Err(match did_you_mean(name, known) {
             Some(hint) => message.hint(format!("{hint} `lancer explain` lists all")),
             None => message.hint("`lancer explain` lists all"),
         }

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Command, CommandFactory, ValueEnum};
 use clap_mangen::Man;
+use isa::Isa;
+use messages::{Diagnostic, did_you_mean};
 
 use super::Lancer;
 use crate::arguments::ExtensionArguments;
@@ -13,6 +15,7 @@ use crate::{files, manual};
 
 const EXAMPLES: &str = "\
 Examples:
+  lancer manual vdot                            # one instruction; also li, .holds and the like
   lancer manual | less
   lancer manual --as html -o manual.html
   lancer manual --as man -o lancer.1";
@@ -32,6 +35,9 @@ enum ManualForm {
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct ManualArguments {
+    /// Instruction, pseudo-instruction, directive or function of expressions; without one, all of the manual.
+    #[arg(value_name = "TOPIC")]
+    topic: Option<String>,
     /// Form to write.
     #[arg(long = "as", value_name = "FORM", value_enum, default_value = "markdown")]
     form: ManualForm,
@@ -45,6 +51,18 @@ pub struct ManualArguments {
 /// Prints or writes the manual.
 pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let isa = arguments.extensions.isa()?;
+    if let Some(topic) = &arguments.topic {
+        if arguments.form != ManualForm::Markdown {
+            let message = Diagnostic::error(format!("`{topic}` alone has no other form than text"));
+            return Err(Failure::usage(message.hint("leave out `--as`, or the topic")));
+        }
+        let page = page_of(topic, &isa)?;
+        match &arguments.output {
+            Some(path) => files::write(path, page.as_bytes())?,
+            None => terminal.print(&page)?,
+        }
+        return Ok(Exit::Done);
+    }
     let octets = match arguments.form {
         ManualForm::Markdown => manual::markdown(&isa).into_bytes(),
         ManualForm::Html => manual::html(&isa).into_bytes(),
@@ -55,6 +73,21 @@ pub(super) fn execute(arguments: &ManualArguments, terminal: &mut Terminal) -> R
         None => terminal.print_octets(&octets)?,
     }
     Ok(Exit::Done)
+}
+
+/// The page of a topic.
+///
+/// # Errors
+/// A name that is none, with one that is near.
+pub(super) fn page_of(topic: &str, isa: &Isa) -> Result<String, Failure> {
+    manual::page(topic, isa).ok_or_else(|| {
+        let names = manual::names(isa);
+        let message = Diagnostic::error(format!("`{topic}` is no instruction, directive or function of the assembler"));
+        match did_you_mean(topic, names.iter().map(String::as_str)) {
+            Some(hint) => message.hint(hint).into(),
+            None => message.hint("`lancer manual` has an index of all names").into(),
+        }
+    })
 }
 
 /// The man page of all commands in one: that of `lancer`, then a section for each command below it.

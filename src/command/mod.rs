@@ -8,6 +8,7 @@ mod assemble_result;
 mod bench;
 mod completions;
 mod cores;
+mod debug;
 mod demo;
 mod diff;
 mod disassemble;
@@ -82,6 +83,7 @@ enum Command {
     Cores(Box<cores::CoresArguments>),
     Sweep(sweep::SweepArguments),
     Trace(Box<trace::TraceArguments>),
+    Debug(Box<debug::DebugArguments>),
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
@@ -172,6 +174,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Sweep(arguments)) => sweep::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
+        Some(Command::Debug(arguments)) => debug::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
         Some(Command::Diff(arguments)) => diff::execute(arguments, terminal),

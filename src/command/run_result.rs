@@ -1,21 +1,19 @@
 //! Results of `lancer run`: as JSON and as tables.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use emu::machine::one_core::OneCoreRun;
 use emu::profile::Profile;
-use emu::registers::Registers;
-use isa::Class;
+use isa::{Class, Program};
 use messages::Diagnostic;
 use schemars::JsonSchema;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::run_arguments::Dump;
 use crate::failure::Failure;
 use crate::numeral::{count, grouped};
-use crate::result::{ByClass, Loss, RegionCounts, hexadecimal, loss_table, regions};
+use crate::registers::{self, RegisterValues, ShowRequest, ShownRegister};
+use crate::result::{ByClass, Loss, RegionCounts, hexadecimal, loss_table, octet_rows, regions};
 use crate::summary;
 use crate::table::{row, table};
 
@@ -46,6 +44,10 @@ pub struct RunResult {
     pub waiting: u64,
     /// Registers at the end: those that are not zero, or all when they were asked for.
     pub registers: RegisterValues,
+    /// Registers that were asked for, by `--show`, or by `--dump regs` those of the key `registers`, with their real values.
+    pub shown: Vec<ShownRegister>,
+    #[serde(skip)]
+    listed: Vec<ShownRegister>,
     /// Functions.
     pub functions: Vec<RegionCounts>,
     /// Regions inside functions.
@@ -57,26 +59,6 @@ pub struct RunResult {
     pub dumps: Vec<DumpedOctets>,
     /// The trap that stopped it before its `halt`.
     pub trap: Option<TrapResult>,
-}
-
-/// Registers by name.
-#[derive(Clone, Debug, JsonSchema)]
-pub struct RegisterValues(#[schemars(with = "BTreeMap<String, RegisterContents>")] pub Vec<(String, RegisterContents)>);
-
-impl Serialize for RegisterValues {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, contents)| (name, contents)))
-    }
-}
-
-/// Contents of a register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum RegisterContents {
-    /// A scalar or a wide accumulator.
-    One(i64),
-    /// A vector.
-    Three([i32; 3]),
 }
 
 /// Octets of a memory.
@@ -111,16 +93,30 @@ impl RunResult {
     /// # Errors
     /// A dump beyond the end of a memory.
     pub fn new(
-        program: String,
+        file: String,
         machine: String,
+        program: &Program,
         run: &OneCoreRun,
         flags: Option<Vec<Loss>>,
         dumps: &[Dump],
+        shown: &[ShowRequest],
     ) -> Result<RunResult, Failure> {
         // Registers that are zero are left out unless all are asked for.
-        let has_all = dumps.contains(&Dump::Registers);
-        let registers =
-            registers(&run.state.registers).into_iter().filter(|(_, contents)| has_all || !is_zero(contents));
+        let has_all = dumps.contains(&Dump::Registers { has_zeros: true });
+        let state = &run.state;
+        let kept = registers::all(&state.registers).filter(|(_, contents)| has_all || !contents.is_zero());
+        let kept: Vec<_> = kept.collect();
+        let is_dumped = dumps.iter().any(|dump| matches!(dump, Dump::Registers { .. }));
+        let listed = kept.iter().map(|(register, _)| ShownRegister::at(program, &state.registers, *register, state.pc));
+        let listed: Vec<ShownRegister> = listed.collect();
+        let shown = match shown.is_empty() {
+            true if is_dumped => listed.clone(),
+            true => Vec::new(),
+            false => {
+                let wanted = shown.iter().map(|request| request.shown(program, &state.registers, state.pc));
+                wanted.collect::<Result<_, _>>().map_err(|message| Failure::usage(Diagnostic::error(message)))?
+            }
+        };
         let trap = run.trap.as_ref().map(|trap| TrapResult {
             fault: trap.kind.to_string(),
             pc: trap.pc,
@@ -129,7 +125,7 @@ impl RunResult {
         });
         Ok(RunResult {
             schema: SCHEMA,
-            program,
+            program: file,
             machine,
             engine: run.engine.kind.name(),
             engine_because: run.engine.refusal,
@@ -137,7 +133,11 @@ impl RunResult {
             counts: ByClass(run.profile.as_ref().map(Profile::total).unwrap_or_default()),
             clocks: run.clocks.0,
             waiting: run.waiting.0,
-            registers: RegisterValues(registers.collect()),
+            registers: RegisterValues(
+                kept.iter().map(|(register, contents)| (registers::name(*register), *contents)).collect(),
+            ),
+            listed: if shown.is_empty() { listed } else { Vec::new() },
+            shown,
             functions: regions(run.profile.as_ref(), true),
             regions: regions(run.profile.as_ref(), false),
             flags,
@@ -180,54 +180,21 @@ impl RunResult {
     }
 
     fn register_text(&self) -> String {
-        if self.registers.0.is_empty() {
-            return "all registers are zero\n".into();
+        let registers = if self.shown.is_empty() { &self.listed } else { &self.shown };
+        match registers.is_empty() {
+            true => "all registers are zero\n".into(),
+            false => table(registers::rows(registers)),
         }
-        let mut rows = vec![row(["register", "value", "hexadecimal"])];
-        rows.extend(self.registers.0.iter().map(|(name, contents)| {
-            let (value, digits) = match contents {
-                RegisterContents::One(value) if name.starts_with('w') => (value.to_string(), format!("{value:016x}")),
-                RegisterContents::One(value) => (value.to_string(), format!("{:08x}", *value as i32)),
-                RegisterContents::Three(components) => (
-                    components.map(|component| component.to_string()).join(" : "),
-                    components.map(|component| format!("{component:08x}")).join(" "),
-                ),
-            };
-            vec![name.clone(), value, digits]
-        }));
-        table(rows)
     }
-}
-
-/// All registers by name.
-fn registers(registers: &Registers) -> Vec<(String, RegisterContents)> {
-    let scalars = (0..32).map(|n| (format!("s{n}"), RegisterContents::One(registers.scalar(n).into())));
-    let vectors = (0..32).map(|n| (format!("v{n}"), RegisterContents::Three(registers.vector(n))));
-    let wides = (0..8).map(|n| (format!("w{n}"), RegisterContents::One(registers.wide(n))));
-    scalars.chain(vectors).chain(wides).collect()
-}
-
-fn is_zero(contents: &RegisterContents) -> bool {
-    matches!(contents, RegisterContents::One(0) | RegisterContents::Three([0, 0, 0]))
 }
 
 fn dumped(run: &OneCoreRun, dump: Dump) -> Option<Result<DumpedOctets, Failure>> {
     let (space, address, octets) = match dump {
-        Dump::Registers => return None,
+        Dump::Registers { .. } => return None,
         Dump::Memory(address, octets) => ("memory", address, run.memory.slice(address, octets)),
         Dump::Buffer(address, octets) => ("buffer", address, run.state.buffer.slice(address, octets).map(Cow::from)),
     };
     let dumped =
         |octets: Cow<[u8]>| DumpedOctets { space, address, octets: hexadecimal(&octets), raw: octets.into_owned() };
     Some(octets.map(dumped).map_err(|fault| Diagnostic::error(format!("there is nothing to dump: {fault}")).into()))
-}
-
-/// Octets, sixteen a line, with their addresses.
-fn octet_rows(octets: &[u8], address: u32) -> String {
-    let mut text = String::new();
-    for (number, row) in octets.chunks(16).enumerate() {
-        let digits: Vec<String> = row.chunks(4).map(hexadecimal).collect();
-        let _ = writeln!(text, " {:08x}  {}", u64::from(address) + 16 * number as u64, digits.join(" "));
-    }
-    text
 }

@@ -32,6 +32,7 @@ use crate::result::{self, Render, WithSettings};
 use crate::settings::Settings;
 use crate::skips::{self, SkipsResult};
 use crate::terminal::Terminal;
+use crate::trace::instruction::{self, TracedInstruction};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,6 +61,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: printed::<Annexes, CommandSettings> },
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: printed::<RunResult, CommandSettings> },
+    Known { name: instruction::SCHEMA, command: "lancer run --trace FILE.jsonl", make: schema_of::<TracedInstruction> },
     Known { name: cores::SCHEMA, command: "lancer cores --json", make: printed::<CoresResult, CoresSettings> },
     Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: printed::<Profiles, CommandSettings> },
     Known { name: skips::SCHEMA, command: "lancer skips --json", make: printed::<SkipsResult, Settings> },

@@ -7,6 +7,7 @@ use clap::Args;
 use emu::machine::trace::Window;
 use emu::machine::{Config, RunOptions, RunOutcome};
 use emu::quantity::Clocks;
+use emu::stepper::{Lone, Stepper};
 use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -16,11 +17,14 @@ use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::job::result_name;
 use crate::load::{ANNEX, Load};
-use crate::numeral::{grouped, percent};
+use crate::numeral::{count, grouped, percent};
 use crate::result::{self, WithSettings};
 use crate::settings::Settings;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
+use crate::trace::instruction::TraceClocks;
+use crate::trace::output::{TraceForm, is_standard, write_instructions};
+use crate::trace::window::{TraceWindow, TraceWindows};
 use crate::trace::{TracedScene, perfetto, wave};
 
 const EXAMPLES: &str = "\
@@ -28,6 +32,7 @@ Examples:
   lancer trace cornell --size 80x60 --pixel 40,30
   lancer trace cornell --size 80x60 --clocks 10000..20000 --fst bus.fst
   lancer trace annex --clocks 0..600000 --perfetto bus.json
+  lancer trace cornell --pixel 40,30 --instructions - --window function=triangle
   lancer trace cornell --size 80x60 --pixel 40,30 --perfetto - | gzip > bus.json.gz
 
 GTKWave and Surfer show the FST file, https://ui.perfetto.dev the other one.";
@@ -38,14 +43,14 @@ const LONGEST: u64 = 50_000_000;
 /// Shows what every processor and the bus do in a window of clocks or during one pixel, as a wave and as a trace.
 ///
 /// The wave (FST) has the bus with its owner and address, and each processor with request, grant, state (0 idle, 1 busy,
-/// 2 waiting for the bus) and pixel. The trace has a track a core and one for the bus. The whole picture is drawn:
-/// --pixel only chooses the clocks. Without --fst and --perfetto, NAME.fst and NAME.trace.json are written in the current
-/// folder.
+/// 2 waiting for the bus) and pixel. The trace has a track a core and one for the bus. With --clocks the whole picture is
+/// drawn; --pixel draws that pixel alone. With --instructions each instruction of the pixel is written, with what it read and
+/// wrote. Without --fst, --perfetto and --instructions, NAME.fst and NAME.trace.json are written in the current folder.
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = EXAMPLES,
     mut_arg("scene", |scene| scene.help("Scene, as for `lancer render`; or annex, the report's estimate as for `lancer cores`")),
-    mut_arg("pixel", |pixel| pixel.help("The clocks of this pixel: its column and its row from the top").conflicts_with("clocks")),
+    mut_arg("pixel", |pixel| pixel.help("This pixel alone: its column and its row from the top").conflicts_with("clocks")),
 )]
 pub struct TraceArguments {
     #[command(flatten)]
@@ -59,6 +64,12 @@ pub struct TraceArguments {
     /// Trace file for Perfetto: .json.
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     perfetto: Option<PathBuf>,
+    /// File for the instructions of the pixel, a line each; .jsonl: as JSON. - is standard output, with JSON lines by --json.
+    #[arg(long, value_name = "FILE|-", help_heading = "Results", requires = "pixel", conflicts_with = "clocks")]
+    instructions: Option<PathBuf>,
+    /// Instructions that --instructions has: steps=A..B, pc=A..B or function=NAME; may be repeated.
+    #[arg(long = "window", value_name = "WHAT=WHICH", help_heading = "Results", requires = "instructions")]
+    windows: Vec<TraceWindow>,
     /// Prints the shares of the window as JSON instead of a table.
     #[arg(long, help_heading = "Results")]
     json: bool,
@@ -150,7 +161,13 @@ fn clocks(text: &str) -> Result<Range<u64>, String> {
 
 /// Runs, writes and prints.
 pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let (name, load, config, width, read, settings) = load(arguments, terminal)?;
+    let LoadedTrace { name, load, config, number, read, settings } = load(arguments, terminal)?;
+    if let Some(path) = &arguments.instructions {
+        instructions(arguments, &load, &config, path, &read, terminal)?;
+        if arguments.fst.is_none() && arguments.perfetto.is_none() {
+            return Ok(Exit::Done);
+        }
+    }
     // Without a name for either, both files are written beside each other.
     let is_default = arguments.fst.is_none() && arguments.perfetto.is_none();
     let target = |given: &Option<PathBuf>, ending: &str| match is_default {
@@ -165,13 +182,17 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     for path in paths() {
         files::check_target(path)?;
     }
-    // The window: clocks as given, or those of a pixel, for which the frame runs once without watching.
+    // The window: clocks as given, or those of the pixel, for which the machine runs once without watching.
     let window = match (&arguments.clocks, arguments.job.view.pixel) {
         (Some(clocks), _) => Window { start: Clocks(clocks.start), end: Clocks(clocks.end) },
-        (None, Some([column, row])) => pixel(&load, &config, [column, row], width, terminal)?,
+        (None, Some(place)) => pixel(&load, &config, place, terminal)?,
         (None, None) => return Err(Failure::usage(Diagnostic::error("neither clocks nor a pixel are given"))),
     };
-    let frame = run(&load, &config, Some(window), terminal)?;
+    let mut frame = run(&load, &config, Some(window), terminal)?;
+    // A pixel that is drawn alone has the number that it has in the picture.
+    for item in frame.items.iter_mut().filter(|_| number != 0) {
+        item.subject[0] = number;
+    }
     if frame.clocks <= window.start {
         let message = format!("the frame is over after {} clocks", grouped(frame.clocks.0));
         return Err(Failure::usage(Diagnostic::error(message).hint("choose earlier clocks")));
@@ -187,6 +208,7 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     files::write_all(&files)?;
     let traced = TraceResult::new(&scene, &frame, paths());
     match (is_taken, arguments.json) {
+        _ if arguments.instructions.as_deref().is_some_and(is_standard) => {}
         (true, _) => {}
         (false, true) => terminal.print(&result::json(&WithSettings::new(&traced, settings)))?,
         (false, false) => terminal.tell(&traced.text())?,
@@ -194,28 +216,62 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     Ok(Exit::Done)
 }
 
-/// Name, load, machine, columns of the picture, the files that were read, and the settings.
-type LoadedTrace = (String, Load, Config, u32, Vec<PathBuf>, Settings);
+/// Writes the instructions of a pixel: on one core, whose transfers are answered from the memory at the start.
+fn instructions(
+    arguments: &TraceArguments,
+    load: &Load,
+    config: &Config,
+    path: &Path,
+    read: &[PathBuf],
+    terminal: &mut Terminal,
+) -> Result<(), Failure> {
+    files::check_spared([path].into_iter().filter(|path| !is_standard(path)), read).map_err(Failure::usage)?;
+    let windows = TraceWindows(arguments.windows.clone());
+    windows.check(&load.build.cores).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+    let setup = load.setup(config, RunOptions::default());
+    let mut stepper = Stepper::new(Lone::first_item(&setup, load.memory.clone())?)?;
+    let form = TraceForm::of(path, arguments.json);
+    let written = write_instructions(&mut stepper, TraceClocks::None, &windows, path, form, terminal)?;
+    if !is_standard(path) {
+        let written = count(written, "instruction", "instructions");
+        terminal.tell(&format!("{written} of {} written to {}\n", grouped(stepper.steps()), path.display()))?;
+    }
+    match stepper.trap() {
+        Some(trap) => Err(Failure::Message { exit: Exit::of_trap(&trap), report: trap.diagnostic().into() }),
+        None => Ok(()),
+    }
+}
+
+/// Load of a scene, and what else is known of it.
+struct LoadedTrace {
+    name: String,
+    load: Load,
+    config: Config,
+    /// Number in the picture of a pixel that is drawn alone, 0 for others.
+    number: i32,
+    /// Files that were read.
+    read: Vec<PathBuf>,
+    settings: Settings,
+}
 
 /// The load of the scene that is named.
 fn load(arguments: &TraceArguments, terminal: &Terminal) -> Result<LoadedTrace, Failure> {
-    let mut job = arguments.job.clone();
+    let job = &arguments.job;
     if job.scene == ANNEX && !Path::new(ANNEX).exists() {
         let settings = job.settings()?;
         let mut config = settings.machine.config.clone();
         config.main.traffic = false;
-        let load = Load::annex()?;
-        let width = load.build.crop.width;
-        return Ok((ANNEX.to_owned(), load, config, width, vec![PathBuf::from(&job.machine.keys.machine)], settings));
+        let (load, read) = (Load::annex()?, vec![PathBuf::from(&job.machine.keys.machine)]);
+        return Ok(LoadedTrace { name: ANNEX.to_owned(), load, config, number: 0, read, settings });
     }
-    job.view.pixel = None;
     let job = job.job()?;
     terminal.show(&job.warnings);
     let (load, _) = Load::picture(&job)?;
     terminal.show(&load.build.warnings);
-    let width = load.build.crop.width;
+    let number = job.kernels.crop.filter(|_| arguments.job.view.pixel.is_some());
+    let number = number.map_or(0, |crop| (crop.row * job.view.size.0 + crop.column) as i32);
     let settings = Settings::of(&job);
-    Ok((result_name(&job.scene), load, job.machine, width, job.files, settings))
+    Ok(LoadedTrace { name: result_name(&job.scene), load, config: job.machine, number, read: job.files, settings })
 }
 
 fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal) -> Result<RunOutcome, Failure> {
@@ -228,14 +284,8 @@ fn run(load: &Load, config: &Config, window: Option<Window>, terminal: &Terminal
     Ok(frame?)
 }
 
-/// The clocks of a pixel of the drawn part.
-fn pixel(
-    load: &Load,
-    config: &Config,
-    [column, row]: [u32; 2],
-    width: u32,
-    terminal: &Terminal,
-) -> Result<Window, Failure> {
+/// The clocks of a pixel: of the only one that is drawn, or of one of the report's estimate.
+fn pixel(load: &Load, config: &Config, [column, row]: [u32; 2], terminal: &Terminal) -> Result<Window, Failure> {
     let crop = load.build.crop;
     // Pixels are numbered inside the drawn part, row by row.
     let place = column.checked_sub(crop.column).zip(row.checked_sub(crop.row));
@@ -246,7 +296,7 @@ fn pixel(
     };
     let (column, row) = place.ok_or_else(outside)?;
     let frame = run(load, config, None, terminal)?;
-    let number = i64::from(row) * i64::from(width) + i64::from(column);
+    let number = i64::from(row) * i64::from(crop.width) + i64::from(column);
     let item = frame.items.iter().find(|item| i64::from(item.subject[0]) == number).ok_or_else(outside)?;
     // The end is cut so that a pixel that never ends keeps no gigabytes.
     let end = item.end.max(item.start + Clocks(1)).min(item.start + Clocks(LONGEST));

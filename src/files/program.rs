@@ -101,7 +101,7 @@ impl ProgramFile {
 /// A file that may be a program or something else.
 pub enum LoadedFile {
     /// The program of a file that is named or begins like one.
-    Program(Program),
+    Program(Box<Program>),
     /// The octets of any other, such as a source.
     Other(Vec<u8>),
 }
@@ -112,11 +112,11 @@ pub enum LoadedFile {
 /// See [`ProgramFile::load`].
 pub fn load_any(path: &Path) -> Result<LoadedFile, Report> {
     if let Ok(format) = ProgramFile::of(path) {
-        return format.load(path).map(LoadedFile::Program);
+        return format.load(path).map(|program| LoadedFile::Program(Box::new(program)));
     }
     let octets = read(path)?;
     match octets.starts_with(object::MAGIC) {
-        true => ProgramFile::Object.decode(path, octets).map(LoadedFile::Program),
+        true => ProgramFile::Object.decode(path, octets).map(|program| LoadedFile::Program(Box::new(program))),
         false => Ok(LoadedFile::Other(octets)),
     }
 }

@@ -10,6 +10,16 @@ pub fn hexadecimal(octets: &[u8]) -> String {
     })
 }
 
+/// Octets in hexadecimal, sixteen a line, with their addresses from `address` on.
+pub fn octet_rows(octets: &[u8], address: u32) -> String {
+    let mut text = String::new();
+    for (number, row) in octets.chunks(16).enumerate() {
+        let digits: Vec<String> = row.chunks(4).map(hexadecimal).collect();
+        let _ = writeln!(text, " {:08x}  {}", u64::from(address) + 16 * number as u64, digits.join(" "));
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -31,7 +31,7 @@ use crate::energy::EnergyResult;
 use crate::job::{Job, result_name};
 use crate::settings::{Settings, VERSION};
 pub use hash::{image_hash, run_hash};
-pub use hexadecimal::hexadecimal;
+pub use hexadecimal::{hexadecimal, octet_rows};
 #[cfg(feature = "cli")]
 pub use loss_table::loss_table;
 pub use losses::{Loss, losses};

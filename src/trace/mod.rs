@@ -1,8 +1,11 @@
 //! A window of a machine's clocks as files that viewers of waves and of traces read. What happened is gathered by the
 //! machine; here it gets names and formats.
 
+pub mod instruction;
+pub mod output;
 mod perfetto;
 mod wave;
+pub mod window;
 
 use emu::machine::trace::{Cargo, Doing, Span, Trace, TracedBurst};
 use emu::machine::{Item, RunOutcome};

@@ -5,6 +5,7 @@ mod bench;
 mod comparisons;
 mod convert;
 mod cores;
+mod debug;
 mod demo;
 mod extensions;
 mod files;

@@ -153,6 +153,44 @@ fn slices_lie_within_or_behind_each_other() {
     }
 }
 
+/// The lines of a trace as JSON.
+fn records(octets: &[u8]) -> Vec<Value> {
+    let text = std::str::from_utf8(octets).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn the_instructions_of_a_pixel_are_those_that_it_costs() {
+    let session = Session::new();
+    let scene = "cornell --size 12x9 --shift 0.137,0.071 --pixel 5,4";
+    let drawn = session.json(&format!("render {scene} --no-error"));
+    let said = session.succeed(&format!("trace {scene} --instructions a.jsonl"));
+    let all = records(&session.read("a.jsonl"));
+    assert_eq!(drawn["instructions"].as_u64(), Some(all.len() as u64));
+    assert!(said.ends_with("written to a.jsonl\n"), "{said}");
+    let steps: Vec<u64> = all.iter().map(|record| record["step"].as_u64().unwrap()).collect();
+    assert_eq!(steps, (0..all.len() as u64).collect::<Vec<_>>());
+    // The answer that the pixel sends is the colour of the picture.
+    let last = all.iter().rev().find(|record| record["transfer"]["kind"] == "send").unwrap();
+    assert_eq!((&last["transfer"]["octets"], &last["clock"]), (&24.into(), &Value::Null));
+    // Registers have names and real values without being told; a window has some of the same records.
+    let triangle = session.succeed(&format!("trace {scene} --instructions - --json --window function=triangle"));
+    let some = records(triangle.as_bytes());
+    let same: Vec<&Value> = all.iter().filter(|record| record["function"] == "triangle").collect();
+    assert!(!some.is_empty() && some.iter().eq(same));
+    let first = &some.iter().find(|record| record["text"] == "vsub v9, v1, v6").unwrap()["reads"][0];
+    assert_eq!((&first["register"], &first["name"], &first["format"]), (&"v1".into(), &"origin".into(), &"pos".into()));
+    let bits = first["fraction_bits"].as_u64().unwrap() as i32;
+    for (real, raw) in first["real"].as_array().unwrap().iter().zip(first["raw"].as_array().unwrap()) {
+        let exact = raw.as_f64().unwrap() * f64::from(-bits).exp2();
+        assert!((real.as_f64().unwrap() - exact).abs() <= f64::from(-bits - 1).exp2());
+    }
+    let text = session.succeed(&format!("trace {scene} --instructions - --window steps=10..12"));
+    assert!(text.lines().count() == 3 && text.lines().nth(1).unwrap().trim_start().starts_with("10 "), "{text}");
+    session.fail(&format!("trace {scene} --instructions - --window function=triangel"), 2, "did you mean `triangle`?");
+    session.fail("trace cornell --clocks 1..2 --instructions -", 2, "cannot be used with");
+}
+
 #[test]
 fn equal_runs_write_equal_files_and_mistakes_are_told() {
     let session = Session::new();
@@ -164,6 +202,6 @@ fn equal_runs_write_equal_files_and_mistakes_are_told() {
     session.fail("trace cornell", 2, "--clocks");
     session.fail("trace cornell --clocks 3..1", 2, "no clock in 3..1");
     session.fail("trace cornell --clocks 1..2 --pixel 1,1", 2, "cannot be used with");
-    session.fail("trace cornell --size 4x4 --pixel 4,0", 2, "lies outside the 4 x 4");
+    session.fail("trace cornell --size 4x4 --pixel 4,0", 2, "lies outside a picture of 4 x 4");
     session.fail("trace cornell --size 4x4 --clocks 40000000..40000001", 2, "the frame is over after");
 }

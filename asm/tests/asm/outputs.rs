@@ -108,6 +108,65 @@ fn object_files_hold_the_whole_program() {
     }
 }
 
+/// A program with names and formats of registers, outside and inside of a function.
+const NAMED: &str = "        .format pos, 16
+        .format dir, 30
+        .struct node
+        .field  left, 4
+        .space  2
+        .field  flags, 1
+        .endstruct
+        .reg    edge, s2
+        .holds  edge, pos
+        movi    s1, 1
+        .func   f
+        .reg    way, v1
+        .holds  way, dir
+        .holds  s2, dir
+        vmov    way, v2
+        .holds  s2
+        mov     edge, s1
+        ret     s31
+        .endfunc
+        .holds  s3, pos
+        halt
+";
+
+#[test]
+fn names_and_formats_of_registers_reach_the_object_file() {
+    let program = tried(NAMED).finish().unwrap().program;
+    let back = read(&write(&program)).unwrap();
+    assert_eq!(back, program);
+    let format = |register, pc| back.format_of(register, pc).map(|(name, bits)| format!("{name} {bits}"));
+    let all = |register| (0..5).map(|pc| format(register, pc).unwrap_or_default()).collect::<Vec<_>>();
+    assert_eq!(all(('s', 2)), ["pos 16", "dir 30", "", "", "pos 16"]);
+    assert_eq!(all(('v', 1)), ["", "dir 30", "dir 30", "dir 30", ""]);
+    assert_eq!(all(('s', 3)), ["", "", "", "", "pos 16"]);
+    assert_eq!(
+        (0..5).map(|pc| back.name_of(('v', 1), pc)).collect::<Vec<_>>(),
+        [None, Some("way"), Some("way"), Some("way"), None]
+    );
+    assert_eq!((back.register_named("edge", 0), back.register_named("way", 99)), (Some(('s', 2)), Some(('v', 1))));
+    let node = back.record("node").unwrap();
+    let fields: Vec<_> = node.fields.iter().map(|field| (field.name.as_str(), field.offset, field.octets)).collect();
+    assert_eq!((node.octets, fields), (7, vec![("left", 0, 4), ("flags", 6, 1)]));
+    let text = listing(&tried(NAMED));
+    assert!(text.contains("  s2: pos, 16") && text.contains("  s2: no format"), "{text}");
+    assert!(text.lines().any(|line| line.contains("v1: dir, 30") && line.ends_with(".holds  way, dir")), "{text}");
+}
+
+#[test]
+fn object_files_of_version_1_are_read_without_names_and_formats() {
+    let program = tried("nop\n.func f\nhalt\n.endfunc").program;
+    assert!(program.formats.is_empty() && program.register_names.is_empty());
+    // Version 1 ends where four empty lists would follow.
+    let new = write(&program);
+    let mut old = new[..new.len() - 4 - 16].to_vec();
+    old[8] = 1;
+    old.extend(crc32fast::hash(&old).to_le_bytes());
+    assert_eq!(read(&old), Ok(program));
+}
+
 #[test]
 fn damaged_object_files_are_refused() {
     let file = write(&tried(PROGRAM).program);
@@ -123,7 +182,8 @@ fn damaged_object_files_are_refused() {
     }
     assert_eq!(read(b"no"), Err(ObjectError::Magic));
     assert_eq!(read(b"lancer\x1a\n"), Err(ObjectError::Truncated));
-    assert_eq!(read(b"lancer\x1a\n\x02\x00"), Err(ObjectError::Version(2)));
+    assert_eq!(read(b"lancer\x1a\n\x03\x00"), Err(ObjectError::Version(3)));
+    assert_eq!(read(b"lancer\x1a\n\x00\x00"), Err(ObjectError::Version(0)));
     let mut longer = file.clone();
     longer.push(0);
     assert_eq!(read(&longer), Err(ObjectError::Checksum));
@@ -131,7 +191,7 @@ fn damaged_object_files_are_refused() {
 
 #[test]
 fn octets_with_a_right_checksum_are_read_or_refused() {
-    let file = write(&tried(PROGRAM).program);
+    let file = write(&tried(&format!("{PROGRAM}{NAMED}")).program);
     let length = file.len();
     let changes = proptest::collection::vec((12..length - 4, prop_oneof![any::<u8>(), Just(0), Just(255)]), 1..4);
     check(5_000, &(changes, any::<bool>()), |(changes, is_cut)| {
@@ -148,7 +208,7 @@ fn octets_with_a_right_checksum_are_read_or_refused() {
         Ok(())
     });
     check(2_000, &proptest::collection::vec(any::<u8>(), 0..80), |octets| {
-        let mut file = b"lancer\x1a\n\x01\x00".to_vec();
+        let mut file = b"lancer\x1a\n\x02\x00".to_vec();
         file.extend(octets);
         file.extend(crc32fast::hash(&file).to_le_bytes());
         let _ = read(&file);
@@ -160,9 +220,9 @@ fn octets_with_a_right_checksum_are_read_or_refused() {
 fn the_page_of_formats_has_the_parts_of_the_object_file() {
     let (page, code) = (include_str!("../../../docs/formats.md"), include_str!("../../src/object.rs"));
     let rows: Vec<&str> = code.lines().filter_map(|line| line.strip_prefix("//! |")).collect();
-    assert_eq!(rows.len(), 11);
+    assert_eq!(rows.len(), 15);
     for row in rows {
         assert!(page.lines().any(|line| line.strip_prefix('|') == Some(row)), "docs/formats.md lacks |{row}");
     }
-    assert!(page.contains(&format!("Version {} is written and read.", asm::object::VERSION)));
+    assert!(page.contains(&format!("Version {} is written; all from 1 on are read.", asm::object::VERSION)));
 }

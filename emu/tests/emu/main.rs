@@ -13,5 +13,6 @@ mod profile;
 mod ray;
 mod replay;
 mod saturation;
+mod stepper;
 mod totals;
 mod traps;

@@ -1,6 +1,8 @@
 ; Driver for the walk down the tree: 16 levels, to the left at each.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     store_path
     lv    exit_point, START(s0)
     lv    direction, WAY(s0)

@@ -1,6 +1,8 @@
 ; Driver for ray against node: rays in all octants from inside a box, none of them parallel to a plane.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     movi  s20, WAYS
     lv    box_low, LOW(s0)
     lv    box_high, HIGH(s0)

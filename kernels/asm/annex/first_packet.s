@@ -1,6 +1,8 @@
 ; Driver for the first packet: a camera ray from outside the scene's box, a tree of 16 levels.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     store_path
     lv    origin, START(s0)
     lv    direction, WAY(s0)

@@ -1,6 +1,8 @@
 ; Driver for the next packet: the ray has hit nothing yet and does not leave the scene, a tree of 16 levels.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     store_path
     lv    origin, START(s0)
     lv    direction, WAY(s0)

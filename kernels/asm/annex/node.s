@@ -2,6 +2,8 @@
 ; tests all of them; neither child meets anything.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     begin_triangles
     movi  s23, ONE / 64
     store_triangles 1, SURFACE, "step_z SURFACE"

@@ -1,6 +1,7 @@
 ; Driver for the normal: a large triangle, a small one, a sliver and one without area.
 .entry driver
 .func driver
+    .holds facing, dir
     movi  near_slot, FIRST
 1:  call  link_packet, normal
     lea   near_slot, sizeof(triangle)(near_slot)

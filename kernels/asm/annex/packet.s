@@ -1,6 +1,8 @@
 ; Driver for the packet: 40 triangles, all tested, each a little nearer than the one before.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     begin_triangles
     movi  s23, ONE / 64
     store_triangles PACKET, PATTERN, "step_z PATTERN"

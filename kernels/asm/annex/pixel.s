@@ -3,6 +3,8 @@
 ; triangles are in one packet and are tested by each ray.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     begin_triangles
     movi  s23, -2 * ONE / 5
     store_triangles SURFACES, SURFACE, "step_z SURFACE"

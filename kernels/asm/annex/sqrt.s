@@ -1,6 +1,7 @@
 ; Driver for the square root: small, large, square and non-square operands, one call each.
 .entry driver
 .func driver
+    .holds s12
     movi  s20, OPERANDS
 1:  lwide w0, (s20)
     call  link_leaf, sqrt

@@ -1,6 +1,8 @@
 ; Driver for the ray-triangle test: a hit, a miss, a parallel ray and a triangle without area.
 .entry driver
 .func driver
+    .holds origin, pos
+    .holds direction, dir
     movi  slot, FIRST
 1:  lv    origin, ABOVE(s0)
     lv    direction, DOWN(s0)

@@ -138,6 +138,13 @@ search_begin_\any:
 .endm
 
 .func trace
+    .holds gathered
+    .holds place
+    .holds stride
+    .holds left
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
     bltz  packet_count, trace_end
     vput  nearest, near_t, 0
     vput  nearest, s0, 1

@@ -6,6 +6,8 @@
 ; leaves the packet. Returns by link_step. Scratch: s12 to s15, split, came_by, leaves_by.
 
 .func descend
+    .holds origin, pos
+    .holds direction, dir
 .if LAYOUT_REPORT
     walk_boxes
 .else

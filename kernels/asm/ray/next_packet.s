@@ -3,6 +3,9 @@
 ; In: the ray, the walk's notes, near, near_t, any_hit. Out: the packet and the notes. Returns by link_packet. Report, pseudo codes 2
 ; and 3. Scratch: s12 to s15, v6, v7, w0 to w2.
 .func next_packet
+    .holds box_low
+    .holds v6, pos
+    .holds v7, pos
     lwide came_by, NOTES + note.plane(last_note)
 .if SKIP_ANY_HIT
     beqz  any_hit, 1f

@@ -16,6 +16,9 @@
 .endm
 
 .func packet
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
 .if SKIP_EMPTY
     blez  packet_count, packet_end
 .endif
@@ -57,6 +60,7 @@ packet_next:
 .endif
 .region triangle
     rtri  s12, v9, origin, v6, dir + t - pos
+    .holds s12, t
 .endregion
     bge   near_t, s12, packet_nearer
 packet_rest:
@@ -72,6 +76,7 @@ packet_rest:
 packet_end:
     ret   link_packet
 packet_nearer:
+    .holds s12, t
     bne   near_t, s12, 1f
     bgeu  s15, near, packet_rest
 1:  mov   near_t, s12

@@ -2,6 +2,7 @@
 ; In: origin, direction, the first packet (packet_count < 0: none) and the walk's notes, near_t, near = 0, any_hit.
 ; Out: near (0: nothing), near_t, near_slot. Returns by link_trace.
 .func trace
+    .holds near_t, t
     bltz  packet_count, 2f
 .if SKIP_TESTED
     forget_tested

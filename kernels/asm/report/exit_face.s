@@ -27,6 +27,11 @@ beside_\@:
 .endm
 
 .func exit_face
+    .holds exit_t, t
+    .holds exit_point, pos
+    .holds v6, pos
+    .holds v8, pos
+    .holds s15, t
     li    exit_t, MISSED
     movi  exit_axis, 3
     mov   exit_plane, s0

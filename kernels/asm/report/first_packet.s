@@ -23,18 +23,24 @@ beside_\@:
 .endm
 
 .func first_packet
+    .holds exit_t, t
+    .holds exit_point, pos
     lv    box_low, ROOT_LOW(s0)
     lv    box_high, ROOT_HIGH(s0)
     vmov  exit_point, origin
   .rept 3, k
     vget  s12, origin, k
+    .holds s12, pos
     vget  s13, box_low, k
+    .holds s13, pos
     blt   s12, s13, first_outside
     vget  s13, box_high, k
     blt   s13, s12, first_outside
   .endr
     jump  first_found
 first_outside:
+    .holds v8, pos
+    .holds s15, t
     li    exit_t, MISSED
     movi  exit_axis, 3
     enter_by 0, -1, box_low

@@ -3,6 +3,7 @@
 ; stops at the first packet with a hit, which may lie in a later one.
 ; In: the ray, the packet's box, near, near_t, any_hit. Out: the packet and its box. Returns by link_packet.
 .func next_packet
+    .holds exit_t, t
 .if SKIP_ANY_HIT
     beqz  any_hit, 1f
     bnez  near, 4f
@@ -16,10 +17,13 @@
 3:
 .endif
     lv    v6, ROOT_HIGH(s0)
+    .holds v6, pos
     vgetr s12, direction, exit_axis
+    .holds s12, dir
     bgez  s12, 5f
     lv    v6, ROOT_LOW(s0)
 5:  vgetr s12, v6, exit_axis
+    .holds s12, pos
     beq   s12, exit_plane, 4f
     isubi steps, steps, 1
     beqz  steps, 6f

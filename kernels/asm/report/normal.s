@@ -3,13 +3,20 @@
 ; wiring. In: near_slot. Out: facing. Returns by link_packet. Scratch: s12 to s15, s17, s18, v6 to v8, w0 to w5.
 .func normal
     load_triangle near_slot
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
     subtract v7, v7, v6
     subtract v8, v8, v6
     vnorm v7, s12, v7
+    .holds v7
     vnorm v8, s12, v8
+    .holds v8
     cross_product v6, v7, v8, WORD - 1
+    .holds v6
     vnorm v6, s12, v6
     call  link_step, unit
+    .holds v6, dir
     vmov  facing, v6
     ret   link_packet
 .endfunc

@@ -9,11 +9,13 @@
     movi  s12, sizeof(triangle)
     load  slot, s15, s12
     call  link_step, triangle
+    .holds s12, t
     iaddi s14, s14, 1
     bge   s12, near_t, 1b
     mov   near_t, s12
     mov   near, s15
     mov   s12, slot
+    .holds s12
     mov   slot, near_slot
     mov   near_slot, s12
     jump  1b

@@ -96,10 +96,13 @@ tree_visit:
     recall
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.transmission(s12)
+    .holds s13, weight
     beqz  s13, tree_opaque
     lw    s12, treenode.weight(node)
+    .holds s12, weight
     mul   s13, s12, s13, weight
     lw    s14, treenode.right(node)
+    .holds s14
     sw    s13, treenode.weight(s14)
     call  link_node, refract
     lw    s14, treenode.right(node)
@@ -122,18 +125,23 @@ tree_mirror:
     recall
     lw    s12, MATERIAL_AT(s0)
     lw    s12, material.reflection(s12)
+    .holds s12, weight
     lw    s13, treenode.weight(node)
+    .holds s13, weight
     mul   s12, s12, s13, weight
     add   s12, weight_now, s12
     lw    s14, treenode.left(node)
     sw    s12, treenode.weight(s14)
     li    s13, CUTOFF
+    .holds s13, weight
     ble   s12, s13, tree_right
     call  link_node, reflect
     lw    s14, treenode.left(node)
     make_child s14, 1
     follow s14, reflects
 tree_right:
+    .holds s12
+    .holds s13
 .if HAS_GLASS
     lbu   s12, treenode.visited(node)
     beqz  s12, tree_leave

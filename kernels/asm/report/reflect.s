@@ -4,7 +4,9 @@
     call  link_trace, surface
     movi  s13, -2
     mul   s12, cosine, s13, 0
+    .holds s12, dir
     scale_vector v6, facing, s12, dir
+    .holds v6, dir
     subtract direction, direction, v6
     vmov  origin, point
     ret   link_node

@@ -4,14 +4,18 @@
 .func shade
     call  link_trace, surface
     vmov  v25, zero_vector              ; sum over the lights
+    .holds v25, colour
 .if LIGHTS > 0
     first_light
 shade_light:
     load_light
     subtract v26, v26, point            ; to the light
+    .holds v26, pos
     vnorm v6, s13, v26
     call  link_step, unit
+    .holds v6, dir
     dot_product facing, v6, dir
+    .holds s12, dir
   .if SKIP_UNLIT
     blez  s12, shade_next
   .else
@@ -22,8 +26,11 @@ shade_light:
   .endif
     sw    s12, SHADE_COSINE(s0)
     dot_product v6, v26, dir + pos - t
+    .holds s12, t
     mov   near_t, s12
     shadow_ray shade_next
+    .holds v6, colour
+    .holds s13, dir
     scale_vector v6, v6, s13, dir
     add_vectors v25, v25, v6
 shade_next:
@@ -31,12 +38,16 @@ shade_next:
 .endif
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.intensity(s12)
+    .holds s13, weight
     scale_vector v25, v25, s13, weight
     li    s13, AMBIENT
+    .holds s13, colour
     vsplat v6, s13
+    .holds v6, colour
     add_vectors v25, v25, v6
     lw    s12, MATERIAL_AT(s0)
     lv    v6, material.colour(s12)
+    .holds v6, weight
   .rept 3, k
     vget  s13, v6, k
     vget  s14, v25, k

@@ -4,6 +4,7 @@
 .func surface
     call  link_packet, normal
     dot_product facing, direction, dir
+    .holds s12, dir
     blez  s12, 1f
   .rept 3, k
     vget  s17, facing, k
@@ -14,6 +15,7 @@
     jump  2f
 1:  neg   cosine, s12
 2:  scale_vector v6, direction, near_t, t + dir - pos
+    .holds v6, pos
     add_vectors v6, origin, v6
     move_off LITERAL_OFFSET
     load_material

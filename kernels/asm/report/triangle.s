@@ -31,11 +31,17 @@
 
 .func triangle
     load_triangle slot
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
     subtract v7, v7, v6                 ; E1
     subtract v8, v8, v6                 ; E2
     subtract v9, origin, v6             ; T
+    .holds v9, pos
     shift_into_range v7, v7, x
+    .holds v7
     shift_into_range v8, v8, y
+    .holds v8
     cross_product v10, direction, v8, dir   ; P = D x E2
     cross_product v11, v9, v7, WORD     ; Q = T x E1
     dot_product v10, v7, WORD
@@ -46,23 +52,29 @@
     shift_with z
     shift_with x
     over_determinant INVERSE - bary
+    .holds s12, bary
     vput  v13, s12, x                   ; u = (1 / det) P . T
     dot_product v11, direction, dir
     shift_with z
     shift_with y
     over_determinant INVERSE - bary
+    .holds s12, bary
     vput  v13, s12, y                   ; v = (1 / det) Q . D
     dot_product v11, v8, WORD
     shift_with z
     over_determinant INVERSE - WORD - t + pos
+    .holds s12, t
     vput  v13, s12, z                   ; t = (1 / det) Q . E2
 
     ; s12 becomes 1 when any of the seven conditions fails.
     vget  s17, v12, x
+    .holds s12
+    .holds s17
     clz   s17, s17
     movi  s18, 31
     slt   s12, s18, s17                 ; det = 0: 32 leading zeros
     vget  s17, v13, x
+    .holds s17, bary
     slt   s18, s17, s0
     or    s12, s12, s18                 ; u < 0
     li    s18, 1:bary
@@ -80,6 +92,7 @@
     slt   s18, s18, s17
     or    s12, s12, s18                 ; u + v > 1
     vget  s17, v13, z
+    .holds s17, t
     movi  s18, 1
     slt   s18, s17, s18
     or    s12, s12, s18                 ; t <= 0
@@ -89,5 +102,6 @@
     li    s18, MISSED
     or    s17, s17, s12
     and   s12, s17, s18                 ; t, or MISSED: all ones but the sign
+    .holds s12, t
     ret   link_step
 .endfunc

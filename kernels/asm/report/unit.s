@@ -5,6 +5,7 @@
 
 .func unit
     vget  s12, v6, x
+    .holds s12
     wmul  w0, s12, s12
   .rept 2, k
     vget  s12, v6, k + 1
@@ -14,5 +15,6 @@
     movi  s13, 1
     div   s12, s13, s12, INVERSE_LENGTH
     scale_vector v6, v6, s12, INVERSE_LENGTH - dir
+    .holds v6, dir
     ret   link_step
 .endfunc

@@ -16,6 +16,7 @@
 1:
 .if HAS_BACKGROUND
     lv    v6, BACKGROUND(s0)
+    .holds v6, colour
   .if HAS_TREE
     vscale v6, v6, weight_now, weight
   .endif

@@ -68,12 +68,14 @@ dispatch_drained:
     li    s13, FRAME
     element s13, s13, s12, 12
     vmov  v20, v19
+    .holds v20, colour
     stv   v20, (s13)
     ret   link_node
 .endfunc
 
 ; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, v6, w0 to w3 and that of sqrt.
 .func camera
+    .holds v6, dir
     wextend w2, column, 0
     wextend w3, row, 0
 .if PERSPECTIVE
@@ -93,6 +95,7 @@ dispatch_drained:
     ; By its length. Only the length is that of the rounded way, so that the direction itself is rounded once, by the quotient.
     wdot  w0, v6, v6
     call  link_leaf, sqrt
+    .holds s12, dir
     wextend w0, s12, CAMERA_EXTRA
     .rept 3, k
     lwide w1, CAMERA_WAY + 8 * k(s0)
@@ -107,6 +110,7 @@ dispatch_drained:
     lwide w2, CAMERA_FIRST(s0)
     wadd  w1, w2, w1
     wround s12, w1, CAMERA_EXTRA
+    .holds s12, pos
     vput  origin, s12, x
     lwide w2, CAMERA_FIRST + 8(s0)
     wsub  w1, w2, w0

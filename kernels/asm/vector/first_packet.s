@@ -6,14 +6,20 @@
     vabs  steep, direction
     vlt   backwards, direction, zero_vector
     lv    v6, ROOT_LOW(s0)
+    .holds v6, pos
     lv    v7, ROOT_HIGH(s0)
+    .holds v7, pos
     vmov  v8, v6
+    .holds v8, pos
     vselect v8, v7, backwards               ; planes to enter by
     vselect v7, v6, backwards               ; planes to leave by
     vsub  v10, v8, origin
+    .holds v10, pos
     vneg  v11, v10
+    .holds v11, pos
     vselect v10, v11, backwards             ; how far ahead they are
     vsub  v12, v7, origin
+    .holds v12, pos
     vneg  v11, v12
     vselect v12, v11, backwards
     vlt   s12, zero_vector, v12
@@ -24,8 +30,10 @@
     movi  exit_slope, 1
     .rept 3, k
     vget  s12, v10, k
+    .holds s12, pos
     blez  s12, 2f
     vget  s13, steep, k
+    .holds s13, dir
     beqz  s13, first_missed
     wmul  w0, s12, exit_slope
     wmul  w1, exit_run, s13

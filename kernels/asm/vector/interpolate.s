@@ -50,13 +50,21 @@ interpolate_corners:
     addr  s14, s14, s13
     read_corners CORNERS + 2 * sizeof(pixel)
     lv    v6, CORNERS(s0)
+    .holds v6, colour
+    .holds v7, colour
+    .holds v8, colour
+    .holds v9, colour
     lv    v7, CORNERS + sizeof(pixel)(s0)
     lv    v8, CORNERS + 2 * sizeof(pixel)(s0)
     lv    v9, CORNERS + 3 * sizeof(pixel)(s0)
     vmin  v10, v6, v7
+    .holds v10, colour
+    .holds v11, colour
     vmin  v11, v8, v9
     vmin  v10, v10, v11
     vmax  v12, v6, v7
+    .holds v12, colour
+    .holds v13, colour
     vmax  v13, v8, v9
     vmax  v12, v12, v13
     vsub  v12, v12, v10
@@ -65,6 +73,7 @@ interpolate_corners:
     vlt   s12, v13, v12
     bnez  s12, interpolate_apart
     li    s12, 0.25:weight
+    .holds s12, weight
     vscale v6, v6, s12, weight
     vscale v7, v7, s12, weight
     vscale v8, v8, s12, weight
@@ -75,6 +84,7 @@ interpolate_corners:
     isub  s14, s14, s13
     stv   v6, (s14)
     movi  s12, 1
+    .holds s12
     ret   link_node
 interpolate_apart:
     mov   s12, s0

@@ -28,6 +28,7 @@
     element s12, s12, s13, ROOT_LOW - ROOT_HIGH
     element s12, s12, exit_axis, 4
     lw    s12, (s12)
+    .holds s12, pos
     beq   s12, exit_plane, 4f
     isubi steps, steps, 1
     beqz  steps, 5f

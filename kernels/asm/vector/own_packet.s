@@ -2,6 +2,8 @@
 ; Returns by link_packet.
 .func own_packet
     vlt   backwards, direction, zero_vector
+    .holds exit_run, pos
+    .holds exit_slope, dir
     movi  exit_axis, 3
     mov   exit_run, s0
     movi  exit_slope, 1

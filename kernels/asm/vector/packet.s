@@ -37,6 +37,7 @@ packet_block:
     triangle_octets s12
     load  slot, s15, s12
     call  link_step, triangle
+    .holds s12, t
     blt   near_t, s12, 3f
     bne   near_t, s12, packet_nearer
     bltu  s15, near, packet_nearer
@@ -49,9 +50,11 @@ packet_block:
 .endif
 4:  ret   link_packet
 packet_nearer:
+    .holds s12, t
     mov   near_t, s12
     mov   near, s15
     mov   s12, slot
+    .holds s12
     mov   slot, near_slot
     mov   near_slot, s12
 .if SKIP_ANY_HIT

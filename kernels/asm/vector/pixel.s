@@ -8,6 +8,7 @@
     movi  slot, SLOT
     movi  near_slot, NEAR_SLOT
     vmov  pixel_colour, zero_vector
+    .holds pixel_colour, colour
 .if HAS_TREE
     call  link_tree, ray_tree
 .else

@@ -2,6 +2,7 @@
 ; leaves it, so one record a level is enough. Report 5.4, table 2. In: the camera ray and its first packet. Out: pixel_colour.
 ; Returns by link_tree.
 .func ray_tree
+    .holds refracted_weight, weight
     movi  node, NODES
     mov   level, s0
     mov   inside, s0
@@ -19,6 +20,7 @@ tree_visit:
     call  link_node, reflects
 .if HAS_GLASS
     li    s12, CUTOFF
+    .holds s12, weight
     ble   refracted_weight, s12, tree_reflected
     ; What the refracted ray will need when the walk is back.
     sw    refracted_weight, raynode.weight(node)
@@ -50,6 +52,7 @@ tree_leave:
     isubi level, level, 1
     lea   node, -sizeof(raynode)(node)
     lbu   s12, raynode.visited(node)
+    .holds s12
     beqz  s12, tree_leave
 tree_refracted:
     sb    s0, raynode.visited(node)

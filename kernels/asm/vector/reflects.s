@@ -3,6 +3,7 @@
 .func reflects
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.reflection(s12)
+    .holds s13, weight
     mul   s13, s13, weight_now, weight
     add   reflected_weight, reflected_weight, s13
     ret   link_node

@@ -2,6 +2,8 @@
 ; In: origin, direction, backwards, the first packet and its box (packet_count < 0: none), near_t, near = 0, any_hit.
 ; Out: near (0: nothing), near_t, near_slot. Returns by link_trace.
 .func trace
+    .holds exit_run, pos
+    .holds exit_slope, dir
     vabs  steep, direction
 .if SKIP_TESTED
     forget_tested

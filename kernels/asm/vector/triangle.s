@@ -96,13 +96,18 @@ tie_w_\@:
 
 .func triangle
     load_triangle slot
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
     vsub  v7, v7, v6                        ; E1
     vsub  v8, v8, v6                        ; E2
     vsub  v9, origin, v6                    ; T
+    .holds v9, pos
     wcross w0, direction, v8                ; P = D x E2
     wmixed w3, w0, v7, EDGE_SHIFT           ; det
     bwltz w3, triangle_from_behind
     bweqz w3, triangle_missed
+    .holds s12, t
     side  1
 triangle_from_behind:
     side  -1

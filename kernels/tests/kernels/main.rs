@@ -1,6 +1,8 @@
-//! The kernels as they count and as they round: the rows of the annexes, and pictures in each mode of rounding and overflow.
+//! The kernels as they count and as they round, and what they say of their registers: the rows of the annexes, and pictures in each mode of
+//! rounding and overflow.
 
 mod annex;
+mod formats;
 mod modes;
 mod packets;
 mod ties;

@@ -1,12 +1,20 @@
 //! The manual of the instruction set, written from the rows, the directives and the assembler's own description. Nothing in it is
 //! listed by hand.
 
+mod anchor;
+pub mod examples;
+mod topic;
+
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use isa::definition::Room;
 use isa::table::ROOMS;
 use isa::{Class, InstructionDef, Isa, Kind};
 use pulldown_cmark::{Event, Tag};
+
+use anchor::{Anchors, headings, plain};
+pub use topic::{names, page};
 
 /// Meaning of the letters and kinds of operands; the kinds' own rows are generated.
 const OPERANDS: &str = "\
@@ -24,15 +32,65 @@ A core has 32 scalar registers `s0` to `s31` (`s0` reads zero and ignores writes
 nearest with ties up, saturating). *Integer* rows are 32 bits modulo 2^32 whatever the word.
 ";
 
-/// The manual as Markdown.
+/// Chapter on calls and memories: places of arguments, results and data.
+const CONVENTIONS: &str = include_str!("conventions.md");
+
+/// The manual as Markdown: contents, chapters, index.
 pub fn markdown(isa: &Isa) -> String {
+    let chapters = chapters(isa);
     let mut text = String::from("# The instruction set of lancer\n\n");
     let _ = writeln!(
         text,
-        "{} instructions. Written by `lancer manual` from the table of instructions.\n",
+        "{} instructions. Written by `lancer manual` from the table of instructions; `lancer manual vdot` shows one of them.\n",
         isa.ops().count()
     );
+    text.push_str("## Contents\n\n");
+    let mut anchors = Anchors::default();
+    anchors.next("The instruction set of lancer");
+    anchors.next("Contents");
+    for (level, heading) in headings(&chapters) {
+        let anchor = anchors.next(heading);
+        if level <= 2 {
+            let _ = writeln!(text, "{}* [{heading}](#{anchor})", "  ".repeat(level - 1));
+        }
+    }
+    text.push_str("  * [Index](#index)\n\n");
+    text + &chapters + &index(isa)
+}
+
+/// All names of the manual in the order of the alphabet, each with a link to where it stands.
+fn index(isa: &Isa) -> String {
+    let mut entries: BTreeMap<String, String> = BTreeMap::new();
+    let mut add = |name: &str, heading: &str| {
+        entries.insert(name.to_owned(), plain(heading));
+    };
+    rows(isa).for_each(|row| add(&row.name, &row.name));
+    asm::pseudo::PSEUDOS.iter().for_each(|pseudo| add(pseudo.name, "All pseudo-instructions"));
+    asm::directive::DIRECTIVES.iter().for_each(|directive| add(directive.name, "All directives"));
+    asm::function::FUNCTIONS
+        .iter()
+        .for_each(|function| add(&format!("{}()", function.name), "All functions of expressions"));
+    let mut text = String::from("\n## Index\n");
+    let mut letter = None;
+    // Directives stand under the letter behind their point.
+    let key = |name: &str| name.trim_start_matches('.').chars().next().map(|letter| letter.to_ascii_lowercase());
+    let mut entries: Vec<(String, String)> = entries.into_iter().collect();
+    entries.sort_by(|(a, _), (b, _)| a.trim_start_matches('.').cmp(b.trim_start_matches('.')).then(a.cmp(b)));
+    for (name, anchor) in entries {
+        if key(&name) != letter {
+            letter = key(&name);
+            text.push('\n');
+        }
+        let _ = writeln!(text, "[`{name}`](#{anchor})");
+    }
+    text
+}
+
+/// Chapters between contents and index.
+fn chapters(isa: &Isa) -> String {
+    let mut text = String::new();
     let _ = writeln!(text, "## Registers and numbers\n\n{REGISTERS}");
+    let _ = writeln!(text, "{CONVENTIONS}");
     let _ = writeln!(text, "## How to read an instruction\n\n{OPERANDS}");
     text.push_str("| kind | registers | least to largest number of its field |\n|---|---|---|\n");
     for kind in Kind::ALL {
@@ -106,6 +164,9 @@ fn entry(text: &mut String, row: &InstructionDef) {
     for line in row.doc.lines() {
         let _ = writeln!(text, "{}", line.trim());
     }
+    if let Some(example) = examples::find(&row.name) {
+        let _ = writeln!(text, "\n```asm\n{example}\n```");
+    }
 }
 
 /// The page around the manual, with its title and its style.
@@ -119,7 +180,14 @@ pub fn html(isa: &Isa) -> String {
     let markdown = markdown(isa);
     let options = pulldown_cmark::Options::ENABLE_TABLES;
     let mut body = String::new();
+    // A heading's anchor is made of its text, which comes behind its beginning: all are made beforehand.
+    let mut anchors = Anchors::default();
+    let mut ids =
+        headings(&markdown).into_iter().map(|(_, heading)| anchors.next(heading)).collect::<Vec<_>>().into_iter();
     let events = pulldown_cmark::Parser::new_ext(&markdown, options).map(|event| match event {
+        Event::Start(Tag::Heading { level, classes, attrs, .. }) => {
+            Event::Start(Tag::Heading { level, id: ids.next().map(Into::into), classes, attrs })
+        }
         // Notes of an extension are a stranger's: their HTML is text, and their links lead to pages alone.
         Event::Html(text) | Event::InlineHtml(text) => Event::Text(text),
         Event::Start(Tag::Link { link_type, dest_url, title, id }) if !is_page(&dest_url) => {
@@ -160,7 +228,42 @@ mod tests {
             assert!(text.contains(&format!("### {}\n\n    {}\n", row.name, row.line())), "{}", row.name);
         }
         let page = html(&isa);
-        assert!(page.contains("<h3>vcross</h3>") && !page.contains(BODY) && page.ends_with("</html>"));
+        assert!(page.contains("<h3 id=\"vcross\">vcross</h3>") && !page.contains(BODY) && page.ends_with("</html>"));
+    }
+
+    #[test]
+    fn every_link_leads_to_an_anchor() {
+        let page = html(&Isa::base());
+        let between = |text: &str, from: &str| -> Vec<String> {
+            text.split(from).skip(1).filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect()
+        };
+        let ids: std::collections::BTreeSet<String> = between(&page, " id=\"").into_iter().collect();
+        let links = between(&page, "<a href=\"#");
+        assert!(links.len() > 250, "{} links", links.len());
+        for link in links {
+            assert!(ids.contains(&link), "no heading has the anchor {link}");
+        }
+    }
+
+    #[test]
+    fn every_topic_has_a_page() {
+        let isa = Isa::base();
+        for name in names(&isa) {
+            assert!(page(&name, &isa).is_some_and(|page| page.len() > 20 && page.ends_with('\n')), "{name}");
+        }
+        let text = page("vdot", &isa).unwrap();
+        for part in [
+            "vdot d, a, b, i",
+            "a scalar register",
+            "immediate",
+            "0 to 63",
+            "add 2, mul 3",
+            "example:",
+            "; s4 = 6.5:pos",
+        ] {
+            assert!(text.contains(part), "{part}:\n{text}");
+        }
+        assert_eq!(page("vdto", &isa), None);
     }
 
     #[test]

@@ -1,0 +1,80 @@
+//! Registers that are to be shown, each in a format: `s2:pos,v1:dir`.
+
+use std::str::FromStr;
+
+use emu::registers::Registers;
+use isa::Program;
+use messages::did_you_mean;
+
+use super::setting::register_of;
+use super::{RegisterContents, ShownRegister};
+
+/// A register to show, and the format to show it in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShowRequest {
+    register: String,
+    format: Option<String>,
+}
+
+/// Registers to show.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShowList(pub Vec<ShowRequest>);
+
+impl FromStr for ShowList {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<ShowList, String> {
+        text.split(',').map(str::parse).collect::<Result<_, _>>().map(ShowList)
+    }
+}
+
+impl FromStr for ShowRequest {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<ShowRequest, String> {
+        let (register, format) = match text.split_once(':') {
+            Some((register, format)) => (register.trim(), Some(format.trim().to_owned())),
+            None => (text.trim(), None),
+        };
+        if register.is_empty() || format.as_ref().is_some_and(String::is_empty) {
+            return Err("a register is expected, such as s2, or with a format, such as s2:pos".into());
+        }
+        Ok(ShowRequest { register: register.into(), format })
+    }
+}
+
+/// Name and fraction bits of a format of the program, or of a number of bits.
+///
+/// # Errors
+/// Another name, with one that is near, and more than 63 bits.
+pub fn format_of<'a>(program: &'a Program, name: &'a str) -> Result<(&'a str, u32), String> {
+    if let Some((name, bits)) = program.formats.get_key_value(name) {
+        return Ok((name, *bits));
+    }
+    if name.starts_with(|c: char| c.is_ascii_digit()) {
+        let bits = name.parse().ok().filter(|bits| *bits <= 63);
+        return bits.map(|bits| (name, bits)).ok_or_else(|| format!("a format has 0 to 63 fraction bits, not {name}"));
+    }
+    let known = || program.formats.keys().map(String::as_str);
+    let hint = did_you_mean(name, known()).unwrap_or_else(|| match program.formats.is_empty() {
+        true => "the program has none (`.format name, bits`); a number of fraction bits does as well".into(),
+        false => format!("there are {}", known().collect::<Vec<_>>().join(", ")),
+    });
+    Err(format!("`{name}` is no format of the program: {hint}"))
+}
+
+impl ShowRequest {
+    /// The register as it is before the word at `pc`, in the format that was asked for, else in that which the program says it holds.
+    ///
+    /// # Errors
+    /// A register or a format that there is not.
+    pub fn shown(&self, program: &Program, registers: &Registers, pc: u32) -> Result<ShownRegister, String> {
+        let register = register_of(program, &self.register, pc)?;
+        let format = match &self.format {
+            Some(format) => Some(format_of(program, format)?),
+            None => program.format_of(register, pc),
+        };
+        let contents = RegisterContents::of(registers, register);
+        Ok(ShownRegister::new(register, contents, program.name_of(register, pc), format))
+    }
+}

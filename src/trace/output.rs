@@ -1,0 +1,126 @@
+//! Output of a trace of instructions, line by line: to standard output, or to a file that appears when the trace is whole.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use emu::stepper::Stepper;
+use messages::Diagnostic;
+use tempfile::NamedTempFile;
+
+use super::instruction::{TraceClocks, head, next};
+use super::window::TraceWindows;
+use crate::failure::Failure;
+use crate::files;
+use crate::terminal::Terminal;
+
+/// Form of a trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TraceForm {
+    /// A line of text an instruction, under a head.
+    Text,
+    /// A line of JSON an instruction.
+    JsonLines,
+}
+
+impl TraceForm {
+    /// The form that a file's name asks for: JSON lines where it ends in `.jsonl` or `.json`. Of standard output `is_json` says it.
+    pub fn of(path: &Path, is_json: bool) -> TraceForm {
+        let extension = path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        let is_named = matches!(extension.as_deref(), Some("jsonl" | "json"));
+        match is_named || (is_standard(path) && is_json) {
+            true => TraceForm::JsonLines,
+            false => TraceForm::Text,
+        }
+    }
+}
+
+/// The path means standard output.
+pub fn is_standard(path: &Path) -> bool {
+    path == Path::new(files::STANDARD)
+}
+
+/// Octets that are gathered before they are written to standard output.
+const AT_ONCE: usize = 1 << 16;
+
+/// Place where the lines go.
+enum TraceTarget<'a> {
+    Standard(&'a mut Terminal, Vec<u8>),
+    File(BufWriter<NamedTempFile>, PathBuf),
+}
+
+impl TraceTarget<'_> {
+    fn line(&mut self, text: &str) -> Result<(), Failure> {
+        match self {
+            TraceTarget::Standard(terminal, gathered) => {
+                gathered.extend(text.as_bytes());
+                gathered.push(b'\n');
+                if gathered.len() >= AT_ONCE {
+                    terminal.print_octets(gathered)?;
+                    gathered.clear();
+                }
+                Ok(())
+            }
+            TraceTarget::File(file, path) => writeln!(file, "{text}").map_err(|error| unwritable(path, &error)),
+        }
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        match self {
+            TraceTarget::Standard(terminal, gathered) => terminal.print_octets(&gathered),
+            TraceTarget::File(file, path) => {
+                let file = file.into_inner().map_err(|error| unwritable(&path, error.error()))?;
+                file.persist(&path).map_err(|error| unwritable(&path, &error.error))?;
+                Ok(())
+            }
+        }
+    }
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    Diagnostic::error(format!("{} cannot be written: {error}", path.display())).into()
+}
+
+/// Writes the instructions of a core that lie in the windows, to the program's end or the end of the windows; yields their number.
+///
+/// # Errors
+/// A place that cannot be written.
+pub fn write_instructions(
+    stepper: &mut Stepper,
+    clocks: TraceClocks,
+    windows: &TraceWindows,
+    path: &Path,
+    form: TraceForm,
+    terminal: &mut Terminal,
+) -> Result<u64, Failure> {
+    let mut target = match is_standard(path) {
+        true => TraceTarget::Standard(terminal, Vec::new()),
+        false => {
+            files::check_target(path)?;
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let file = NamedTempFile::new_in(folder).map_err(|error| unwritable(path, &error))?;
+            TraceTarget::File(BufWriter::new(file), path.to_owned())
+        }
+    };
+    if form == TraceForm::Text {
+        target.line(&head())?;
+    }
+    let steps = windows.steps();
+    // What comes before the first window needs no records.
+    stepper.run_to(steps.start);
+    let mut written = 0;
+    while stepper.end().is_none() && stepper.steps() < steps.end {
+        if !windows.has(stepper) {
+            stepper.step();
+            continue;
+        }
+        let Some(record) = next(stepper, clocks) else { break };
+        let line = match form {
+            TraceForm::Text => record.line(),
+            TraceForm::JsonLines => record.json(),
+        };
+        target.line(&line)?;
+        written += 1;
+    }
+    target.finish()?;
+    Ok(written)
+}

@@ -195,6 +195,11 @@ pub(crate) fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop)
     octets.chunks_exact(PIXEL.octets() as usize).map(|pixel| std::array::from_fn(|k| word(pixel, k))).collect()
 }
 
+/// The picture in the frame.
+pub(crate) fn read(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Picture {
+    picture(image, &colour_words(image, frame, crop), (crop.width, crop.height))
+}
+
 /// The colours as numbers, from raw words.
 pub(crate) fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32)) -> Picture {
     let scale = (-f64::from(image.formats.colour)).exp2();

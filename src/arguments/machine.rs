@@ -108,7 +108,7 @@ pub fn engine() -> impl TypedValueParser<Value = EngineKind> {
     let names = PossibleValuesParser::new(names.chain(OTHERS.map(|name| PossibleValue::new(name).hide(true))));
     names.try_map(|name| match name == OTHERS[1] {
         true => Err("lock-step was removed, because it was slower; use `--engine native`"),
-        false => Ok(EngineKind::ALL.into_iter().find(|engine| engine.name() == name).unwrap_or_default()),
+        false => Ok(EngineKind::named(&name).unwrap_or_default()),
     })
 }
 

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "cli")]
 mod chart;
+pub mod parts;
 
 use std::time::{Duration, Instant};
 

@@ -15,6 +15,7 @@ use serde_json::Value;
 use super::diff;
 use super::invocation::{CommandSettings, scene_hashes};
 use crate::arguments::{self, SettingsArguments, Size};
+use crate::benchmark::parts::{self, PictureParts};
 use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
 use crate::job::Job;
@@ -45,6 +46,10 @@ const SLOWER: f64 = 10.0;
 /// All take turns, and ratios are those of medians. `native` and `checked` compute and count the cores' work, `native, clocks` puts it
 /// on the machine's clocks as well, `native, all` measures functions too, as `render` does. The native twin is the profile's functions in Rust on the same tree and the same
 /// rays, native f64 the reference picture in double precision.
+///
+/// A second table has the parts of each picture as `render` draws it, one after the other: tree, image and programs; native code; work items,
+/// counted; totals of functions and recorded transfers, beside that; recordings on the machine's clocks; the picture out of memory; the
+/// comparison with double precision; the file.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct BenchArguments {
@@ -101,6 +106,8 @@ pub(super) struct Benches {
     features: &'static str,
     /// Measurements, scene by scene.
     measured: Vec<BenchResult>,
+    /// Time of each picture by part, as `lancer render` draws it.
+    parts: Vec<PictureParts>,
     /// Times beside those of an earlier result, measurement by measurement; left out unless one was named.
     #[serde(skip_serializing_if = "Option::is_none")]
     against: Option<Vec<TimeChange>>,
@@ -176,7 +183,7 @@ pub(super) fn execute(
     let threads = arguments.threads as usize;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Diagnostic::error(format!("there are no {threads} threads: {error}")))?;
-    let (mut measured, mut read) = (Vec::new(), Vec::new());
+    let (mut measured, mut by_part, mut read) = (Vec::new(), Vec::new(), Vec::new());
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
@@ -184,9 +191,10 @@ pub(super) fn execute(
             let mut job = Job::new(loaded.scene.clone());
             job.view.size = arguments.size;
             job.kernels.profile = profile;
-            let rounds = u64::from(arguments.runs) * Runner::ALL.len() as u64;
+            let rounds = u64::from(arguments.runs) * (Runner::ALL.len() as u64 + 1);
             let bar = terminal.progress(&job.scene.name, rounds);
             measured.extend(benchmark::measure(&job, arguments.runs, || bar.inc(1))?);
+            by_part.push(parts::measure(&job, arguments.runs, || bar.inc(1))?);
             bar.finish_and_clear();
         }
         read.push(loaded.scene);
@@ -199,7 +207,7 @@ pub(super) fn execute(
     let features = HostSimd::best().name();
     let tolerance = arguments.tolerance.unwrap_or(SLOWER);
     let against = before.map(|before| changes(&measured, &before, tolerance));
-    let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured, against };
+    let benches = Benches { schema: SCHEMA, width, height, runs, threads, features, measured, parts: by_part, against };
     let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
     match (is_taken, arguments.json) {
         (true, _) => {}
@@ -246,9 +254,17 @@ fn text(benches: &Benches) -> String {
             row.push(change.percent.map_or("-".to_owned(), |percent| format!("{percent:+.1} %{mark}")));
         }
     }
+    let headings = ["scene", "profile"].into_iter().chain(PictureParts::HEADINGS).map(str::to_owned);
+    let times = |one: &PictureParts| {
+        let names = [one.scene.clone(), one.profile.to_owned()];
+        names.into_iter().chain(one.times().map(|time| format!("{time:.1}"))).collect::<Vec<_>>()
+    };
+    let parts: Vec<Vec<String>> = std::iter::once(headings.collect()).chain(benches.parts.iter().map(times)).collect();
     let Benches { width, height, runs, threads, features, .. } = benches;
     format!(
-        "{width} x {height} pixels, medians of {runs} runs, host threads: {threads}, vector instructions: {features}\n{}",
-        table(rows)
+        "{width} x {height} pixels, medians of {runs} runs, host threads: {threads}, vector instructions: {features}\n{}\n\
+         Milliseconds of a picture by part, as `lancer render` draws it\n{}",
+        table(rows),
+        table(parts)
     )
 }

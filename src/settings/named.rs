@@ -53,8 +53,7 @@ impl NamedChoice for EngineKind {
     }
 
     fn named(name: &str) -> Option<Self> {
-        let found = EngineKind::ALL.into_iter().find(|engine| EngineKind::name(*engine) == name);
-        found.or_else(|| (name == AUTO).then(EngineKind::default))
+        EngineKind::named(name).or_else(|| (name == AUTO).then(EngineKind::default))
     }
 
     fn names() -> Vec<String> {

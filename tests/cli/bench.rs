@@ -8,6 +8,17 @@ fn every_runner_is_measured_on_every_scene_and_profile() {
     let result = session.json("bench cornell slabs --size 8x6 --profiles ray,vector --runs 1");
     let measured = result["measured"].as_array().expect("a list");
     assert_eq!(measured.len(), 2 * 2 * 6);
+    let parts = result["parts"].as_array().expect("a list");
+    assert_eq!(parts.len(), 2 * 2);
+    for one in parts {
+        // Of a picture as small as this one a difference of two runs says nothing.
+        for part in ["building", "compiling", "replaying", "reading", "comparing", "writing", "whole"] {
+            assert!(one[part].as_f64().expect("a number") > 0.0, "{part}: {one}");
+        }
+        for part in ["executing", "functions", "recording"] {
+            assert!(one[part].is_number(), "{part}: {one}");
+        }
+    }
     for one in measured {
         let is_native = ["twin", "reference"].contains(&one["runner"].as_str().expect("a name"));
         assert!(one["nanoseconds"].as_f64().expect("a number") > 0.0 && one["rays"].as_f64().expect("a number") > 0.0);
@@ -34,6 +45,9 @@ fn the_table_and_the_chart_name_all_runners() {
     let native = ["native", "native, clocks", "native, all", "native twin", "native f64"];
     for name in native.into_iter().chain(["checked"]) {
         assert!(text.contains(&format!("| {name:>14} |")) && chart.contains(name), "{name} in\n{text}");
+    }
+    for part in ["compile", "execute", "record", "replay", "compare"] {
+        assert!(text.contains(&format!("| {part} |")), "{part} in\n{text}");
     }
     session.fail("bench nothing.dsc", 1, "nothing.dsc");
 }

@@ -102,6 +102,12 @@ macro_rules! engines {
             /// All, best first.
             pub const ALL: [EngineKind; [$($name,)* "checked"].len()] = [$(EngineKind::$kind,)* EngineKind::Checked];
 
+            /// The engine of a name; the best one for `fast`, the name of one that there is no more.
+            pub fn named(name: &str) -> Option<EngineKind> {
+                let kind = EngineKind::ALL.into_iter().find(|kind| kind.name() == name);
+                kind.or_else(|| (name == "fast").then(EngineKind::default))
+            }
+
             /// Name in options and results.
             pub const fn name(self) -> &'static str {
                 match self {
@@ -137,6 +143,12 @@ macro_rules! engines {
             ) -> Stopped {
                 match self {
                     $(Ready::$kind(engine) => engine.run(core, state, arithmetic, link, taint, profiler),)*
+                }
+            }
+
+            fn prepare(&mut self) {
+                match self {
+                    $(Ready::$kind(engine) => engine.prepare(),)*
                 }
             }
 
@@ -233,6 +245,13 @@ impl EngineRunner<'_> {
             if limit >= core.step_limit || pause != Pause::Fault(Fault::StepLimit(limit)) {
                 return pause;
             }
+        }
+    }
+
+    /// Does now what would be done when the program runs for a while.
+    pub(crate) fn prepare(&mut self) {
+        if let Some(ready) = &mut self.ready {
+            ready.prepare();
         }
     }
 

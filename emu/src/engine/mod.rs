@@ -61,6 +61,9 @@ pub trait Engine<'a>: Sized {
         profiler: Option<&mut Profiler>,
     ) -> Stopped;
 
+    /// Does now what would be done when the program runs for a while.
+    fn prepare(&mut self) {}
+
     /// Steps that the interpreter is to take before the engine is asked again, where it has left something to the interpreter.
     fn patience(&self, _seat: CoreId, _state: &State) -> u64 {
         u64::MAX

@@ -33,7 +33,7 @@ use trace::Window;
 
 use crate::code::trap::Trap;
 use crate::code::{Code, check_bodies};
-use crate::engine::{Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
+use crate::engine::{Answers, Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
 use crate::profile::ProfileLevel;
 use crate::semantics::{Computes, Watch};
 
@@ -64,10 +64,23 @@ impl Setup<'_> {
     /// The engine that runs the cores' program, and why not a faster one that was wanted.
     pub fn engine(&self) -> Choice {
         let code = Code::new(self.core, self.isa, self.config.timing());
+        choose(&self.demand(&code)).choice()
+    }
+
+    /// Makes the engine ready that records the cores' program, which takes native code the time to generate it, and yields that engine.
+    pub fn prepare_engine(&self) -> Choice {
+        let code = Code::new(self.core, self.isa, self.config.timing());
+        let answers = Answers::AtOnce { keeps_time: true };
+        let mut runner = choose(&Demand { answers, ..self.demand(&code) });
+        runner.prepare();
+        runner.choice()
+    }
+
+    fn demand<'a>(&self, code: &'a Code<'a>) -> Demand<'a> {
         let watching = self.config.arithmetic.watching(self.options.has_losses);
         let computes = watching.map_or(Computes::default(), |watching| watching.computes());
-        let demand = Demand::new(&code, self.options.wish(), computes, self.config.buffer_octets);
-        choose(&Demand { follows_cores: true, profile: self.options.profile, ..demand }).choice()
+        let demand = Demand::new(code, self.options.wish(), computes, self.config.buffer_octets);
+        Demand { follows_cores: true, profile: self.options.profile, ..demand }
     }
 }
 

@@ -12,7 +12,6 @@ use isa::Counts;
 use super::Profile;
 use super::regions::RegionNesting;
 use crate::code::Code;
-use crate::code::tally::Tally;
 use crate::semantics::Motion;
 
 /// Most calls that are open at once; what deeper calls cost counts for what is open already.
@@ -342,16 +341,13 @@ impl Contexts {
             found.calls = calls;
             found.inclusive = self.crowded.get(region).copied().unwrap_or_default();
         }
-        for context in self.contexts.iter().filter(|context| !context.passes.is_empty()) {
-            let mut tally = Tally::new(code);
-            for (passes, &(count, units)) in tally.passes_mut().iter_mut().zip(&context.passes) {
-                (passes.count, passes.units) = (count, units);
-            }
+        for context in &self.contexts {
             let mut of_callers = Counts::ZERO;
-            for pc in 0..code.words() {
-                let counts = tally.word(code, pc).counts;
+            for (exit, &(count, units)) in context.passes.iter().enumerate().filter(|(_, passes)| passes.0 != 0) {
+                let (cost, each) = self.costs[exit];
+                let counts = cost.times(count) + each.times(units);
                 of_callers += counts;
-                let own = if context.is_deep { &[][..] } else { self.regions.around(pc) };
+                let own = if context.is_deep { &[][..] } else { self.regions.around(code.passes()[exit].word) };
                 for &region in own.iter().filter(|&&region| !has_bit(&context.open, region)) {
                     profile.regions[usize::from(region)].inclusive += counts;
                 }

@@ -18,9 +18,18 @@ use proptest::test_runner::RngSeed;
 use super::builder::{Builder, program};
 
 fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCoreRun {
+    run_on_both(config, program, registers, false)
+}
+
+fn run_on_both(config: &Config, program: &Program, registers: Registers, has_losses: bool) -> OneCoreRun {
     let isa = Isa::base();
-    let one_core =
-        OneCore { registers, step_limit: 500, profile: ProfileLevel::Extremes, ..OneCore::new(config, &isa, program) };
+    let one_core = OneCore {
+        registers,
+        step_limit: 500,
+        profile: ProfileLevel::Extremes,
+        has_losses,
+        ..OneCore::new(config, &isa, program)
+    };
     let long = OneCore { registers: one_core.registers.clone(), step_limit: 1 << 20, ..one_core };
     let memory = || Memory::new((0..=255).collect());
     let checked = one_core::run_with(&one_core, memory(), Wish::CHECKED).expect("the setup is right");
@@ -132,8 +141,10 @@ fn what_results_lose_is_counted_word_by_word() {
     });
     let (isa, config) = (Isa::base(), Config::default());
     let losses = |config: &Config, has_losses| {
-        let one_core = OneCore { step_limit: 500, has_losses, ..OneCore::new(config, &isa, &program) };
-        let run = one_core::run(&one_core, Memory::default()).expect("the setup is right");
+        let one_core = OneCore { step_limit: 1 << 20, has_losses, ..OneCore::new(config, &isa, &program) };
+        let [run, native] = [Wish::CHECKED, Wish::native()]
+            .map(|wish| one_core::run_with(&one_core, Memory::default(), wish).expect("the setup is right"));
+        assert_eq!((&native.tally, &native.state, native.engine.kind), (&run.tally, &run.state, EngineKind::Native));
         let code = Code::new(&program, &isa, config.timing());
         let losses = (0..).zip(run.tally.losses(&code)).filter(|(_, losses)| *losses != Losses::default());
         let named = losses
@@ -290,7 +301,7 @@ proptest! {
     fn engines_agree_in_all_modes(
         words in words(), registers in registers(), word in 8u32..=32,
         quantization in prop::sample::select(Quantization::ALL), overflow in prop::sample::select(Overflow::ALL),
-        saturated in 0u32..4, trap_division_by_zero: bool,
+        saturated in 0u32..4, trap_division_by_zero: bool, has_losses: bool,
     ) {
         let program = Program { words, region_of: vec![], ..Program::default() };
         let mut config = Config::default();
@@ -298,6 +309,6 @@ proptest! {
         config.arithmetic.quantization = quantization;
         config.arithmetic.overflow = overflow.with_saturated(saturated);
         config.arithmetic.trap_division_by_zero = trap_division_by_zero;
-        run_with(&config, &program, registers);
+        run_on_both(&config, &program, registers, has_losses);
     }
 }

@@ -122,6 +122,15 @@ fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &InstructionDe
         return;
     }
     let has_address = row.room == "local" || row.room == "bus";
+    if row.room == "packet" {
+        // A packet of at most seven triangles.
+        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::andi, &[5, 5, 7]);
+    }
+    if row.room == "walk" {
+        // A block of three nodes, the first of which is the one to begin with.
+        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::movi, &[5, 64]).emit(Op::sw, &[5, 4, 0]);
+        p.emit(Op::movi, &[6, 24]).emit(Op::sw, &[6, 4, 4]).emit(Op::andi, &[6, 6, 0xff]);
+    }
     if has_address {
         let base = if row.room == "bus" { DATA } else { 0 };
         p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::iaddi, &[4, 4, base]);
@@ -131,6 +140,9 @@ fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &InstructionDe
         let (least, most) = kind.range(width);
         match kind {
             Kind::A | Kind::S if has_address && (kind == Kind::A || letter == b'x') => 4,
+            Kind::A if ["packet", "walk"].contains(&&*row.room) => 4,
+            Kind::S if row.room == "packet" || row.room == "walk" && letter == b'x' => 5,
+            Kind::S if row.room == "walk" => 6,
             Kind::S | Kind::A => random.below(FREE + 1),
             Kind::Off if has_address => random.below(100),
             _ => least + random.below(most - least + 1),

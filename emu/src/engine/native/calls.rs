@@ -66,12 +66,16 @@ macro_rules! row_function {
             // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
             let arithmetic = unsafe { &*(*context).arithmetic.cast::<T>() };
             // SAFETY: as above.
-            let (registers, fields) = unsafe { (&mut *registers, &(*step).fields) };
+            let (registers, fields, slot) = unsafe { (&mut *registers, &(*step).fields, (*step).slot) };
             let result = $trait::$name(arithmetic $(, read!(registers, fields, $letter $kind))*);
-            if T::IS_WATCHING && arithmetic.take_division_by_zero() {
-                return STOPPED;
+            if T::IS_WATCHING {
+                if arithmetic.take_division_by_zero() {
+                    return STOPPED;
+                }
+                // SAFETY: the context is that of a run.
+                unsafe { NativeHost::of(&mut *context) }.note_losses(slot);
             }
-            let _ = (&*registers, fields);
+            let _ = (&*registers, fields, slot);
             let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
             exit.index() as u64 | u64::from(exit.units()) << 32
         }
@@ -88,13 +92,18 @@ macro_rules! row_function {
             step: *const Step,
         ) -> u64 {
             // SAFETY: as the function asks for; nobody else looks at any of them meanwhile. `crate::engine::interpreter::run` is the safe twin.
-            let (context, registers, fields) = unsafe { (&mut *context, &mut *registers, &(*step).fields) };
+            let (context, registers, step) = unsafe { (&mut *context, &mut *registers, &*step) };
+            let fields = &step.fields;
             // SAFETY: as above.
             let arithmetic = unsafe { &*context.arithmetic.cast::<T>() };
             // SAFETY: the context is that of a run, and the buffer is the core's, which nobody else has.
             let buffer = unsafe { &mut *NativeHost::of(context).buffer };
             match $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*) {
                 Ok(result) => {
+                    if T::IS_WATCHING {
+                        // SAFETY: the context is that of a run.
+                        unsafe { NativeHost::of(context) }.note_losses(step.slot);
+                    }
                     let exit: outcome::$name::Outcome = finish!(registers fields, result, $written);
                     exit.index() as u64 | u64::from(exit.units()) << 32
                 }
@@ -347,6 +356,7 @@ pub(super) unsafe extern "C" fn unit(context: *mut Context, registers: *mut Regi
     let ended = catch_unwind(AssertUnwindSafe(execute));
     match ended {
         Ok(Ok(ending)) => {
+            host.note_losses(step.slot);
             if ending.units != 0 {
                 host.add_units(context, step.exit as usize + usize::from(ending.exit), ending.units);
             }

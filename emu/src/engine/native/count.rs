@@ -4,7 +4,7 @@ use isa::Op;
 
 use super::context::{ContextFrame, CounterLayout};
 use super::{AddOctets, Native, blocks, run};
-use crate::code::tally::Tally;
+use crate::code::tally::{Losses, Tally};
 use crate::engine::plan::{Plan, Step};
 use crate::profile::Profiler;
 
@@ -14,6 +14,8 @@ pub(super) struct Counters {
     pub frame: ContextFrame,
     /// Units by exit.
     pub units: Vec<u64>,
+    /// Losses of results by slot, where those are counted.
+    pub losses: Vec<Losses>,
     /// Kinds of the data that each site has met last.
     pub kinds: Vec<u32>,
 }
@@ -21,7 +23,12 @@ pub(super) struct Counters {
 impl Counters {
     /// Nothing yet.
     pub fn new(layout: CounterLayout, plan: &Plan, sites: usize, has_contexts: bool) -> Counters {
-        Counters { frame: ContextFrame::new(layout, has_contexts), units: vec![0; plan.exits()], kinds: vec![0; sites] }
+        Counters {
+            frame: ContextFrame::new(layout, has_contexts),
+            units: vec![0; plan.exits()],
+            losses: vec![Losses::default(); plan.slots().len()],
+            kinds: vec![0; sites],
+        }
     }
 }
 
@@ -110,6 +117,9 @@ impl Native<'_> {
             if let Some(pass) = plan.pass(exit) {
                 passes[pass].units += units;
             }
+        }
+        for (losses, more) in tally.parts_mut().1.iter_mut().zip(&mut counters.losses) {
+            losses.add(std::mem::take(more));
         }
         for (site, &place) in code.site_places.iter().enumerate() {
             let count = std::mem::take(&mut counters.frame.site(site)[1]);

@@ -160,9 +160,6 @@ pub struct Native<'a> {
 
 impl<'a> Engine<'a> for Native<'a> {
     fn new(demand: &Demand<'a>) -> Result<Native<'a>, Refusal> {
-        if demand.computes.counts_losses {
-            return Err("native code counts no losses");
-        }
         host()?;
         if !executable::is_given() {
             return Err(NO_MEMORY);
@@ -185,6 +182,10 @@ impl<'a> Engine<'a> for Native<'a> {
         profiler: Option<&mut Profiler>,
     ) -> Stopped {
         self.run_code(core, state, arithmetic, link, taint, profiler)
+    }
+
+    fn prepare(&mut self) {
+        self.shared.compiled.get_or_init(|| Compiled::new(&self.plan, &self.shared.recipe));
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {

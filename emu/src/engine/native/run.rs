@@ -8,6 +8,7 @@ use super::context::{Context, CounterLayout, NOTED};
 use super::count::Counters;
 use super::{NO_SITE, Native, NotedRead, Status, Stopped, TimedLink};
 use crate::code::octets::Buffer;
+use crate::code::tally::Losses;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::RequestTime;
 use crate::engine::cost::Cost;
@@ -37,6 +38,8 @@ pub(super) struct NativeHost<'a> {
     pub units: *mut Units,
     pub link: &'a mut dyn TimedLink,
     pub numbers: Numbers<'a>,
+    /// Takes what results have lost, where that is counted.
+    take_losses: Option<&'a dyn Fn() -> Losses>,
     totals: Totals,
     counters: &'a mut Counters,
     sites: &'a [u32],
@@ -211,6 +214,16 @@ impl<'a> NativeHost<'a> {
         }
     }
 
+    /// Takes note of what results of a slot have lost, where that is counted.
+    #[inline]
+    pub fn note_losses(&mut self, slot: u32) {
+        if let Some(take_losses) = self.take_losses
+            && let Some(losses) = self.counters.losses.get_mut(slot as usize)
+        {
+            losses.add(take_losses());
+        }
+    }
+
     /// Adds clocks to those before the sums were last emptied.
     fn add_clocks(&mut self, context: &mut Context, clocks: u64) {
         self.totals.clocks += clocks;
@@ -277,12 +290,14 @@ impl Native<'_> {
         let (buffer_octets, before) =
             (state.buffer.start_mut(), link.quick().map(|quick| (quick.before(), quick.memory().map(<[u8]>::as_ptr))));
         let context = counters.frame.context();
+        let take_losses = || arithmetic.take_losses();
         let mut host = NativeHost {
             plan,
             buffer: &raw mut state.buffer,
             units: &raw mut state.units,
             link,
             numbers: arithmetic.numbers(),
+            take_losses: shared.recipe.computes.counts_losses.then_some(&take_losses),
             totals: Totals { steps, inner_steps, clocks, elementary },
             counters,
             sites: &code.sites,

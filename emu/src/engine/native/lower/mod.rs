@@ -281,14 +281,27 @@ impl Lower<'_, '_> {
             };
         }
         macro_rules! lower {
-            ({ $style:ident $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] [$(($written:ident $made:ident))*]) => {
-                match $trait::$name(self, $(operand!($letter $kind)),*) {
+            ({ $style:ident $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] [$(($written:ident $made:ident))*]) => {{
+                let form = match is_of_values!($style) && self.source.recipe.computes.counts_losses {
+                    // A meaning knows what its results lose.
+                    true => Form::Call,
+                    false => $trait::$name(self, $(operand!($letter $kind)),*),
+                };
+                match form {
                     Form::Made(($($written,)*)) => {
                         $(put!($written $made);)*
                     }
                     Form::Call => called!($style op, step),
                     Form::Left => return Continuation::Left,
                 }
+            }};
+        }
+        macro_rules! is_of_values {
+            (pure) => {
+                true
+            };
+            ($style:ident) => {
+                false
             };
         }
         macro_rules! called {

@@ -272,7 +272,7 @@ proptest! {
     #[test]
     fn any_words_run_to_an_end_or_a_trap_with_all_accounts_right(words in words(), registers in registers()) {
         let program = Program { words, region_of: vec![], ..Program::default() };
-        let config = Config::default();
+        let config = Config { packet_lanes: 1, ..Config::default() };
         let run = run_with(&config, &program, registers.clone());
         prop_assert!(run.state.steps <= 500);
         let isa = Isa::base();

@@ -77,7 +77,6 @@ const LEVERS: &[(&str, &[&str])] = &[
             "profile.release.package.annotate-snippets.opt-level=1",
             "profile.release.package.image.opt-level=1",
             "profile.release.package.papergrid.opt-level=1",
-            "profile.release.package.plotters.opt-level=1",
             "profile.release.package.pulldown-cmark.opt-level=1",
             "profile.release.package.schemars.opt-level=1",
             "profile.release.package.tabled.opt-level=1",

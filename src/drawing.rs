@@ -1,6 +1,7 @@
 //! From a job to a picture: memory image, programs, the run of the machine, the picture in its frame, and the reference
 //! that it is measured against.
 
+use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
 use emu::code::Code;
@@ -133,12 +134,18 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     // Run the machine, with the reference beside it on a thread of its own.
     let profile = match job.detail {
         Detail::Totals => ProfileLevel::None,
-        Detail::Functions => ProfileLevel::Totals,
+        Detail::Functions | Detail::Course => ProfileLevel::Totals,
         Detail::Extremes => ProfileLevel::Extremes,
     };
-    let (has_losses, engine) = (job.flags, job.engine);
-    let options =
-        machine::RunOptions { profile, has_items: true, has_losses, engine, ..machine::RunOptions::default() };
+    let (has_losses, has_course, engine) = (job.flags, job.detail == Detail::Course, job.engine);
+    let options = machine::RunOptions {
+        profile,
+        has_items: true,
+        has_losses,
+        has_course,
+        engine,
+        ..machine::RunOptions::default()
+    };
     let setup = load.setup(&job.machine, options);
     let engine = setup.engine();
     let samples = Samples::new(&job.scene, &image, job.kernels.profile, job.machine.arithmetic.modes());
@@ -186,11 +193,16 @@ pub(crate) fn part(reference: &Reference, samples: &Samples, crop: &Crop) -> Pic
     Picture { size: (crop.width, crop.height), pixels: rows.into_iter().flatten().collect() }
 }
 
-/// The colours in the frame, where the drawn part lies row by row from its start.
-pub(crate) fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i32; 3]> {
+/// Octets of the drawn part in the frame, where it lies row by row from its start.
+pub(crate) fn colour_octets<'f>(image: &MemoryImage, frame: &'f RunOutcome, crop: &Crop) -> Cow<'f, [u8]> {
     let start = image.region(MemoryKind::Frame).start;
     let octets = frame.memory.slice(start, crop.width * crop.height * PIXEL.octets());
-    let octets = octets.expect("the image has a frame for the whole picture");
+    octets.expect("the image has a frame for the whole picture")
+}
+
+/// The colours in the frame.
+pub(crate) fn colour_words(image: &MemoryImage, frame: &RunOutcome, crop: &Crop) -> Vec<[i32; 3]> {
+    let octets = colour_octets(image, frame, crop);
     let word = |octets: &[u8], at: usize| i32::from_le_bytes(std::array::from_fn(|k| octets[4 * at + k]));
     octets.chunks_exact(PIXEL.octets() as usize).map(|pixel| std::array::from_fn(|k| word(pixel, k))).collect()
 }

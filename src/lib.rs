@@ -1,10 +1,13 @@
 #![doc = include_str!("../docs/library.md")]
 
 pub mod accuracy;
+pub mod advise;
 pub mod annex;
 #[cfg(feature = "cli")]
 pub mod arguments;
 pub mod benchmark;
+#[cfg(feature = "cli")]
+pub mod chart;
 #[cfg(feature = "cli")]
 pub mod command;
 pub mod cores;
@@ -28,6 +31,8 @@ pub mod numeral;
 pub mod profiles;
 #[cfg(feature = "cli")]
 pub mod registers;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod result;
 pub mod settings;
 pub mod skips;

@@ -1,106 +1,117 @@
-//! Clocks against error as a picture: SVG, both axes logarithmic, one panel a scene.
-
-use std::fmt::Write;
+//! Cost against error as a chart: one plot a scene, the front as a line.
 
 use super::MeasuredVariant;
-
-const WIDTH: f64 = 760.0;
-const HEIGHT: f64 = 380.0;
-const LEFT: f64 = 80.0;
-const RIGHT: f64 = 20.0;
-const TOP: f64 = 36.0;
-const BOTTOM: f64 = 48.0;
+use crate::chart::{AxisKind, ChartAxis, ChartFigure, ChartLine, ChartPoint, ChartSeries, Look, Plot, PointLabel};
 
 /// PSNR of a picture without any error, for the axis.
 const PERFECT: f64 = 200.0;
 
-/// The chart. Dominated variants are grey and name the one that beats them in their tooltip.
-pub fn svg(measured: &[MeasuredVariant]) -> String {
+/// Cost that errors are set against.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum CostAxis {
+    /// Clocks of the machine.
+    #[default]
+    Clocks,
+    /// Time of the host.
+    Host,
+}
+
+impl CostAxis {
+    const fn name(self) -> &'static str {
+        match self {
+            CostAxis::Clocks => "clocks a pixel",
+            CostAxis::Host => "host's nanoseconds a pixel",
+        }
+    }
+
+    /// Cost of a variant; `None` where it was not measured.
+    fn of(self, one: &MeasuredVariant) -> Option<f64> {
+        match self {
+            CostAxis::Clocks => Some(one.clocks),
+            CostAxis::Host => one.host_nanoseconds,
+        }
+    }
+}
+
+/// The chart of variants on the machine `report`, in pictures of a size.
+pub fn figure(measured: &[MeasuredVariant], (width, height): (u32, u32), axis: CostAxis) -> ChartFigure {
     let mut scenes: Vec<&str> = Vec::new();
     for one in measured {
         if !scenes.contains(&one.scene.as_str()) {
             scenes.push(&one.scene);
         }
     }
-    let height = HEIGHT * scenes.len() as f64;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" font-family=\"sans-serif\" font-size=\"11\">\n\
-         <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"white\"/>\n"
-    );
-    for (panel, scene) in scenes.into_iter().enumerate() {
-        let points: Vec<&MeasuredVariant> = measured.iter().filter(|one| one.scene == scene).collect();
-        let _ = writeln!(svg, "<g transform=\"translate(0 {})\">", HEIGHT * panel as f64);
-        self::panel(&mut svg, scene, &points);
-        svg.push_str("</g>\n");
+    let mut profiles: Vec<&str> = Vec::new();
+    for one in measured {
+        if !profiles.contains(&one.profile) {
+            profiles.push(one.profile);
+        }
     }
-    svg + "</svg>\n"
+    let plots = scenes.iter().map(|&scene| {
+        let variants: Vec<&MeasuredVariant> = measured.iter().filter(|one| one.scene == scene).collect();
+        plot(scene, &variants, &profiles, axis)
+    });
+    ChartFigure {
+        title: format!("Run time against error: {}, machine `report`, {width} x {height} pixels", scenes.join(", ")),
+        note: "PSNR against double precision. Nothing to the left of the front is nearer to double precision."
+            .to_owned(),
+        rows: plots.map(|plot| vec![plot]).collect(),
+    }
 }
 
 fn psnr(one: &MeasuredVariant) -> f64 {
     one.error.psnr_db.unwrap_or(PERFECT).min(PERFECT)
 }
 
-fn range(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let (least, most) = (values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max));
-    let room = ((most - least) * 0.08).max(0.05);
-    (least - room, most + room)
-}
-
-fn panel(svg: &mut String, scene: &str, points: &[&MeasuredVariant]) {
-    let xs = range(points.iter().map(|one| one.clocks.max(1.0).log10()));
-    let ys = range(points.iter().map(|one| psnr(one)));
-    let at = |clocks: f64, decibels: f64| {
-        let x = LEFT + (clocks.max(1.0).log10() - xs.0) / (xs.1 - xs.0) * (WIDTH - LEFT - RIGHT);
-        let y = HEIGHT - BOTTOM - (decibels - ys.0) / (ys.1 - ys.0) * (HEIGHT - TOP - BOTTOM);
-        (x, y)
+/// Variants that no other one of these beats in cost and error both, the cheapest first.
+fn front<'v>(variants: &[&'v MeasuredVariant], axis: CostAxis) -> Vec<&'v MeasuredVariant> {
+    let cost = |one: &MeasuredVariant| axis.of(one).unwrap_or(f64::INFINITY);
+    let beats = |other: &MeasuredVariant, one: &MeasuredVariant| {
+        let (fewer, nearer) = (cost(other) < cost(one), other.error.rmse < one.error.rmse);
+        cost(other) <= cost(one) && other.error.rmse <= one.error.rmse && (fewer || nearer)
     };
-    let (right, bottom) = (WIDTH - RIGHT, HEIGHT - BOTTOM);
-    let _ = writeln!(
-        svg,
-        "<text x=\"{LEFT}\" y=\"20\" font-size=\"14\">{}: clocks a pixel against PSNR</text>\n\
-         <path d=\"M{LEFT} {TOP}V{bottom}H{right}\" fill=\"none\" stroke=\"black\"/>\n\
-         <text x=\"{right}\" y=\"{}\" text-anchor=\"end\">clocks a pixel</text>\n\
-         <text x=\"{LEFT}\" y=\"{}\" text-anchor=\"end\">dB</text>",
-        escaped(scene),
-        HEIGHT - 12.0,
-        TOP - 4.0
-    );
-    for tick in ticks(xs) {
-        let (x, _) = at(10f64.powf(tick), ys.0);
-        let label = 10f64.powf(tick).round();
-        let _ = writeln!(svg, "<text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{label}</text>", bottom + 16.0);
-    }
-    for tick in ticks(ys) {
-        let (_, y) = at(1.0, tick);
-        let _ = writeln!(svg, "<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{tick:.1}</text>", LEFT - 6.0, y + 4.0);
-    }
-    let mut front: Vec<(f64, f64)> =
-        points.iter().filter(|one| one.is_on_front).map(|one| at(one.clocks, psnr(one))).collect();
-    front.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let line: Vec<String> = front.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-    let _ = writeln!(svg, "<polyline points=\"{}\" fill=\"none\" stroke=\"#c33\"/>", line.join(" "));
-    for one in points {
-        let (x, y) = at(one.clocks, psnr(one));
-        let name = escaped(&one.variant);
-        let (colour, title) = match &one.dominated_by {
-            None => ("#c33", name.clone()),
-            Some(by) => ("#999", format!("{name}: dominated by {}", escaped(by))),
+    let is_first = |one: &&&MeasuredVariant| !variants.iter().any(|other| beats(other, one));
+    let mut front: Vec<&MeasuredVariant> = variants.iter().filter(is_first).copied().collect();
+    front.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
+    front
+}
+
+fn plot(scene: &str, variants: &[&MeasuredVariant], profiles: &[&str], axis: CostAxis) -> Plot {
+    let front = front(variants, axis);
+    let is_on_front = |one: &MeasuredVariant| front.iter().any(|other| other.variant == one.variant);
+    let point = |one: &MeasuredVariant, has_label: bool, is_important: bool| {
+        let label = has_label.then(|| PointLabel { words: one.variant.clone(), is_important });
+        let tip = match &one.dominated_by {
+            Some(by) if axis == CostAxis::Clocks => format!("{}: dominated by {by}", one.variant),
+            _ => one.variant.clone(),
         };
-        let _ = writeln!(
-            svg,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\"><title>{title}</title></circle>\n\
-             <text x=\"{:.1}\" y=\"{:.1}\" fill=\"{colour}\" font-size=\"9\">{name}</text>",
-            x + 6.0,
-            y - 4.0
-        );
+        Some(ChartPoint { x: axis.of(one)?, y: psnr(one), label, tip })
+    };
+    // Marks by set of kernels; names of the front belong to its line, so that they find room first.
+    let of_profile = |(at, &profile): (usize, &&str)| ChartSeries {
+        name: format!("kernels `{profile}`"),
+        look: Look::Numbered(at),
+        line: ChartLine::None,
+        is_marked: true,
+        points: variants
+            .iter()
+            .filter(|one| one.profile == profile)
+            .filter_map(|one| point(one, !is_on_front(one), false))
+            .collect(),
+    };
+    let mut series: Vec<ChartSeries> = profiles.iter().enumerate().map(of_profile).collect();
+    series.push(ChartSeries {
+        name: "front".to_owned(),
+        look: Look::Numbered(6),
+        line: ChartLine::Solid,
+        is_marked: false,
+        points: front.iter().filter_map(|one| point(one, true, true)).collect(),
+    });
+    Plot {
+        title: scene.to_owned(),
+        x: ChartAxis { name: axis.name().to_owned(), kind: AxisKind::Logarithmic },
+        y: ChartAxis { name: "PSNR, dB".to_owned(), kind: AxisKind::Linear },
+        series,
+        aspect: 0.66,
     }
-}
-
-/// Five round places of an axis.
-fn ticks((least, most): (f64, f64)) -> impl Iterator<Item = f64> {
-    (0..5).map(move |k| least + (most - least) * (0.1 + 0.2 * f64::from(k)))
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,6 +1,7 @@
 //! Run time against error: pictures in many arithmetics, profiles and layouts, each measured against double precision, and its camera rays
 //! against exact integers on the same grid, so that what the formats cost and what the scene's rounding costs are told apart.
 
+#[cfg(feature = "cli")]
 mod chart;
 mod front;
 mod rays;
@@ -24,7 +25,8 @@ use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
 use crate::result::{ByClass, Render};
-pub use chart::svg;
+#[cfg(feature = "cli")]
+pub use chart::{CostAxis, figure};
 pub use front::rank;
 pub use rays::RayErrors;
 

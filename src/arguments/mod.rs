@@ -1,5 +1,6 @@
 //! Groups of options that several commands share, and how values such as `x,y,z` are read.
 
+mod chart;
 mod effort;
 mod extension;
 mod job;
@@ -11,6 +12,7 @@ mod tree;
 mod value;
 mod view;
 
+pub use chart::{ChartArguments, chart_file};
 pub use effort::EffortArguments;
 pub use extension::ExtensionArguments;
 pub use job::JobArguments;

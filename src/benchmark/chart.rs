@@ -1,57 +1,50 @@
-//! Times a pixel as a chart: scenes side by side, a bar for each who computed them, on a logarithmic axis.
-
-use plotters::prelude::*;
+//! Times a pixel as a chart: scenes side by side, a mark for each who computed them, on a logarithmic axis.
 
 use super::{BenchResult, Runner};
+use crate::chart::{AxisKind, ChartAxis, ChartFigure, ChartLine, ChartPoint, ChartSeries, Look, Plot};
 
-const WIDTH: u32 = 900;
-const HEIGHT: u32 = 420;
-
-/// The chart of one profile.
-///
-/// # Errors
-/// None that numbers above 0 could cause.
-pub fn svg(measured: &[BenchResult]) -> Result<String, String> {
-    let mut scenes: Vec<String> = measured.iter().map(|one| format!("{} ({})", one.scene, one.profile)).collect();
-    scenes.dedup();
-    let least = measured.iter().map(|one| one.nanoseconds).fold(f64::INFINITY, f64::min).max(1.0);
-    let most = measured.iter().map(|one| one.nanoseconds).fold(1.0, f64::max);
-    let mut text = String::new();
-    draw(&mut text, measured, &scenes, least / 2.0..most * 2.0).map_err(|error| error.to_string())?;
-    Ok(text)
+/// The chart of measurements, with pictures of a size and host threads.
+pub fn figure(measured: &[BenchResult], (width, height): (u32, u32), threads: u32) -> ChartFigure {
+    let place = |one: &BenchResult| format!("{} ({})", one.scene, one.profile);
+    let mut places: Vec<String> = measured.iter().map(place).collect();
+    places.dedup();
+    let series = Runner::ALL.into_iter().enumerate().map(|(number, runner)| {
+        let of_runner = measured.iter().filter(|one| one.runner == runner);
+        let points = of_runner.filter_map(|one| {
+            let at = places.iter().position(|name| *name == place(one))?;
+            let tip = format!("{}, {}: {:.0} ns", place(one), runner.name(), one.nanoseconds);
+            Some(ChartPoint { tip, ..ChartPoint::new(at as f64, one.nanoseconds) })
+        });
+        ChartSeries {
+            name: runner.name().to_owned(),
+            look: Look::Numbered(number),
+            line: ChartLine::None,
+            is_marked: true,
+            points: points.collect(),
+        }
+    });
+    let plot = Plot {
+        title: String::new(),
+        x: ChartAxis { name: String::new(), kind: AxisKind::Names(places.clone()) },
+        y: ChartAxis { name: "nanoseconds a pixel".to_owned(), kind: AxisKind::Logarithmic },
+        series: series.collect(),
+        aspect: 0.55,
+    };
+    let threads = if threads == 1 { "one host thread".to_owned() } else { format!("{threads} host threads") };
+    ChartFigure {
+        title: format!("Time on this host, {width} x {height} pixels, machine `report`, {threads}"),
+        note: String::new(),
+        rows: vec![vec![plot]],
+    }
 }
 
-fn draw(
-    text: &mut String,
-    measured: &[BenchResult],
-    scenes: &[String],
-    range: std::ops::Range<f64>,
-) -> Result<(), Box<dyn std::error::Error>> {
-    let area = SVGBackend::with_string(text, (WIDTH, HEIGHT)).into_drawing_area();
-    area.fill(&WHITE)?;
-    let end = scenes.len().max(1) as f64;
-    let floor = range.start;
-    let mut chart = ChartBuilder::on(&area)
-        .margin(12)
-        .caption("Nanoseconds a pixel", ("sans-serif", 16))
-        .x_label_area_size(28)
-        .y_label_area_size(64)
-        .build_cartesian_2d(0.0..end, range.log_scale())?;
-    let label = |x: &f64| scenes.get(*x as usize).filter(|_| x.fract() != 0.0).cloned().unwrap_or_default();
-    chart.configure_mesh().disable_x_mesh().x_labels(2 * scenes.len() + 1).x_label_formatter(&label).draw()?;
-    let width = 0.8 / Runner::ALL.len() as f64;
-    for (place, runner) in Runner::ALL.into_iter().enumerate() {
-        let colour = Palette99::pick(place).to_rgba();
-        let bars = measured.iter().filter(|one| one.runner == runner).enumerate().map(|(scene, one)| {
-            let left = scene as f64 + 0.1 + width * place as f64;
-            Rectangle::new([(left, floor), (left + width, one.nanoseconds)], colour.filled())
-        });
-        chart
-            .draw_series(bars)?
-            .label(runner.name())
-            .legend(move |(x, y)| Rectangle::new([(x, y - 4), (x + 10, y + 4)], colour.filled()));
+/// One line a measurement, with a head.
+pub fn csv(measured: &[BenchResult]) -> String {
+    let mut text = String::from("scene,profile,runner,nanoseconds,least,of_twin,rays\n");
+    for one in measured {
+        let scene = one.scene.replace('"', "\"\"");
+        let (runner, BenchResult { profile, nanoseconds, least, of_twin, rays, .. }) = (one.runner.name(), one);
+        text += &format!("\"{scene}\",{profile},\"{runner}\",{nanoseconds},{least},{of_twin},{rays}\n");
     }
-    chart.configure_series_labels().border_style(BLACK).background_style(WHITE).draw()?;
-    area.present()?;
-    Ok(())
+    text
 }

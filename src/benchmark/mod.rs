@@ -21,7 +21,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(feature = "cli")]
-pub use chart::svg;
+pub use chart::{csv, figure};
 
 use crate::failure::Failure;
 use crate::job::Job;

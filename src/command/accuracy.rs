@@ -15,8 +15,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::invocation::{CommandSettings, scene_hashes};
-use crate::accuracy::{self, Choices, MeasuredVariant};
-use crate::arguments::{self, SettingsArguments, Size};
+use crate::accuracy::{self, Choices, CostAxis, MeasuredVariant};
+use crate::arguments::{self, ChartArguments, SettingsArguments, Size};
 use crate::failure::{Exit, Failure};
 use crate::numeral::{numbers, short};
 use crate::result::WithSettings;
@@ -30,7 +30,7 @@ pub(super) const SCHEMA: &str = "lancer-accuracy-1";
 const EXAMPLES: &str = "\
 Examples:
   lancer accuracy
-  lancer accuracy cornell terrain --words 32,24,20 --size 160x120 --csv accuracy.csv --svg accuracy.svg
+  lancer accuracy cornell terrain --words 32,24,20 --size 160x120 --svg accuracy.svg --pdf accuracy.pdf
   lancer accuracy slabs --profiles ray --roundings RND,TRN,RND_CONV --bounces 5 --cutoffs 0 --json";
 
 /// Draws scenes in many arithmetics and sets clocks against error.
@@ -70,12 +70,11 @@ pub struct AccuracyArguments {
     interpolate: Vec<CornerAgreement>,
     #[command(flatten)]
     settings: SettingsArguments,
-    /// Table as comma-separated values.
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Chart of clocks against error with the front marked.
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    /// Cost that charts set errors against: clocks of the machine, or the host's time, which is then measured.
+    #[arg(long, value_enum, default_value_t = CostAxis::Clocks, help_heading = "Charts and data")]
+    axis: CostAxis,
+    #[command(flatten)]
+    chart: ChartArguments,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
@@ -161,12 +160,9 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    let targets = || [&arguments.csv, &arguments.svg].into_iter().flatten().map(PathBuf::as_path);
-    files::check_distinct(targets()).map_err(Failure::usage)?;
-    let is_taken = files::takes_output(targets(), arguments.json).map_err(Failure::usage)?;
-    for target in targets() {
-        files::check_target(target)?;
-    }
+    let targets = arguments.chart.targets(&[])?;
+    let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
+    let has_times = arguments.timing || arguments.axis == CostAxis::Host;
     let choice = Choices {
         profiles: arguments.profiles.clone(),
         words: arguments.words.concat(),
@@ -185,7 +181,7 @@ pub(super) fn execute(
         let reference = Reference::new(&loaded.scene, &view, SearchMethod::Hierarchy)?;
         let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
         for variant in &variants {
-            match accuracy::measure(&loaded.scene, &view, &reference, variant, arguments.timing) {
+            match accuracy::measure(&loaded.scene, &view, &reference, variant, has_times) {
                 Ok(one) => measured.push(one),
                 // A word that the scene does not fit, or in which a ray is stuck, is a result, not a mistake.
                 Err(Failure::Message { report, exit: Exit::Input | Exit::Trap }) => refused.push(Refused {
@@ -201,10 +197,8 @@ pub(super) fn execute(
         read.push(loaded.scene.clone());
     }
     accuracy::rank(&mut measured);
-    let mut files = Vec::new();
-    files.extend(arguments.csv.as_ref().map(|path| (path, csv(&measured))));
-    files.extend(arguments.svg.as_ref().map(|path| (path, accuracy::svg(&measured))));
-    files::write_all(&files)?;
+    let figure = || accuracy::figure(&measured, arguments.size, arguments.axis);
+    files::write_all(&arguments.chart.files(figure, || csv(&measured)))?;
     let (width, height) = arguments.size;
     let results = AccuracyResults {
         schema: SCHEMA,

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::diff;
 use super::invocation::{CommandSettings, scene_hashes};
-use crate::arguments::{self, SettingsArguments, Size};
+use crate::arguments::{self, ChartArguments, SettingsArguments, Size};
 use crate::benchmark::parts::{self, PictureParts};
 use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
@@ -73,9 +73,8 @@ pub struct BenchArguments {
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
-    /// Chart of the times a pixel.
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    #[command(flatten)]
+    chart: ChartArguments,
     /// Earlier result (--json) that the times are set against; both need the same size and threads.
     #[arg(long, value_name = "FILE")]
     against: Option<PathBuf>,
@@ -174,11 +173,8 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    let svg = arguments.svg.as_deref();
-    let is_taken = files::takes_output(svg, arguments.json).map_err(Failure::usage)?;
-    if let Some(path) = svg {
-        files::check_target(path)?;
-    }
+    let targets = arguments.chart.targets(&[])?;
+    let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
     let before = arguments.against.as_deref().map(|path| earlier(path, arguments)).transpose()?;
     let threads = arguments.threads as usize;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -199,9 +195,8 @@ pub(super) fn execute(
         }
         read.push(loaded.scene);
     }
-    if let Some(path) = &arguments.svg {
-        files::write(path, benchmark::svg(&measured).map_err(Diagnostic::error)?.as_bytes())?;
-    }
+    let figure = || benchmark::figure(&measured, arguments.size, arguments.threads);
+    files::write_all(&arguments.chart.files(figure, || benchmark::csv(&measured)))?;
     let (width, height) = arguments.size;
     let BenchArguments { runs, threads, .. } = *arguments;
     let features = HostSimd::best().name();

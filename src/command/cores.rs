@@ -12,8 +12,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::arguments::{
-    self, EffortArguments, JobArguments, KernelArguments, MachineArguments, MachineKeyArguments, NumberArguments,
-    SetArguments, ViewArguments,
+    self, ChartArguments, EffortArguments, JobArguments, KernelArguments, MachineArguments, MachineKeyArguments,
+    NumberArguments, SetArguments, ViewArguments,
 };
 use crate::cores::{self, CoresResult};
 use crate::failure::{Exit, Failure};
@@ -68,15 +68,14 @@ pub struct CoresArguments {
     /// Adds energy and area as ranges over published tables.
     #[arg(long, help_heading = "Results")]
     energy: bool,
-    /// Writes the points as comma-separated values.
-    #[arg(long, value_name = "FILE", help_heading = "Results")]
-    csv: Option<PathBuf>,
-    /// Draws the curves.
-    #[arg(long, value_name = "FILE", help_heading = "Results")]
-    svg: Option<PathBuf>,
     /// Prints the results as JSON instead of tables.
     #[arg(long, help_heading = "Results")]
     json: bool,
+    /// Roofline of the bus, operations an octet against operations a second: .svg or .pdf.
+    #[arg(long, value_name = "FILE", value_parser = arguments::chart_file, help_heading = "Charts and data")]
+    roofline: Option<PathBuf>,
+    #[command(flatten)]
+    chart: ChartArguments,
     #[command(flatten)]
     view: ViewArguments,
     #[command(flatten)]
@@ -113,23 +112,16 @@ fn machine_list(text: &str) -> Result<Vec<String>, String> {
 
 /// Measures, writes and prints.
 pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()];
-    files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
-    let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
-    for target in targets.into_iter().flatten() {
-        files::check_target(target)?;
-    }
+    let targets = targets(arguments)?;
+    let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
     let machines = arguments.machines.iter().flatten().map(PathBuf::from);
-    files::check_spared(targets.into_iter().flatten(), machines).map_err(Failure::usage)?;
+    files::check_spared(targets.iter().map(PathBuf::as_path), machines).map_err(Failure::usage)?;
     let (scaling, settings) = match arguments.scene == ANNEX && !Path::new(ANNEX).exists() {
         true => annex(arguments, terminal)?,
         false => picture(arguments, terminal)?,
     };
-    let mut files = Vec::new();
-    files.extend(arguments.csv.as_ref().map(|path| (path, cores::csv(&scaling))));
-    if let Some(path) = &arguments.svg {
-        files.push((path, cores::svg(&scaling)?));
-    }
+    let mut files = arguments.chart.files(|| cores::figure(&scaling), || cores::csv(&scaling));
+    files.extend(arguments.roofline.as_deref().map(|path| arguments.chart.file(path, &cores::roofline(&scaling))));
     files::write_all(&files)?;
     let energy = if arguments.energy { cores::energy_text(&scaling) } else { String::new() };
     match (is_taken, arguments.json) {
@@ -138,6 +130,12 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
         (false, false) => terminal.tell(&(cores::text(&scaling) + &energy))?,
     }
     Ok(Exit::Done)
+}
+
+/// Files that will be written.
+fn targets(arguments: &CoresArguments) -> Result<Vec<PathBuf>, Failure> {
+    let roofline: Vec<&Path> = arguments.roofline.as_deref().into_iter().collect();
+    arguments.chart.targets(&roofline)
 }
 
 /// A machine with each of the arbiters that are asked for, or with its own.
@@ -169,8 +167,9 @@ fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult
 fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult, CoresSettings), Failure> {
     let jobs = arguments.machines.iter().flatten().map(|machine| job(arguments, machine).job());
     let jobs = jobs.collect::<Result<Vec<Job>, Failure>>()?;
-    let targets = [arguments.csv.as_deref(), arguments.svg.as_deref()].into_iter().flatten();
-    files::check_spared(targets, jobs.iter().flat_map(|job| &job.files)).map_err(Failure::usage)?;
+    let targets = targets(arguments)?;
+    files::check_spared(targets.iter().map(PathBuf::as_path), jobs.iter().flat_map(|job| &job.files))
+        .map_err(Failure::usage)?;
     terminal.show(&jobs[0].warnings);
     let (mut whole, mut all): (Option<CoresResult>, Vec<(String, Config)>) = (None, Vec::new());
     // Machines with words of the same length share the picture in memory and the programs.

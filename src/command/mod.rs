@@ -1,6 +1,7 @@
 //! The commands, one a file. Each is a function from its arguments and the terminal to its exit code.
 
 mod accuracy;
+mod advise;
 mod annex;
 mod arithmetic;
 mod assemble;
@@ -20,6 +21,7 @@ mod machine;
 mod manual;
 mod profiles;
 mod render;
+mod report;
 mod run;
 mod run_arguments;
 mod run_result;
@@ -72,6 +74,7 @@ pub struct Lancer {
 #[derive(Subcommand, Debug)]
 enum Command {
     Render(Box<render::RenderArguments>),
+    Report(Box<report::ReportArguments>),
     Run(run::RunArguments),
     Assemble(assemble::AssembleArguments),
     Disassemble(disassemble::DisassembleArguments),
@@ -82,6 +85,7 @@ enum Command {
     Machine(machine::PresetArguments),
     Cores(Box<cores::CoresArguments>),
     Sweep(sweep::SweepArguments),
+    Advise(Box<advise::AdviseArguments>),
     Trace(Box<trace::TraceArguments>),
     Debug(Box<debug::DebugArguments>),
     Accuracy(accuracy::AccuracyArguments),
@@ -163,6 +167,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
     match &arguments.command {
         None => demo::execute(arguments.size, terminal),
         Some(Command::Render(arguments)) => render::execute(arguments, terminal),
+        Some(Command::Report(arguments)) => report::execute(arguments, terminal),
         Some(Command::Run(arguments)) => run::execute(arguments, given, terminal),
         Some(Command::Assemble(arguments)) => assemble::execute(arguments, given, terminal),
         Some(Command::Disassemble(arguments)) => disassemble::execute(arguments, terminal),
@@ -173,6 +178,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Machine(arguments)) => machine::execute(arguments, given, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
         Some(Command::Sweep(arguments)) => sweep::execute(arguments, terminal),
+        Some(Command::Advise(arguments)) => advise::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Debug(arguments)) => debug::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),

@@ -20,6 +20,7 @@ use super::run_result::{self, RunResult};
 use super::scene::{self, WrittenScene};
 use super::stress::{self, Catalogue};
 use super::trace::{self, TraceResult};
+use crate::advise::{self, AdviceResult};
 use crate::annex;
 use crate::annex::result::Annexes;
 use crate::cores::{self, CoresResult};
@@ -63,6 +64,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: printed::<RunResult, CommandSettings> },
     Known { name: instruction::SCHEMA, command: "lancer run --trace FILE.jsonl", make: schema_of::<TracedInstruction> },
     Known { name: cores::SCHEMA, command: "lancer cores --json", make: printed::<CoresResult, CoresSettings> },
+    Known { name: advise::SCHEMA, command: "lancer advise --json", make: printed::<AdviceResult, Settings> },
     Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: printed::<Profiles, CommandSettings> },
     Known { name: skips::SCHEMA, command: "lancer skips --json", make: printed::<SkipsResult, Settings> },
     Known { name: info::SCHEMA, command: "lancer scene info --json", make: printed::<SceneInfo, CommandSettings> },

@@ -7,12 +7,13 @@ mod demand;
 #[cfg(feature = "cli")]
 mod text;
 
+use emu::code::Code;
 use emu::machine::{self, Config, RunOptions, RunOutcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 #[cfg(feature = "cli")]
-pub use chart::svg;
+pub use chart::{figure, roofline};
 pub use demand::PixelDemand;
 #[cfg(feature = "cli")]
 pub use text::{csv, energy_text, text};
@@ -57,6 +58,8 @@ pub struct Curve {
     pub clock_hz: u64,
     /// Clocks and units of operations.
     pub timing: OperationTimes,
+    /// Octets that the bus moves in a second when it is never idle, without set-up clocks.
+    pub bus_octets_per_second: f64,
     /// Demand of a pixel with one core: of the core, and of the bus, messages and the main processor's share included.
     pub demand: PixelDemand,
     /// C / M.
@@ -108,6 +111,12 @@ pub struct Point {
     pub bound_pixel_seconds: f64,
     /// Seconds a pixel by the queueing estimate.
     pub queueing_pixel_seconds: f64,
+    /// Elementary operations of the cores in a second.
+    pub operations_per_second: f64,
+    /// Elementary operations in a second if no core ever waited or were idle.
+    pub peak_operations_per_second: f64,
+    /// Elementary operations of the cores for each octet that the bus moved; null where it moved none.
+    pub operations_per_octet: Option<f64>,
     /// `replayed`, or `stepped`.
     pub method: &'static str,
     /// Energy and area, as a range over published tables.
@@ -180,6 +189,10 @@ fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]
         .iter()
         .map(|&(cores, frame)| point(&Config { cores, ..config.clone() }, load, frame, alone, &demand))
         .collect();
+    let code = Code::new(&load.build.cores, &load.isa, config.timing());
+    for (point, (_, frame)) in points.iter_mut().zip(frames) {
+        roofs(point, frame, frame.tally.counts(&code).elementary(), config.clock_hz);
+    }
     let saturation = saturation(&points);
     for point in &mut points {
         point.is_saturated = saturation.is_some_and(|saturation| f64::from(point.cores) >= saturation.cores);
@@ -191,6 +204,8 @@ fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]
         formats: None,
         clock_hz: config.clock_hz,
         timing: OperationTimes::new(config),
+        bus_octets_per_second: config.clock_hz as f64 * config.bus.octets_per_beat as f64
+            / config.bus.clocks_per_beat as f64,
         demand,
         quotient: demand.quotient(),
         closed_form: demand.saturation(),
@@ -230,10 +245,22 @@ fn point(config: &Config, load: &Load, frame: &RunOutcome, alone: &RunOutcome, d
         main_waiting: share(main_waiting, frame.clocks.0),
         bound_pixel_seconds: seconds(bound),
         queueing_pixel_seconds: seconds(demand.queueing(cores)),
+        operations_per_second: 0.0,
+        peak_operations_per_second: 0.0,
+        operations_per_octet: None,
         method: frame.method.name(),
         energy: EnergyResult::new(config, load.programs(), frame, frame.item_count, None).summary,
         is_saturated: false,
     }
+}
+
+/// Operations of a frame against what its cores and its bus could do.
+fn roofs(point: &mut Point, frame: &RunOutcome, operations: u64, clock_hz: u64) {
+    let busy: u64 = frame.processors[..point.cores as usize].iter().map(|core| core.busy.0).sum();
+    let hertz = clock_hz as f64;
+    point.operations_per_second = share(operations, frame.clocks.0) * hertz;
+    point.peak_operations_per_second = share(operations, busy) * f64::from(point.cores) * hertz;
+    point.operations_per_octet = (frame.bus.moved.0 != 0).then(|| share(operations, frame.bus.moved.0));
 }
 
 /// The point where the curve levels off; `None` where it still rises at its end though the bus has room, or has no end to speak of.
@@ -276,6 +303,9 @@ mod tests {
                 main_waiting: 0.1,
                 bound_pixel_seconds: 1.0,
                 queueing_pixel_seconds: 1.0,
+                operations_per_second: 0.0,
+                peak_operations_per_second: 0.0,
+                operations_per_octet: None,
                 method: "replayed",
                 energy: EnergySummary::default(),
                 is_saturated: false,

@@ -121,7 +121,7 @@ pub fn energy_text(scaling: &CoresResult) -> String {
 /// A column of the comma-separated values: its head and what it holds.
 type Column = (&'static str, fn(&Curve, &Point) -> String);
 
-const COLUMNS: [Column; 22] = [
+const COLUMNS: [Column; 25] = [
     ("machine", |curve, _| quoted(&curve.machine)),
     ("arbiter", |curve, _| curve.arbiter.clone()),
     ("cores", |_, point| point.cores.to_string()),
@@ -137,6 +137,9 @@ const COLUMNS: [Column; 22] = [
     ("main_waiting", |_, point| point.main_waiting.to_string()),
     ("bound_pixel_seconds", |_, point| point.bound_pixel_seconds.to_string()),
     ("queueing_pixel_seconds", |_, point| point.queueing_pixel_seconds.to_string()),
+    ("operations_per_second", |_, point| point.operations_per_second.to_string()),
+    ("peak_operations_per_second", |_, point| point.peak_operations_per_second.to_string()),
+    ("operations_per_octet", |_, point| point.operations_per_octet.map_or_else(String::new, |x| x.to_string())),
     ("method", |_, point| point.method.to_owned()),
     ("frame_nj_least", |_, point| point.energy.frame_nj.least.to_string()),
     ("frame_nj_most", |_, point| point.energy.frame_nj.most.to_string()),

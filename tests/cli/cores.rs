@@ -69,6 +69,24 @@ fn tables_and_files_say_the_same() {
 }
 
 #[test]
+fn charts_have_their_data_beside_them() {
+    let session = Session::new();
+    session.succeed("cores annex --cores 1,4 --machine report --machine wide32 --svg a.svg --roofline b.pdf --theme dark --columns 1");
+    assert_eq!(session.names(), ["a.csv", "a.svg", "b.pdf"]);
+    let svg = String::from_utf8(session.read("a.svg")).unwrap();
+    // A column of a paper, on a dark ground, with a row of plots a machine.
+    assert!(svg.contains("width=\"252pt\"") && svg.contains("fill=\"#16191d\""), "{svg}");
+    for machine in ["report", "wide32"] {
+        assert!(svg.contains(&format!(">machine `{machine}`, arbiter round-robin<")), "{machine}");
+    }
+    let pdf = session.read("b.pdf");
+    let holds = |words: &str| pdf.windows(words.len()).any(|window| window == words.as_bytes());
+    assert!(holds("(operations an octet of the bus)") && holds("/MediaBox [0 0 252 "));
+    session.fail("cores annex --roofline b.png", 2, "ends in .svg or .pdf");
+    session.fail("cores annex --svg a.csv", 2, "would be written twice");
+}
+
+#[test]
 fn machines_and_arbiters_stand_side_by_side_and_draw_the_same() {
     let session = Session::new();
     let scene = "cores cornell --size 12x9 --shift 0.137,0.071 --cores 1,3";

@@ -1,5 +1,6 @@
 //! The command line as a user meets it: the built program, its streams, its exit codes and the files that it leaves.
 
+mod advise;
 mod annex;
 mod bench;
 mod comparisons;
@@ -14,6 +15,7 @@ mod messages;
 mod numbers;
 mod programs;
 mod render;
+mod report;
 mod scene;
 mod schema;
 pub mod session;

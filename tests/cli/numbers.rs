@@ -77,7 +77,7 @@ fn a_case_of_the_catalogue_is_tried_and_taken_up() {
 fn variants_are_measured_and_the_front_is_marked() {
     let session = Session::new();
     let arguments =
-        "accuracy cornell --size 16x12 --words 32,20 --cutoffs 0 --interpolate none --csv all.csv --svg all.svg";
+        "accuracy cornell --size 16x12 --words 32,20 --cutoffs 0 --interpolate none --svg all.svg --pdf all.pdf";
     let measured = session.json(arguments);
     let variants = measured["variants"].as_array().unwrap();
     let names: Vec<&str> = variants.iter().map(|one| one["variant"].as_str().unwrap()).collect();
@@ -101,8 +101,10 @@ fn variants_are_measured_and_the_front_is_marked() {
     let csv = String::from_utf8(session.read("all.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + variants.len());
     let svg = String::from_utf8(session.read("all.svg")).unwrap();
-    assert_eq!(svg.matches("<circle").count(), variants.len());
+    // Each variant has its tip, and the figure its title. Those of the front stand on marks as well.
+    assert_eq!(svg.matches("<title>").count(), 1 + variants.len());
     assert!(svg.contains("dominated by"), "{svg}");
+    assert!(session.read("all.pdf").starts_with(b"%PDF-1.4"));
     assert_eq!(session.run("accuracy cornell --words 7").code, 2);
     assert_eq!(session.run("accuracy no_such_scene").code, 1);
 }
@@ -113,11 +115,13 @@ fn the_documents_chart_and_sentence_are_what_is_measured() {
     let session = Session::new();
     let measured = session.json("accuracy cornell --size 32x24 --svg accuracy.svg");
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    if std::env::var_os("LANCER_BLESS").is_some() {
-        std::fs::write(folder.join("accuracy.svg"), session.read("accuracy.svg")).unwrap();
+    for name in ["accuracy.svg", "accuracy.csv"] {
+        if std::env::var_os("LANCER_BLESS").is_some() {
+            std::fs::write(folder.join(name), session.read(name)).unwrap();
+        }
+        let written = std::fs::read(folder.join(name)).unwrap();
+        assert!(session.read(name) == written, "docs/{name} is stale: LANCER_BLESS=1 writes it");
     }
-    let chart = std::fs::read(folder.join("accuracy.svg")).unwrap();
-    assert!(session.read("accuracy.svg") == chart, "docs/accuracy.svg is stale: LANCER_BLESS=1 writes it");
     let variants = measured["variants"].as_array().unwrap();
     assert!(variants.len() >= 12);
     let best = &variants[0];

@@ -96,6 +96,7 @@ impl<W: Worker> Machine<'_, W> {
             main_tally,
             profile,
             trace,
+            course: self.course,
             items: self.items,
             item_count: self.item_count,
         }

@@ -5,6 +5,7 @@ pub mod arbiter;
 pub mod bus;
 pub mod cache;
 pub mod config;
+pub mod course;
 mod finish;
 pub(crate) mod kinds;
 pub mod mailbox;
@@ -95,6 +96,8 @@ pub struct RunOptions {
     pub has_losses: bool,
     /// Trace of every processor and of the bus in this window of clocks.
     pub window: Option<Window>,
+    /// Clocks of the bus over time. Costs time.
+    pub has_course: bool,
     /// Engine that is wanted for the work items; see [`Setup::engine`].
     pub engine: EngineKind,
     /// Vector instructions of the host that an engine may use at most; `None` for all that there are.

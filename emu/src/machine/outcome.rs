@@ -4,6 +4,7 @@ use isa::number::Vector;
 
 use super::bus::BusUse;
 use super::cache::CacheUse;
+use super::course::BusCourse;
 use super::trace::Trace;
 use super::waits::Waits;
 use crate::code::octets::Memory;
@@ -122,6 +123,8 @@ pub struct RunOutcome {
     pub items: Vec<Item>,
     /// Trace of the window that was asked for.
     pub trace: Option<Trace>,
+    /// Clocks of the bus over time, where they were asked for.
+    pub course: Option<BusCourse>,
     /// Number of work items finished.
     pub item_count: u64,
 }

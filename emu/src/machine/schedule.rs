@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
+use super::course::BusCourse;
 use super::kinds::Kinds;
 use super::outcome::{Item, RunOutcome};
 use super::port::Shared;
@@ -81,6 +82,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     pub bus: Bus,
     /// Watcher of the bus, where somebody watches.
     pub bus_watch: Option<BusWatch>,
+    pub course: Option<BusCourse>,
     pub kinds: Kinds,
     pub bypassed: Octets,
     /// Clock of the last thing that concerned others.
@@ -133,6 +135,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
             bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
+            course: setup.options.has_course.then(BusCourse::default),
             kinds: Kinds::new(&setup.kinds),
             bypassed: Octets(0),
             now: Clocks(0),
@@ -141,7 +144,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            masters: (config.cache.octets == 0 && !config.bus.overlap && window.is_none())
+            masters: (config.cache.octets == 0 && !config.bus.overlap && window.is_none() && !setup.options.has_course)
                 .then(|| (0..=cores).map(|_| W::Master::default()).collect()),
             written: 0..0,
             progress,
@@ -366,6 +369,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         if let Some(watch) = &mut self.bus_watch {
             watch.grant(&grant);
         }
+        self.course.iter_mut().for_each(|course| course.grant(self.setup.config.cores, &grant));
         let number = grant.master as usize;
         let processor = &mut self.processors[number];
         processor.used.longest_wait = processor.used.longest_wait.max(grant.waited);

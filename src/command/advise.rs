@@ -1,0 +1,70 @@
+//! `lancer advise`: what limits a machine, and what would help.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::advise;
+use crate::arguments::JobArguments;
+use crate::failure::{Exit, Failure};
+use crate::result::WithSettings;
+use crate::settings::Settings;
+use crate::terminal::Terminal;
+use crate::{files, result};
+
+const EXAMPLES: &str = "\
+Examples:
+  lancer advise cornell --size 160x120
+  lancer advise terrain --size 160x120 --machine wide32 --all
+  lancer advise cornell --size 80x60 --machine mine.toml --json > advice.json
+
+Keys are written as they stand at the top of a machine's file: bus.octets_per_beat = 8. Each time is that of a
+run of the changed machine on this very picture. Changes marked with + do not come of the recording of the
+machine as it is: operations take other clocks, or another picture in memory was built.";
+
+/// Says what limits a machine on a picture, and ranks what would help.
+///
+/// Each change by itself: a wider beat, bursts, loads beside computing, a cache of each size for each kind of data, more and
+/// fewer cores, each arbiter, more units, faster operations, the other layout, other sets of kernels, other kd trees; then
+/// pairs of the six best of different parts. Memory is what the cores have more of, in octets.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = EXAMPLES)]
+pub struct AdviseArguments {
+    #[command(flatten)]
+    job: JobArguments,
+    /// Shows all changes and pairs instead of the best ones.
+    #[arg(long, help_heading = "Results")]
+    all: bool,
+    /// Writes changes and pairs as comma-separated values.
+    #[arg(long, value_name = "FILE", help_heading = "Results")]
+    csv: Option<PathBuf>,
+    /// Prints the results as JSON instead of tables.
+    #[arg(long, help_heading = "Results")]
+    json: bool,
+}
+
+/// Runs all changes, writes and prints.
+pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let is_taken = files::takes_output(arguments.csv.as_deref(), arguments.json).map_err(Failure::usage)?;
+    if let Some(path) = &arguments.csv {
+        files::check_target(path)?;
+    }
+    let job = arguments.job.job()?;
+    files::check_spared(arguments.csv.as_deref(), &job.files).map_err(Failure::usage)?;
+    terminal.show(&job.warnings);
+    let bar = terminal.progress("machines", 1);
+    let advice = advise::advise(&job, &mut |done, total| {
+        bar.set_length(total);
+        bar.set_position(done);
+    });
+    bar.finish_and_clear();
+    let advice = advice?;
+    let files: Vec<_> = arguments.csv.as_ref().map(|path| (path, advise::csv(&advice))).into_iter().collect();
+    files::write_all(&files)?;
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => terminal.print(&result::json(&WithSettings::new(&advice, Settings::of(&job))))?,
+        (false, false) => terminal.tell(&advise::text(&advice, arguments.all))?,
+    }
+    Ok(Exit::Done)
+}

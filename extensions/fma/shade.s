@@ -3,11 +3,13 @@
 ; Uses up the ray, the packet and the hit. Scratch: v6 to v17, v25 to v27, s12 to s15, w0, w1.
 .func shade
     vmov  v25, zero_vector                  ; sum over the lights
+    .holds v25, colour
 .if LIGHTS > 0
     first_light
 shade_light:
     load_light
     vsub  v26, v26, point                   ; to the light
+    .holds v26, pos
     wdot  w0, facing, v26
     wextend w1, s0, 0
   .if SKIP_UNLIT
@@ -20,7 +22,9 @@ shade_facing:
   .endif
     vnorm v6, s13, v26
     call  link_step, unit
+    .holds v6, dir
     vdot  s13, facing, v6, dir
+    .holds s13, dir
   .if !SKIP_UNLIT
     lwide w0, SHADE_FACING(s0)
     bwgez w0, 1f
@@ -30,6 +34,7 @@ shade_facing:
     sw    s13, SHADE_COSINE(s0)
     vdot  near_t, v6, v26, dir + pos - t
     shadow_ray shade_next
+;-    .holds v6, colour
 ;-    vscale v6, v6, s13, dir
 ;-    vadd  v25, v25, v6
     vfma  v25, v6, s13, v25, dir ;+
@@ -38,11 +43,15 @@ shade_next:
 .endif
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.intensity(s12)
+    .holds s13, weight
     vscale v25, v25, s13, weight
     li    s13, AMBIENT
+    .holds s13, colour
     vsplat v6, s13
+    .holds v6, colour
     vadd  v25, v25, v6
     lv    v6, material.colour(s12)
+    .holds v6, weight
     vmul  local_colour, v6, v25, weight
     ret   link_shade
 .endfunc

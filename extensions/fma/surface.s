@@ -48,14 +48,19 @@ down_\@:
     call  link_packet, normal
     vmov  incident, direction
 ;-    vscale v9, direction, near_t, t + dir - pos
+;-    .holds v9, pos
 ;-    vadd  v9, origin, v9
     vfma  v9, direction, near_t, origin, t + dir - pos ;+
     ; Height of the point over the plane along the axis: the determinant of both edges and the way from a corner to the point, by the
     ; component of the edges' cross product. Its sign does not depend on the order of the corners.
     load_triangle near_slot
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
     vsub  v7, v7, v6
     vsub  v8, v8, v6
     vsub  v10, v9, v6
+    .holds v10, pos
     wcross w0, v7, v8
     wmixed w3, w0, v10, SIDE_SHIFT
     vmajor s12, facing

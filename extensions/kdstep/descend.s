@@ -20,6 +20,7 @@
 
 .func descend
 ;-    vget  s12, direction, x
+;-    .holds s12, dir
 ;-    wmul  w0, exit_run, s12
 ;-    swide w0, RUNS(s0)
 ;-    vget  s12, direction, y
@@ -40,11 +41,16 @@
     movi  far_top, FARS
     first_node
 descend_node:
+    .holds s12
+    .holds s14
     next_node descend_leaf
+;-    .holds s15, pos
 ;-    vgetr s14, origin, s12
+;-    .holds s14, pos
 ;-    sub   s14, s15, s14
 ;-    wmul  w0, s14, exit_slope
 ;-    slli  s14, s12, 3
+;-    .holds s14
 ;-    lwide w1, RUNS(s14)
 ;-    bwlt  w0, w1, descend_right
 ;-    bweq  w0, w1, descend_tie

@@ -4,7 +4,9 @@
 .func unit
 ;-    wdot  w0, v6, v6
 ;-    call  link_leaf, sqrt
+;-    .holds s12
 ;-    vdiv  v6, v6, s12, dir
+;-    .holds v6, dir
     vunit v6, v6, dir ;+
     ret   link_step
 .endfunc

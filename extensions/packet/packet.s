@@ -16,6 +16,9 @@
 .endm
 
 .func packet
+    .holds v6, pos
+    .holds v7, pos
+    .holds v8, pos
 .if SKIP_EMPTY
     blez  packet_count, packet_end
 .endif
@@ -76,6 +79,7 @@ packet_block:
 .if LAYOUT_REPORT ;+
 .region triangle
     rtri  s12, v9, origin, v6, dir + t - pos
+    .holds s12, t
 .endregion
     bge   near_t, s12, packet_nearer
 .endif ;+
@@ -93,6 +97,7 @@ packet_end:
     ret   link_packet
 .if LAYOUT_REPORT ;+
 packet_nearer:
+    .holds s12, t
     bne   near_t, s12, 1f
     bgeu  s15, near, packet_rest
 1:  mov   near_t, s12

@@ -8,14 +8,19 @@
 .func exit_face
 ;-    vmov  v6, box_high
 ;-    vselect v6, box_low, backwards
+;-    .holds v6, pos
 ;-    vsub  v7, v6, origin
+;-    .holds v7, pos
 ;-    vneg  v8, v7
+;-    .holds v8, pos
 ;-    vselect v7, v8, backwards
 ;-    vget  exit_run, v7, x
 ;-    vget  exit_slope, steep, x
 ;-    movi  exit_axis, 0
 ;-    vget  s12, v7, y
+;-    .holds s12, pos
 ;-    vget  s13, steep, y
+;-    .holds s13, dir
 ;-    wmul  w0, exit_run, s13
 ;-    wmul  w1, s12, exit_slope
 ;-    bwlt  w0, w1, 2f

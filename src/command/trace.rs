@@ -45,7 +45,7 @@ const LONGEST: u64 = 50_000_000;
 /// The wave (FST) has the bus with its owner and address, and each processor with request, grant, state (0 idle, 1 busy,
 /// 2 waiting for the bus) and pixel. The trace has a track a core and one for the bus. With --clocks the whole picture is
 /// drawn; --pixel draws that pixel alone. With --instructions each instruction of the pixel is written, with what it read and
-/// wrote. Without --fst, --perfetto and --instructions, NAME.fst and NAME.trace.json are written in the current folder.
+/// wrote. Where no file is named by an option, NAME.fst and NAME.trace.json are written in the current folder.
 #[derive(Args, Clone, Debug)]
 #[command(
     after_help = EXAMPLES,

@@ -83,7 +83,7 @@ fn every_kind_of_mistake_has_its_object() {
         ("scene info m.off", 1, 1, "m.off"),
         ("run trap.s", 3, 1, "trap 7"),
         ("run loop.s --max-steps 10", 5, 1, "--max-steps"),
-        ("rendr", 2, 1, "did you mean `render`?"),
+        ("rendr", 2, 1, "`render`?"),
         ("render cornell --size 4", 2, 1, "such as 320x240"),
         ("render cornell --profile vektor", 2, 1, "did you mean `vector`?"),
         ("scene", 2, 1, "requires a subcommand"),

@@ -83,7 +83,7 @@ fn no_line_of_help_is_wider_than_the_terminal() {
 #[test]
 fn no_line_of_tables_is_wider_than_the_terminal() {
     let session = Session::new();
-    session.write("own.isa", ".extension own\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
+    session.write("own.isa", ".extension own\n;; Half of a number.\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
     session.write("a.s", "    li s1, 7\n    set v2, -123456789, 987654321, -3\n    halt\n");
     session.succeed("scene generate cornell");
     for columns in [80, 120] {

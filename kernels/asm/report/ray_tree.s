@@ -27,6 +27,7 @@ TREE: .space (2 * BOUNCES + 1) * sizeof(treenode)
     lv    direction, treenode.direction(node)
     lbu   inside, treenode.state(node)
     lw    near_t, treenode.near_t(node)
+    .holds s13
     lw    s13, treenode.near(node)
     movi  s12, sizeof(triangle)
     load  near_slot, s13, s12
@@ -123,6 +124,7 @@ tree_opaque:
 tree_mirror:
 .endif
     recall
+    .holds s12
     lw    s12, MATERIAL_AT(s0)
     lw    s12, material.reflection(s12)
     .holds s12, weight

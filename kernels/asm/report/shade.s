@@ -36,6 +36,7 @@ shade_light:
 shade_next:
     next_light shade_light
 .endif
+    .holds s12
     lw    s12, MATERIAL_AT(s0)
     lw    s13, material.intensity(s12)
     .holds s13, weight

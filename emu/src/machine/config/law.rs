@@ -230,12 +230,25 @@ impl IndexMut<Class> for ClassLaws {
     }
 }
 
+/// Name of a class as a key, so that a message about an unknown one has the key's place.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct ClassKey(Class);
+
+impl<'de> Deserialize<'de> for ClassKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ClassKey, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let names = || Class::ALL.iter().map(|class| format!("`{}`", class.name())).collect::<Vec<_>>();
+        let unknown = || D::Error::custom(format!("unknown class `{name}`, expected one of {}", names().join(", ")));
+        Class::from_name(&name).map(ClassKey).ok_or_else(unknown)
+    }
+}
+
 /// One law a class, written as a table; classes that it leaves out have the default.
 macro_rules! class_table {
     ($(#[doc = $doc:literal])* $type:ident $field:ident) => {
         $(#[doc = $doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-        #[serde(try_from = "BTreeMap<String, Law>", into = "BTreeMap<String, Law>")]
+        #[serde(from = "BTreeMap<ClassKey, Law>", into = "BTreeMap<String, Law>")]
         pub struct $type(pub ClassLaws);
 
         impl Default for $type {
@@ -244,18 +257,13 @@ macro_rules! class_table {
             }
         }
 
-        impl TryFrom<BTreeMap<String, Law>> for $type {
-            type Error = String;
-
-            fn try_from(table: BTreeMap<String, Law>) -> Result<$type, String> {
+        impl From<BTreeMap<ClassKey, Law>> for $type {
+            fn from(table: BTreeMap<ClassKey, Law>) -> $type {
                 let mut laws = $type::default();
-                for (name, law) in table {
-                    let names = || Class::ALL.iter().map(|class| format!("`{}`", class.name())).collect::<Vec<_>>();
-                    let class = Class::from_name(&name)
-                        .ok_or_else(|| format!("unknown class `{name}`, expected one of {}", names().join(", ")))?;
+                for (ClassKey(class), law) in table {
                     laws.0[class] = law;
                 }
-                Ok(laws)
+                laws
             }
         }
 

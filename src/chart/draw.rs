@@ -342,10 +342,12 @@ mod tests {
         };
         let figure =
             ChartFigure { title: "a long title of a figure ".repeat(5), note: String::new(), rows: vec![vec![plot]] };
-        for (columns, names) in [(ChartColumns::One, 8), (ChartColumns::Two, 40)] {
+        // One column names what is important; two name what finds room, and here that is not all of them.
+        for (columns, names) in [(ChartColumns::One, 8..=8), (ChartColumns::Two, 30..=40)] {
             let canvas = super::figure(&figure, ChartStyle { columns, ..ChartStyle::default() });
             let rooms = rooms(&canvas);
-            assert_eq!(rooms.iter().filter(|(words, _)| words.starts_with("variant")).count(), names, "{columns:?}");
+            let shown = rooms.iter().filter(|(words, _)| words.starts_with("variant")).count();
+            assert!(names.contains(&shown), "{columns:?}: {shown}");
             for (at, (words, room)) in rooms.iter().enumerate() {
                 let met = rooms[..at].iter().find(|(_, other)| other.meets(room));
                 assert!(met.is_none(), "{columns:?}: `{words}` meets {met:?}");

@@ -239,7 +239,7 @@ mod tests {
         };
         let ids: std::collections::BTreeSet<String> = between(&page, " id=\"").into_iter().collect();
         let links = between(&page, "<a href=\"#");
-        assert!(links.len() > 250, "{} links", links.len());
+        assert!(links.len() > 240, "{} links", links.len());
         for link in links {
             assert!(ids.contains(&link), "no heading has the anchor {link}");
         }

@@ -264,7 +264,7 @@ mod tests {
         target.packets = PackedLeaves::new(&moved);
         assert!(wrong_of(&target) > 0, "a vertex that lies elsewhere");
         let mut named = target.twin.stage.clone();
-        named.references.iter_mut().for_each(|index| *index ^= 1);
+        named.triangles.chunks_exact_mut(2).for_each(|pair| pair.swap(0, 1));
         target.packets = PackedLeaves::new(&named);
         assert!(wrong_of(&target) > 100, "triangles that have the names of others");
     }

@@ -38,8 +38,8 @@ fn of_point(settings: &Settings) -> Settings {
     settings
 }
 
-/// The settings without that in which only replays differ: cores, clock rate, bus, caches and main processor, as
-/// [`Config::computes_like`] has it, and what is measured of the picture. Clocks and units count as what they come to for the word.
+/// The settings without that in which only replays differ: cores, clock rate, bus, caches, main processor and the prices
+/// of energy and area, as [`Config::computes_like`] has it, and what is measured of the picture. Clocks and units count as what they come to for the word.
 fn of_recording(settings: &Settings) -> Settings {
     let mut settings = of_point(settings);
     settings.results = ResultSettings::default();
@@ -49,8 +49,8 @@ fn of_recording(settings: &Settings) -> Settings {
         config.clocks.0[class] = Law::Constant(timing.clocks[class]);
         config.units.0[class] = Law::Constant(timing.units[class]);
     }
-    let Config { cores, clock_hz, bus, cache, main, .. } = Config::default();
-    *config = Config { cores, clock_hz, bus, cache, main, ..config.clone() };
+    let Config { cores, clock_hz, bus, cache, main, energy, area, .. } = Config::default();
+    *config = Config { cores, clock_hz, bus, cache, main, energy, area, ..config.clone() };
     settings
 }
 
@@ -86,6 +86,8 @@ mod tests {
             ("machine.arithmetic.quantization", _) => "TRN".into(),
             ("machine.arithmetic.overflow", _) => "WRAP".into(),
             ("machine.bus.arbiter", _) => "tdma".into(),
+            ("machine.energy.tables" | "machine.area.tables", _) => "horowitz".into(),
+            _ if ["machine.energy.", "machine.area."].iter().any(|group| key.starts_with(group)) => "none".into(),
             ("machine.bus.weights", _) => serde_json::json!([3]),
             ("view.fov" | "effort.interpolate", _) => 0.5.into(),
             (_, Some(Value::Bool(is_set))) => (!is_set).into(),
@@ -104,8 +106,16 @@ mod tests {
     const NAMES: [&str; 4] = ["scene.name", "scene.mesh", "machine.name", "engine"];
 
     /// Groups of keys that only replays and what is measured of a picture depend on.
-    const REPLAYED: [&str; 6] =
-        ["machine.cores", "machine.clock_hz", "machine.bus.", "machine.cache.", "machine.main.", "results."];
+    const REPLAYED: [&str; 8] = [
+        "machine.cores",
+        "machine.clock_hz",
+        "machine.bus.",
+        "machine.cache.",
+        "machine.main.",
+        "machine.energy.",
+        "machine.area.",
+        "results.",
+    ];
 
     #[test]
     fn each_key_changes_the_hashes_that_depend_on_it() {

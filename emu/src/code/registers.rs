@@ -81,6 +81,7 @@ impl Registers {
     }
 
     /// Sets a scalar that is not `s0`.
+    #[cfg(feature = "native")]
     #[inline]
     pub(crate) fn set_other_scalar(&mut self, number: u8, value: i32) {
         debug_assert!(number != 0);
@@ -108,12 +109,14 @@ impl Registers {
     }
 
     /// A vector with a fourth component, which is 0.
+    #[cfg(feature = "native")]
     #[inline]
     pub(crate) fn padded(&self, number: u8) -> &[i32; 4] {
         &self.vectors[usize::from(number)].0
     }
 
     /// Four words of a vector, to write; the fourth is to stay 0.
+    #[cfg(feature = "native")]
     #[inline]
     pub(crate) fn padded_mut(&mut self, number: u8) -> &mut [i32; 4] {
         &mut self.vectors[usize::from(number)].0

@@ -18,7 +18,7 @@ use crate::engine::{CoreId, Demand, Pause, State, choose};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::profile::{Observer, Profile, Unobserved};
-use crate::semantics::{Link, Message, Watch};
+use crate::semantics::{Link, Message, Watch, at_once};
 
 /// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
 /// were hardly faster than one, because a thread takes its time to begin.
@@ -43,27 +43,7 @@ struct InstantCores<'a> {
 }
 
 impl Link for InstantCores<'_> {
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        Ok(self.memory.read(from, buffer.slice_mut(to, octets)?)?)
-    }
-
-    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        Ok(self.memory.write(to, buffer.slice(from, octets)?)?)
-    }
-
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        Ok(self.memory.read_words(address, words)?)
-    }
-
-    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
-        Ok(self.memory.put_words(address, words)?)
-    }
-
-    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
-        let before = self.memory.word(address)?;
-        self.memory.put_words(address, &[before.wrapping_add(more)])?;
-        Ok(before)
-    }
+    at_once! { self => self.memory }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         let core = u32::try_from(to).ok().filter(|&to| to < CORES);

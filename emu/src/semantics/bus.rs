@@ -137,6 +137,33 @@ macro_rules! hand_on {
     };
 }
 
+/// The methods of a link whose transfers reach global memory at once; messages and barriers are its own business.
+macro_rules! at_once {
+    ($link:ident => $memory:expr) => {
+        fn load(&mut $link, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+            Ok($memory.read(from, buffer.slice_mut(to, octets)?)?)
+        }
+
+        fn store(&mut $link, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
+            Ok($memory.write(to, buffer.slice(from, octets)?)?)
+        }
+
+        fn read(&mut $link, address: u32, words: &mut [i32]) -> Result<(), Stop> {
+            Ok($memory.read_words(address, words)?)
+        }
+
+        fn write(&mut $link, address: u32, words: &[i32]) -> Result<(), Stop> {
+            Ok($memory.put_words(address, words)?)
+        }
+
+        fn fetch_add(&mut $link, address: u32, more: i32) -> Result<i32, Stop> {
+            let before = $memory.word(address)?;
+            $memory.put_words(address, &[before.wrapping_add(more)])?;
+            Ok(before)
+        }
+    };
+}
+
 /// The methods of a link that refuses everything.
 #[cfg(all(test, feature = "native"))]
 macro_rules! refuse {
@@ -149,7 +176,7 @@ macro_rules! refuse {
 
 #[cfg(all(test, feature = "native"))]
 pub(crate) use refuse;
-pub(crate) use {hand_on, methods};
+pub(crate) use {at_once, hand_on, methods};
 
 impl<L: Link + ?Sized> Link for &mut L {
     methods! { hand_on! self => (**self); }

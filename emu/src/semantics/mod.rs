@@ -23,7 +23,7 @@ use isa::table::outcome;
 #[cfg(all(test, feature = "native"))]
 pub(crate) use bus::refuse;
 pub use bus::{Link, Message, Port};
-pub(crate) use bus::{hand_on, methods};
+pub(crate) use bus::{at_once, hand_on, methods};
 pub use control::{End, Flow, Motion};
 pub use numbers::Numbers;
 pub use watch::{Computes, Watch, Watching};

@@ -4,7 +4,7 @@ use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::{Fault, Stop};
 use crate::machine::config::BusConfig;
-use crate::semantics::{Link, Message};
+use crate::semantics::{Link, Message, at_once};
 
 /// Kind of a transfer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,27 +175,7 @@ pub(super) struct FirstMessage<'a> {
 }
 
 impl Link for FirstMessage<'_> {
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        Ok(self.memory.read(from, buffer.slice_mut(to, octets)?)?)
-    }
-
-    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        Ok(self.memory.write(to, buffer.slice(from, octets)?)?)
-    }
-
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        Ok(self.memory.read_words(address, words)?)
-    }
-
-    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
-        Ok(self.memory.put_words(address, words)?)
-    }
-
-    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
-        let before = self.memory.word(address)?;
-        self.memory.put_words(address, &[before.wrapping_add(more)])?;
-        Ok(before)
-    }
+    at_once! { self => self.memory }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         let receiver = u32::try_from(to).ok().filter(|&to| to <= self.main);

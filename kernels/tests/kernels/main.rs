@@ -2,6 +2,7 @@
 //! rounding and overflow.
 
 mod annex;
+mod drawing;
 mod formats;
 mod modes;
 mod packets;

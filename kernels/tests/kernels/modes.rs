@@ -1,18 +1,18 @@
 //! Rounding and overflow modes: the origins of secondary rays, and whole pictures against double precision, in each of them.
 
 use isa::number::{Modes, Overflow, Quantization, Vector};
-use kernels::build::{Crop, KernelOptions, SceneFeatures};
+use kernels::KernelSet;
 use kernels::constants::{Constants, SIDE_MARGIN};
 use kernels::twin::exact_triangle::exact_triangle;
 use kernels::twin::ray::TwinRay;
-use kernels::twin::surface::{normal, point, sides};
-use kernels::{KernelSet, twin};
+use kernels::twin::surface::{major_axis, normal, point, sides};
 use random::SplitMix64;
-use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::image::{self, MemoryOptions};
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Camera, Picture, Scene, View};
 use scenes::reference;
+
+use super::drawing::{coarse, twin_picture};
 
 /// All pairs of a quantization and an overflow mode.
 fn all_modes(word: u32) -> impl Iterator<Item = Modes> {
@@ -24,26 +24,10 @@ fn all_modes(word: u32) -> impl Iterator<Item = Modes> {
 /// Scenes that figures are quoted for.
 const MEASURED: usize = 5;
 
-/// A scene of the list, coarse.
-fn coarse(number: usize, size: (u32, u32)) -> Scene {
-    let generator = &SCENES[number];
-    let level = generator.level.as_ref().map(|level| (*level.range.start()).max(1));
-    let triangles = generator.triangles.as_ref().map(|_| 300);
-    generate::scene(generator.name, &GenerateOptions { level, triangles, size }).expect("a scene of the list")
-}
-
 /// The difference of a twin's picture from double precision.
 fn error(scene: &Scene, view: &View, set: KernelSet, modes: Modes, exact: &Picture) -> PictureError {
-    let options = MemoryOptions { word: modes.word, layout: set.layout(), ..MemoryOptions::default() };
-    let image = image::build(scene, view, &options).expect("the scene fits the word");
-    let options = KernelOptions { profile: set, ..KernelOptions::default() };
-    let features = SceneFeatures::new(scene, view, &image.formats, &options);
-    let (width, height) = view.size;
-    let crop = Crop { column: 0, row: 0, width, height };
-    let pixels = twin::render(&image, &features, &crop, set, modes).expect("no ray is stuck");
-    let step = (-f64::from(image.formats.colour)).exp2();
-    let pixels = pixels.iter().map(|pixel| pixel.map(|raw| f64::from(raw) * step)).collect();
-    metrics::compare(&Picture { size: view.size, pixels }, exact).expect("pictures of one size")
+    let (_, picture) = twin_picture(scene, view, set, modes);
+    metrics::compare(&picture, exact).expect("pictures of one size")
 }
 
 /// Five scenes in all quantization and overflow modes: in 32 bits no pixel is off and the pictures differ by less than 140 dB, in 24 bits at
@@ -52,7 +36,7 @@ fn error(scene: &Scene, view: &View, set: KernelSet, modes: Modes, exact: &Pictu
 fn pictures_are_right_in_every_mode() {
     let size = (48, 36);
     for number in 0..MEASURED {
-        let scene = coarse(number, size);
+        let scene = coarse(number, 300, size);
         let view = View { shift: [0.137, 0.071], ..View::new(size) };
         let exact = reference::render(&scene, &view).expect("the reference draws any scene").picture;
         for set in [KernelSet::Vector, KernelSet::Ray] {
@@ -79,7 +63,7 @@ fn errors_stay_below_their_bound() {
     let size = (32, 24);
     let mut random = SplitMix64::new(31);
     for _ in 0..250 {
-        let scene = coarse(random.below(MEASURED as u64) as usize, size);
+        let scene = coarse(random.below(MEASURED as u64) as usize, 300, size);
         let word = 16 + random.below(17) as u32;
         let all: Vec<Modes> = all_modes(word).collect();
         let modes = all[random.below(all.len() as u64) as usize];
@@ -154,7 +138,7 @@ fn secondary_rays_start_on_their_sides() {
             continue;
         }
         let (facing, _) = normal(&modes, constants.formats.direction, direction, &vertices);
-        let axis = twin::surface::major_axis(facing);
+        let axis = major_axis(facing);
         let plain = point(&modes, &constants, &ray, t);
         let (before, behind) = sides(&modes, &constants, &ray, t, facing, &vertices);
         // The normal's component along the axis, by which a volume changes with each unit.
@@ -188,7 +172,7 @@ fn secondary_rays_start_on_their_sides() {
 
 /// Constants of a scene that fills the word.
 fn full(word: u32) -> Constants {
-    let scene = coarse(0, (1, 1));
+    let scene = coarse(0, 300, (1, 1));
     let image = image::build(&scene, &View::new((1, 1)), &MemoryOptions { word, ..MemoryOptions::default() });
     let constants = Constants::new(&image.expect("the scene fits the word"));
     // The widest differences that positions of the word have.

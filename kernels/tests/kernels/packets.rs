@@ -5,20 +5,14 @@ use emu::octets::Memory;
 use isa::Isa;
 use isa::number::{Modes, Overflow, Quantization, Vector};
 use kernels::{KernelOptions, KernelSet, build};
-use scenes::generate::{self, GenerateOptions, SCENES};
+use scenes::generate::SCENES;
 use scenes::image::{self, MemoryKind, MemoryOptions};
 use scenes::layout::Layout;
 use scenes::model::{Camera, Scene, View};
 
-const SIZE: (u32, u32) = (10, 8);
+use super::drawing::coarse;
 
-/// A scene of the list, coarse.
-fn coarse(number: usize) -> Scene {
-    let generator = &SCENES[number];
-    let level = generator.level.as_ref().map(|level| (*level.range.start()).max(1));
-    let triangles = generator.triangles.as_ref().map(|_| 200);
-    generate::scene(generator.name, &GenerateOptions { level, triangles, size: SIZE }).expect("a scene of the list")
-}
+const SIZE: (u32, u32) = (10, 8);
 
 /// The pixels that the machine draws; `None` where the word is too short for the scene.
 fn drawn(scene: &Scene, view: &View, set: KernelSet, layout: Layout, modes: Modes) -> Option<Vec<Vector>> {
@@ -49,7 +43,7 @@ fn packets_draw_what_the_ray_unit_draws() {
     let mut modes = all().cycle();
     let mut drawings = 0;
     for number in 0..SCENES.len() {
-        let scene = coarse(number);
+        let scene = coarse(number, 200, SIZE);
         for word in 16..=32 {
             let (quantization, overflow) = modes.next().expect("modes go round");
             let modes = Modes { word, quantization, overflow };

@@ -1,14 +1,14 @@
 //! Samples on edges: pictures of small shapes whose edges, corners and planes lie where samples do, against double precision.
 
 use isa::number::Modes;
-use kernels::build::{Crop, KernelOptions, SceneFeatures};
+use kernels::KernelSet;
 use kernels::set::Decisions;
 use kernels::twin::samples::Samples;
-use kernels::{KernelSet, twin};
-use scenes::image::{self, MemoryOptions};
 use scenes::metrics;
-use scenes::model::{Camera, Light, Material, Picture, Scene, Triangle, Vec3, View};
+use scenes::model::{Camera, Light, Material, Scene, Triangle, Vec3, View};
 use scenes::reference::{Reference, SearchMethod};
+
+use super::drawing::twin_picture;
 
 /// A shape by its corners and faces; faces are fans around their first corner.
 struct Shape {
@@ -187,18 +187,10 @@ fn solid_shapes() -> Vec<Shape> {
 /// Pixels of a set's picture that differ from double precision by 1/255 or more.
 fn off(scene: &Scene, view: &View, set: KernelSet) -> u64 {
     let modes = Modes::default();
-    let options = MemoryOptions { layout: set.layout(), ..MemoryOptions::default() };
-    let image = image::build(scene, view, &options).expect("a small shape fits");
-    let options = KernelOptions { profile: set, ..KernelOptions::default() };
-    let features = SceneFeatures::new(scene, view, &image.formats, &options);
-    let (width, height) = view.size;
-    let crop = Crop { column: 0, row: 0, width, height };
-    let pixels = twin::render(&image, &features, &crop, set, modes).expect("no ray is stuck");
-    let step = (-f64::from(image.formats.colour)).exp2();
-    let pixels = pixels.iter().map(|pixel| pixel.map(|raw| f64::from(raw) * step)).collect();
+    let (image, picture) = twin_picture(scene, view, set, modes);
     let reference = Reference::new(scene, view, SearchMethod::Hierarchy).expect("the reference draws any scene");
     let exact = reference.picture(Some(&Samples::new(scene, &image, set, modes))).picture;
-    metrics::compare(&Picture { size: view.size, pixels }, &exact).expect("pictures of one size").off_pixels
+    metrics::compare(&picture, &exact).expect("pictures of one size").off_pixels
 }
 
 /// Forty small shapes, matt and as mirrors, in five sizes, two cameras and all sets that claim exactness: no pixel is off, without a shift of the

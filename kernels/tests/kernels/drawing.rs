@@ -1,0 +1,30 @@
+//! Scenes and pictures that several tests of kernels draw.
+
+use isa::number::Modes;
+use kernels::build::{Crop, KernelOptions, SceneFeatures};
+use kernels::{KernelSet, twin};
+use scenes::generate::{self, GenerateOptions, SCENES};
+use scenes::image::{self, MemoryImage, MemoryOptions};
+use scenes::model::{Picture, Scene, View};
+
+/// A scene of the list, coarse: its least level, or about so many triangles.
+pub fn coarse(number: usize, triangles: u32, size: (u32, u32)) -> Scene {
+    let generator = &SCENES[number];
+    let level = generator.level.as_ref().map(|level| (*level.range.start()).max(1));
+    let triangles = generator.triangles.as_ref().map(|_| triangles);
+    generate::scene(generator.name, &GenerateOptions { level, triangles, size }).expect("a scene of the list")
+}
+
+/// The memory image of a scene and the picture that the twins of a set draw from it, in real numbers.
+pub fn twin_picture(scene: &Scene, view: &View, set: KernelSet, modes: Modes) -> (MemoryImage, Picture) {
+    let options = MemoryOptions { word: modes.word, layout: set.layout(), ..MemoryOptions::default() };
+    let image = image::build(scene, view, &options).expect("the scene fits the word");
+    let options = KernelOptions { profile: set, ..KernelOptions::default() };
+    let features = SceneFeatures::new(scene, view, &image.formats, &options);
+    let (width, height) = view.size;
+    let crop = Crop { column: 0, row: 0, width, height };
+    let pixels = twin::render(&image, &features, &crop, set, modes).expect("no ray is stuck");
+    let step = (-f64::from(image.formats.colour)).exp2();
+    let pixels = pixels.iter().map(|pixel| pixel.map(|raw| f64::from(raw) * step)).collect();
+    (image, Picture { size: view.size, pixels })
+}

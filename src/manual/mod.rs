@@ -54,7 +54,7 @@ pub fn markdown(isa: &Isa) -> String {
             let _ = writeln!(text, "{}* [{heading}](#{anchor})", "  ".repeat(level - 1));
         }
     }
-    text.push_str("  * [Index](#index)\n\n");
+    text.push_str("* [Index](#index)\n\n");
     text + &chapters + &index(isa)
 }
 

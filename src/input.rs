@@ -14,7 +14,7 @@ use crate::files;
 /// where there is no such file, it may be the name of a generated scene, which then has `size` pixels.
 ///
 /// # Errors
-/// What is wrong in the files, or a name that is neither a file nor a generated scene.
+/// Mistakes in the files of the scene, or a name that is neither a file nor a generated scene.
 pub fn scene(name: &str, mesh: Option<&Path>, size: Option<(u32, u32)>) -> Result<Loaded, Report> {
     let path = Path::new(name);
     if path.exists() || mesh.is_some() || name == files::STANDARD || !is_plain(name) {

@@ -20,7 +20,7 @@ impl ExtensionArguments {
     /// The table with the instructions of all files.
     ///
     /// # Errors
-    /// What is wrong in the files.
+    /// Mistakes in the files of extensions.
     pub fn isa(&self) -> Result<Isa, Report> {
         let mut isa = Isa::base();
         for path in &self.extensions {

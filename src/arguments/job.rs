@@ -43,7 +43,7 @@ impl JobArguments {
     /// The settings that a command line asks for: its options, then the changes of single keys. Reads the machine and nothing else.
     ///
     /// # Errors
-    /// What is wrong in the machine's file, and changes of no key or to no value.
+    /// Mistakes in the machine's file, and changes of no key or to no value.
     pub fn settings(&self) -> Result<Settings, Report> {
         let JobArguments { scene, mesh, view, kernels, machine, numbers, effort } = self;
         let shown = |path: &Path| path.display().to_string();
@@ -92,7 +92,7 @@ impl JobArguments {
     /// The job that a command line asks for; reads the scene, the machine and the user's kernels.
     ///
     /// # Errors
-    /// What is wrong in those files, and options that do not go together.
+    /// Mistakes in the files of scene, machine and kernels, and options that do not go together.
     pub fn job(&self) -> Result<Job, Failure> {
         self.job_of(&self.settings()?)
     }

@@ -131,7 +131,7 @@ impl Lancer {
     /// The arguments of a command line, and its options as settings.
     ///
     /// # Errors
-    /// What the parser refuses; help and version, which are asked for, come the same way.
+    /// Arguments that the parser refuses; help and version, which are asked for, come the same way.
     pub fn parsed(words: Vec<OsString>, streams: StreamArguments) -> Result<(Lancer, CommandSettings), clap::Error> {
         let columns = terminal::width();
         let command = with_short_help(Lancer::command(), columns);

@@ -59,7 +59,7 @@ impl PictureFormat {
     /// The pixels of a PNG or PPM of 8 bits a component, as a comparison with another picture needs them.
     ///
     /// # Errors
-    /// What is wrong in the file, in one line, and a PFM, whose components are no octets.
+    /// Mistakes in the picture's file, in one line, and a PFM, whose components are no octets.
     pub fn decode(self, octets: &[u8]) -> Result<Pixels, String> {
         let format = match self {
             PictureFormat::Png => ImageFormat::Png,

@@ -38,7 +38,7 @@ impl Contents {
     /// The scene of settings.
     ///
     /// # Errors
-    /// What is wrong in its files.
+    /// Mistakes in the scene's files.
     pub fn scene(&self, settings: &Settings) -> Result<Arc<SceneContents>, Failure> {
         let name = (settings.scene.name.clone(), settings.scene.mesh.clone());
         let mut scenes = self.scenes.lock().expect("no reader panics");

@@ -217,7 +217,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// the item, if it has come to that.
     ///
     /// # Errors
-    /// Why the item cannot be replayed.
+    /// Reason for which the item cannot be replayed.
     fn interpret(&mut self, record: &mut ItemRecord, budget: &Budget) -> Result<Option<Pause>, Reason> {
         let before = self.state.steps + self.state.inner_steps;
         let mut limit = before.saturating_add(self.runner.patience(self.seat, &self.state));
@@ -266,7 +266,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// Runs a work item from reset to its end.
     ///
     /// # Errors
-    /// Why it cannot be replayed.
+    /// Reason for which the work item cannot be replayed.
     pub fn record(&mut self, message: Message, budget: &Budget) -> Result<Recording, Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);

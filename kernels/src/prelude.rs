@@ -7,7 +7,7 @@ use std::sync::Arc;
 use isa::Isa;
 use messages::{Report, Source};
 use scenes::cadrage::Formats;
-use scenes::camera::RawCamera;
+use scenes::camera::{EntryFace, PixelFunction, RawCamera, RayStart};
 use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::{BLOCK_NODES, Layout, Structure, TOP_NODES};
 
@@ -82,7 +82,7 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
     let _ = writeln!(text, "ROOT_HIGH: .word {}", words(&image.bounds.high));
     let _ = writeln!(text, "ROOT_LOW: .word {}", words(&image.bounds.low));
     if is_main {
-        camera(&mut text, &image.camera);
+        camera(&mut text, image);
         if features.agreement.is_some() {
             text.push_str("CORNERS: .space 4 * sizeof(pixel)\n");
         }
@@ -234,6 +234,24 @@ const STRUCTURES: &str = "\
     .field plane, 8         ; a split of the kd tree, as a pattern
     .field far, 4           ; address of its far child
 .endstruct
+.struct linear              ; first + column x column - row x row
+    .field first, 8
+    .field column, 8
+    .field row, 8
+.endstruct
+.struct across              ; an axis along a face by which rays enter the scene
+    .field from_low, 24     ; numerators of the distances from both ends, as functions of column and row
+    .field from_high, 24
+    .field axis, 4
+    .field low, 4           ; lower end
+.endstruct
+.struct face
+    .field slope, 24
+    .field first, 56
+    .field second, 56
+    .field axis, 4
+    .field at, 4            ; where rays start
+.endstruct
 .struct far
     .field node, 4          ; address of the far child
     .field low, 12          ; box of its parent, where nodes have none
@@ -271,23 +289,49 @@ fn words_of(text: &mut String, octets: &[u8]) {
     }
 }
 
-fn camera(text: &mut String, camera: &RawCamera) {
+fn camera(text: &mut String, image: &MemoryImage) {
     let wides = |values: &[i64]| values.iter().map(i64::to_string).collect::<Vec<_>>().join(", ");
-    let _ = match camera {
+    let function = |&PixelFunction { first, column, row }: &PixelFunction| wides(&[first, column, row]);
+    let _ = match &image.camera {
         RawCamera::Orthographic { direction, extra, first, pitch, z } => writeln!(
             text,
             "CAMERA_PITCH: .wide {pitch}\nCAMERA_FIRST: .wide {}\nCAMERA_DIRECTION: .word {}\n.equ CAMERA_Z, {z}\n.equ CAMERA_EXTRA, {extra}",
             wides(first),
             words(direction)
         ),
-        RawCamera::Perspective { eye, extra, base, column, row } => writeln!(
-            text,
-            "CAMERA_BASE: .wide {}\nCAMERA_COLUMN: .wide {}\nCAMERA_ROW: .wide {}\nCAMERA_EYE: .word {}\nCAMERA_WAY: .space 24\n.equ CAMERA_EXTRA, {extra}",
-            wides(base),
-            wides(column),
-            wides(row),
-            words(eye)
-        ),
+        RawCamera::Perspective { start, extra, base, column, row } => {
+            for k in 0..3 {
+                let label = if k == 0 { "CAMERA_TOWARDS: " } else { "    " };
+                let _ = writeln!(text, "{label}.wide {}", wides(&[base[k], column[k], row[k]]));
+            }
+            let (eye, shift) = match *start {
+                RayStart::Eye(eye) => (eye, 0),
+                RayStart::Faces { shift, .. } => ([0; 3], shift),
+            };
+            let beyond = [image.bounds.low.map(|x| x - 2), image.bounds.high.map(|x| x + 2)];
+            let _ = writeln!(
+                text,
+                "CAMERA_WAY: .space 24\nCAMERA_EYE: .word {}\nCAMERA_BELOW: .word {}\nCAMERA_ABOVE: .word {}",
+                words(&eye),
+                words(&beyond[0]),
+                words(&beyond[1])
+            );
+            text.push_str("CAMERA_FACES_AT:\n");
+            for EntryFace { axis, at, slope, across } in start.faces() {
+                let _ = writeln!(text, "    .wide {}", function(slope));
+                for part in across {
+                    let _ = writeln!(text, "    .wide {}", function(&part.from_low));
+                    let _ = writeln!(text, "    .wide {}", function(&part.from_high));
+                    let _ = writeln!(text, "    .word {}, {}", part.axis, part.low);
+                }
+                let _ = writeln!(text, "    .word {axis}, {at}");
+            }
+            writeln!(
+                text,
+                ".equ CAMERA_FACES, {}\n.equ CAMERA_SHIFT, {shift}\n.equ CAMERA_EXTRA, {extra}",
+                start.faces().count()
+            )
+        }
     };
 }
 

@@ -73,7 +73,31 @@ dispatch_drained:
     ret   link_node
 .endfunc
 
-; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, v6, w0 to w3 and that of sqrt.
+; The function of column (w2) and row (w3) at \at, w1: first + column x column - row x row. Scratch: w0.
+.macro linear at
+    lwide w0, \at + linear.column(s0)
+    wmulw w0, w0, w2
+    lwide w1, \at(s0)
+    wadd  w1, w1, w0
+    lwide w0, \at + linear.row(s0)
+    wmulw w0, w0, w3
+    wsub  w1, w1, w0
+.endm
+
+; The coordinate of the point in which the ray enters by a face of slope w4, on the axis at \at; to \outside where it passes beside the face.
+.macro enter_across at, outside
+    linear \at + across.from_high
+    bwltz w1, \outside
+    linear \at
+    bwltz w1, \outside
+    wdiv  s12, w1, w4, CAMERA_SHIFT
+    lw    s13, \at + across.low(s0)
+    add   s12, s12, s13
+    lw    s13, \at + across.axis(s0)
+    vputr origin, s12, s13
+.endm
+
+; The ray of pixel (column, row). Out: origin, direction. Returns by link_node. Scratch: s12, s13, v6, w0 to w4 and that of sqrt.
 .func camera
     .holds v6, dir
     wextend w2, column, 0
@@ -81,13 +105,7 @@ dispatch_drained:
 .if PERSPECTIVE
     ; The way to the pixel, in the direction format with CAMERA_EXTRA more bits, and rounded to the format.
     .rept 3, k
-    lwide w0, CAMERA_COLUMN + 8 * k(s0)
-    wmulw w0, w0, w2
-    lwide w1, CAMERA_BASE + 8 * k(s0)
-    wadd  w1, w1, w0
-    lwide w0, CAMERA_ROW + 8 * k(s0)
-    wmulw w0, w0, w3
-    wsub  w1, w1, w0
+    linear CAMERA_TOWARDS + sizeof(linear) * k
     swide w1, CAMERA_WAY + 8 * k(s0)
     wround s12, w1, CAMERA_EXTRA
     vput  v6, s12, k
@@ -103,6 +121,29 @@ dispatch_drained:
     vput  direction, s12, k
     .endr
     lv    origin, CAMERA_EYE(s0)
+  .if CAMERA_FACES > 0
+    ; The point in which it enters the scene's box is rounded once as well, by the quotients: nothing is lost with the eye's distance.
+    wextend w2, column, 0
+    wextend w3, row, 0
+    .rept CAMERA_FACES, k
+    linear CAMERA_FACES_AT + sizeof(face) * k
+    bwltz w1, 1f
+    bweqz w1, 1f
+    wmov  w4, w1
+    enter_across CAMERA_FACES_AT + sizeof(face) * k + face.first, 1f
+    enter_across CAMERA_FACES_AT + sizeof(face) * k + face.second, 1f
+    lw    s12, CAMERA_FACES_AT + sizeof(face) * k + face.at(s0)
+    lw    s13, CAMERA_FACES_AT + sizeof(face) * k + face.axis(s0)
+    vputr origin, s12, s13
+    ret   link_node
+1:
+    .endr
+    ; It misses the box, and starts behind it on every axis.
+    lv    origin, CAMERA_ABOVE(s0)
+    vlt   s12, direction, zero_vector
+    lv    v6, CAMERA_BELOW(s0)
+    vselect origin, v6, s12
+  .endif
 .else
     lwide w0, CAMERA_PITCH(s0)
     wmulw w1, w0, w2

@@ -2,18 +2,20 @@
 
 use std::array::from_fn;
 
-use scenes::camera::RawCamera;
+use scenes::camera::{Across, PixelFunction, RawCamera, RayStart};
+use scenes::kdtree::Bounds;
 
 use super::ray::TwinRay;
 use super::unit::sqrt;
 use super::vector_arithmetic::{VectorArithmetic, WideVector};
 
-/// The ray of a pixel, row 0 on top. In perspective each component is the quotient of the way to the pixel, in twice the word, and its
-/// length, in a word.
+/// The ray of a pixel, row 0 on top. In perspective each component of the direction is the quotient of the way to the pixel, in twice the word, and its
+/// length, in a word; the ray starts one unit before it enters the box `root`, and one that misses it behind it on every axis.
 pub fn camera(
     arithmetic: &impl VectorArithmetic,
     direction_bits: u32,
     camera: &RawCamera,
+    root: &Bounds,
     column: u32,
     row: u32,
 ) -> TwinRay {
@@ -27,14 +29,35 @@ pub fn camera(
             let y = arithmetic.narrow64(down(first[1], pitch), extra);
             TwinRay::new(arithmetic, [x, y, z], direction)
         }
-        RawCamera::Perspective { eye, extra, base, column, row } => {
+        RawCamera::Perspective { start, extra, base, column, row } => {
+            let of_pixel = |function: PixelFunction| down(right(function.first, function.column), function.row);
             let way: WideVector = from_fn(|k| down(right(base[k], column[k]), row[k]));
             let rounded = way.map(|component| arithmetic.narrow64(component, extra));
             let length = sqrt(arithmetic, arithmetic.wide_dot(rounded, rounded));
             let length = arithmetic.widen(i128::from(length) << extra, 0);
             let direction =
                 way.map(|component| arithmetic.quotient(i128::from(component) << direction_bits, length.into()));
-            TwinRay::new(arithmetic, eye, direction)
+            let origin = match start {
+                RayStart::Eye(eye) => eye,
+                RayStart::Faces { shift, .. } => {
+                    let entry = start.faces().find_map(|face| {
+                        let slope = Some(of_pixel(face.slope)).filter(|&slope| slope > 0)?;
+                        let mut point = [face.at; 3];
+                        for &Across { axis, low, from_low, from_high } in &face.across {
+                            let from_low = of_pixel(from_low);
+                            if from_low < 0 || of_pixel(from_high) < 0 {
+                                return None;
+                            }
+                            let inside = arithmetic.quotient(i128::from(from_low) << shift, slope.into());
+                            point[axis] = arithmetic.plus(inside, low);
+                        }
+                        Some(point)
+                    });
+                    let behind = |k: usize| if direction[k] < 0 { root.low[k] - 2 } else { root.high[k] + 2 };
+                    entry.unwrap_or_else(|| from_fn(behind))
+                }
+            };
+            TwinRay::new(arithmetic, origin, direction)
         }
     }
 }

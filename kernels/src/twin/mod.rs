@@ -150,7 +150,14 @@ impl<A: Arithmetic> Twin<A> {
 
     /// The ray of a pixel, row 0 on top.
     pub fn camera_ray(&self, column: u32, row: u32) -> TwinRay {
-        camera::camera(&self.arithmetic, self.constants.formats.direction, &self.camera, column, row)
+        camera::camera(
+            &self.arithmetic,
+            self.constants.formats.direction,
+            &self.camera,
+            &self.stage.bounds,
+            column,
+            row,
+        )
     }
 
     /// The first packet of a camera ray; `None` when it misses the scene's box.

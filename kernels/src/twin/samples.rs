@@ -4,6 +4,7 @@ use isa::number::Modes;
 use scenes::camera::RawCamera;
 use scenes::grid::Grid;
 use scenes::image::{MemoryImage, stored_place};
+use scenes::kdtree::Bounds;
 use scenes::layout::Layout;
 use scenes::model::Scene;
 use scenes::reference::Ties;
@@ -21,6 +22,7 @@ pub struct Samples<'a> {
     modes: Modes,
     constants: Constants,
     camera: RawCamera,
+    root: Bounds,
     grid: Grid,
     layout: Layout,
 }
@@ -29,13 +31,22 @@ impl<'a> Samples<'a> {
     /// The samples of a scene in memory, drawn by a set of kernels in these modes. The image's octets are not needed.
     pub fn new(scene: &'a Scene, image: &MemoryImage, set: KernelSet, modes: Modes) -> Samples<'a> {
         let constants = Constants::new(image);
-        Samples { scene, set, modes, constants, camera: image.camera, grid: image.grid, layout: image.layout }
+        Samples {
+            scene,
+            set,
+            modes,
+            constants,
+            camera: image.camera,
+            root: image.bounds,
+            grid: image.grid,
+            layout: image.layout,
+        }
     }
 }
 
 impl Ties for Samples<'_> {
     fn distance(&self, [column, row]: [u32; 2], index: u32) -> Option<i64> {
-        let ray = camera(&self.modes, self.constants.formats.direction, &self.camera, column, row);
+        let ray = camera(&self.modes, self.constants.formats.direction, &self.camera, &self.root, column, row);
         let corners = self.scene.triangles[index as usize].vertices;
         let corners = corners.map(|vertex| stored_place(&self.grid, self.layout, self.scene.vertices[vertex as usize]));
         let t = triangle(&self.modes, self.set.decisions(), &self.constants, &ray, &corners);

@@ -2,10 +2,13 @@
 
 use isa::number::Modes;
 use kernels::build::{Crop, KernelOptions, SceneFeatures};
+use kernels::twin::samples::Samples;
 use kernels::{KernelSet, twin};
 use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::image::{self, MemoryImage, MemoryOptions};
+use scenes::metrics::{self, PictureError};
 use scenes::model::{Picture, Scene, View};
+use scenes::reference::{Reference, SearchMethod};
 
 /// A scene of the list, coarse: its least level, or about so many triangles.
 pub fn coarse(number: usize, triangles: u32, size: (u32, u32)) -> Scene {
@@ -27,4 +30,12 @@ pub fn twin_picture(scene: &Scene, view: &View, set: KernelSet, modes: Modes) ->
     let step = (-f64::from(image.formats.colour)).exp2();
     let pixels = pixels.iter().map(|pixel| pixel.map(|raw| f64::from(raw) * step)).collect();
     (image, Picture { size: view.size, pixels })
+}
+
+/// The difference of a set's picture from double precision.
+pub fn error(scene: &Scene, view: &View, set: KernelSet, modes: Modes) -> PictureError {
+    let (image, picture) = twin_picture(scene, view, set, modes);
+    let reference = Reference::new(scene, view, SearchMethod::Hierarchy).expect("the reference draws any scene");
+    let exact = reference.picture(Some(&Samples::new(scene, &image, set, modes))).picture;
+    metrics::compare(&picture, &exact).expect("pictures of one size")
 }

@@ -2,8 +2,10 @@
 //! rounding and overflow.
 
 mod annex;
+mod distances;
 mod drawing;
 mod formats;
+mod machine;
 mod modes;
 mod packets;
 mod ties;

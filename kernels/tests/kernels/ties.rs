@@ -3,12 +3,9 @@
 use isa::number::Modes;
 use kernels::KernelSet;
 use kernels::set::Decisions;
-use kernels::twin::samples::Samples;
-use scenes::metrics;
 use scenes::model::{Camera, Light, Material, Scene, Triangle, Vec3, View};
-use scenes::reference::{Reference, SearchMethod};
 
-use super::drawing::twin_picture;
+use super::drawing::error;
 
 /// A shape by its corners and faces; faces are fans around their first corner.
 struct Shape {
@@ -184,15 +181,6 @@ fn solid_shapes() -> Vec<Shape> {
     ]
 }
 
-/// Pixels of a set's picture that differ from double precision by 1/255 or more.
-fn off(scene: &Scene, view: &View, set: KernelSet) -> u64 {
-    let modes = Modes::default();
-    let (image, picture) = twin_picture(scene, view, set, modes);
-    let reference = Reference::new(scene, view, SearchMethod::Hierarchy).expect("the reference draws any scene");
-    let exact = reference.picture(Some(&Samples::new(scene, &image, set, modes))).picture;
-    metrics::compare(&picture, &exact).expect("pictures of one size").off_pixels
-}
-
 /// Forty small shapes, matt and as mirrors, in five sizes, two cameras and all sets that claim exactness: no pixel is off, without a shift of the
 /// samples. None has a sample on a concave crease or on an edge of glass, where a secondary ray starts within a unit of the next face.
 #[test]
@@ -207,7 +195,7 @@ fn no_pixel_of_a_small_shape_is_off() {
             for camera in cameras {
                 let view = View { camera, ..View::new(size) };
                 for &set in KernelSet::ALL.iter().filter(|set| set.decisions() != Decisions::Rounded) {
-                    match off(&scene, &view, set) {
+                    match error(&scene, &view, set, Modes::default()).off_pixels {
                         0 => {}
                         off => wrong.push(format!("{} by {set} in {size:?}, {camera:?}: {off} off", scene.name)),
                     }

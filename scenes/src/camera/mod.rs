@@ -1,12 +1,16 @@
 //! The two cameras: which ray belongs to a pixel, in double precision and as the raw integers that the dispatch kernel starts from.
 //! Rays are made here; where they go is not known here.
 
+mod entry;
+
 use messages::{Diagnostic, Report};
 
 use crate::cadrage::Formats;
 use crate::kdtree::Bounds;
 use crate::model::{Camera, Vec3, View};
 use crate::vector::{AXES, add, cross, exponent, largest, nearest, scale, shifted, sub, unit};
+
+pub use entry::{Across, EntryFace, PixelFunction, RayStart};
 
 /// Corners of a box, smallest and largest.
 pub type Corners = (Vec3, Vec3);
@@ -135,6 +139,7 @@ fn extent((low, high): Corners) -> f64 {
 }
 
 /// The camera as raw integers. What is 64 bits wide fits a register of twice the word, in every value that a pixel's ray passes through.
+#[expect(clippy::large_enum_variant, reason = "an image has one camera")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RawCamera {
     /// Parallel rays. The origin of pixel (c, r) is `(first.x + c pitch) >> extra`, `(first.y - r pitch) >> extra` (nearest, ties up,
@@ -151,11 +156,11 @@ pub enum RawCamera {
         /// One raw unit in front of the root's box.
         z: i32,
     },
-    /// Rays from one point. The direction of pixel (c, r) is `(base + c column - r row) >> extra` (nearest, ties up) in the direction format.
+    /// Rays from one point that start where they enter the scene's box. The direction of pixel (c, r) is `(base + c column - r row) >> extra` (nearest, ties up) in the direction format.
     /// It is not of length 1: its components are less than 1, and over the whole picture the largest of them is 1/2 or more.
     Perspective {
-        /// The eye as a position.
-        eye: [i32; 3],
+        /// Start of the rays.
+        start: RayStart,
         /// Fraction bits of the three vectors beyond those of a direction.
         extra: u32,
         /// Direction of pixel (0, 0).
@@ -200,7 +205,7 @@ impl RawCamera {
                     z: root.high[2] + 1,
                 })
             }
-            Rays::Perspective { eye, base, column, row } => {
+            Rays::Perspective { base, column, row, .. } => {
                 // Directions are linear in column and row, so the longest component is found at a corner of the picture.
                 let corner = |c: f64, r: f64| largest(add(base, sub(scale(column, c), scale(row, r))));
                 let (right, bottom) = (width - 1.0, height - 1.0);
@@ -211,7 +216,7 @@ impl RawCamera {
                 let extra = (bits - unit - exponent(2.0 * widest)).clamp(0, formats.word as i32) as u32;
                 let wide = |v: Vec3| v.map(|x| nearest(shifted(x, unit + extra as i32)) as i64);
                 Ok(RawCamera::Perspective {
-                    eye: eye.map(|x| nearest(x) as i32),
+                    start: RayStart::new(rays, size, bits, root),
                     extra,
                     base: wide(base),
                     column: wide(column),
@@ -221,8 +226,8 @@ impl RawCamera {
         }
     }
 
-    /// Origin and direction of the ray of column `c` and row `r`, as the formulas of the variants give them.
-    pub fn ray(&self, c: u32, r: u32, word: u32) -> ([i32; 3], [i32; 3]) {
+    /// Origin of parallel rays, or `None`, and direction of the ray of column `c` and row `r`, as the formulas of the variants give them.
+    pub fn ray(&self, c: u32, r: u32, word: u32) -> (Option<[i32; 3]>, [i32; 3]) {
         let (c, r) = (i128::from(c), i128::from(r));
         let rounded = |x: i128, extra: u32| {
             let most = (1i128 << (word - 1)) - 1;
@@ -233,11 +238,11 @@ impl RawCamera {
             RawCamera::Orthographic { direction, extra, first, pitch, z } => {
                 let (x, y) =
                     (i128::from(first[0]) + c * i128::from(pitch), i128::from(first[1]) - r * i128::from(pitch));
-                ([rounded(x, extra), rounded(y, extra), z], direction)
+                (Some([rounded(x, extra), rounded(y, extra), z]), direction)
             }
-            RawCamera::Perspective { eye, extra, base, column, row } => {
+            RawCamera::Perspective { extra, base, column, row, .. } => {
                 let towards = |k: usize| i128::from(base[k]) + c * i128::from(column[k]) - r * i128::from(row[k]);
-                (eye, AXES.map(|k| rounded(towards(k), extra)))
+                (None, AXES.map(|k| rounded(towards(k), extra)))
             }
         }
     }

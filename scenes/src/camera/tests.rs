@@ -127,6 +127,7 @@ fn raw_origins_are_the_exact_ones_rounded_once() {
             for r in [0, size.1 / 3, size.1 - 1] {
                 let (origin, direction) = camera.ray(c, r, word);
                 let most = (1i64 << (word - 1)) as f64;
+                let origin = origin.expect("parallel rays have origins");
                 let exact = rays.ray(c, r).0.map(|x| x.clamp(-most, most - 1.0));
                 assert!((0..2).all(|k| (f64::from(origin[k]) - exact[k]).abs() <= tolerance), "{word} {c} {r}");
                 assert_eq!(direction, [0, 0, -1 << formats.direction]);
@@ -146,11 +147,10 @@ fn raw_directions_are_the_exact_ones_rounded_once() {
     ] {
         let eye = [5.0, 4.0, 6.0];
         let view = View { shift: [0.137, 0.071], ..view(size, perspective(Some(eye), None, field)) };
-        let (camera, rays, grid, formats) = raw_camera(&view, word);
-        assert!(matches!(camera, RawCamera::Perspective { eye: raw, .. } if raw == grid.raw(eye)));
+        let (camera, rays, _, formats) = raw_camera(&view, word);
         let RawCamera::Perspective { base, column, row, extra, .. } = camera else { panic!() };
         assert!(extra >= word - 6, "{word}: {extra}");
-        // Half a unit on each axis, half of the other pixels' steps, and the eye that stands on the grid makes no difference.
+        // Half a unit on each axis and half of the other pixels' steps.
         let tolerance = 1.0 + f64::from(size.0 + size.1) / (1u64 << extra) as f64;
         for (vector, times) in [(base, 1), (column, i64::from(size.0)), (row, i64::from(size.1))] {
             assert!(vector.iter().all(|&x| (i128::from(x) * i128::from(times)).unsigned_abs() < 1 << (2 * word - 2)));
@@ -167,6 +167,77 @@ fn raw_directions_are_the_exact_ones_rounded_once() {
         }
         assert!((1 << (formats.direction - 1)..=1 << formats.direction).contains(&most), "{word} {field}: {most:x}");
     }
+}
+
+/// The point in which a ray enters the box, rounded to nearest, by the formulas of [`RayStart`], the axis of the face, and the units by which it may be off.
+fn entry(start: &RayStart, (c, r): (u32, u32)) -> Option<([i32; 3], usize, f64)> {
+    let RayStart::Faces { shift, .. } = *start else { return None };
+    let value = |f: &PixelFunction| {
+        i128::from(f.first) + i128::from(c) * i128::from(f.column) - i128::from(r) * i128::from(f.row)
+    };
+    start.faces().find_map(|face| {
+        let slope = Some(value(&face.slope)).filter(|&slope| slope > 0)?;
+        let (mut point, mut most) = ([face.at; 3], 0.5);
+        for part in &face.across {
+            let from_low = value(&part.from_low);
+            if from_low < 0 || value(&part.from_high) < 0 {
+                return None;
+            }
+            let inside = ((2 * (from_low << shift) + slope).div_euclid(2 * slope)) as i32;
+            point[part.axis] = part.low + inside;
+            // Each of the three numbers is off by half a unit, in the numerator and in the slope: with n and s for what that makes,
+            // (N + n) / (S + s) is off N / S by (n - s N / S) / (S + s).
+            let half_units = f64::from(1 + c + r) / 2.0;
+            let least = slope as f64 - half_units;
+            let carried = half_units * (f64::from(shift).exp2() + f64::from(inside) + 0.5) / least;
+            most = f64::max(most, if least > 0.0 { 0.5 + 1.01 * carried } else { f64::INFINITY });
+        }
+        Some((point, face.axis, most))
+    })
+}
+
+#[test]
+fn perspective_rays_start_where_they_enter_the_box() {
+    let eyes = [[5.0, 4.0, 6.0], [2.0, 1.0, 9.0], [-300.0, 4.0, 6000.0], [1e5, -2e5, 3e4], [3.5, 2.0, 1.0]];
+    let mut entered = 0;
+    for (eye, word) in eyes.into_iter().flat_map(|eye| [32, 24, 16, 8].map(|word| (eye, word))) {
+        // As wide as the box from wherever it is seen.
+        let field = (8.0 / largest(eye)).atan().to_degrees().max(0.001);
+        let view = view((61, 47), perspective(Some(eye), None, field));
+        let (camera, rays, grid, _) = raw_camera(&view, word);
+        let RawCamera::Perspective { start, .. } = camera else { panic!() };
+        let root = grid.bounds().enlarged(1);
+        let outer = root.enlarged(1);
+        for (c, r) in (0..61).flat_map(|c| (0..47).map(move |r| (c, r))) {
+            let (from, way) = rays.ray(c, r);
+            // Where the exact ray is in the box: between the last plane that it enters by and the first that it leaves by.
+            let crossing = |at: i32, k: usize| (f64::from(at) - from[k]) / way[k];
+            let axes: Vec<usize> = (0..3).filter(|&k| way[k] != 0.0).collect();
+            let near =
+                axes.iter().map(|&k| crossing(outer.low[k], k).min(crossing(outer.high[k], k))).fold(0.0, f64::max);
+            let point = [0, 1, 2].map(|k| from[k] + near * way[k]);
+            let inside = |slack: f64| {
+                (0..3).all(|k| {
+                    let (low, high) = (f64::from(outer.low[k]), f64::from(outer.high[k]));
+                    (low - slack..=high + slack).contains(&point[k])
+                })
+            };
+            match entry(&start, (c, r)) {
+                Some((found, k, most)) => {
+                    entered += 1;
+                    // On the plane in front of the face, and there beside the exact ray by a rounding.
+                    assert!(found[k] == outer.low[k] || found[k] == outer.high[k]);
+                    let t = crossing(found[k], k);
+                    let point = [0, 1, 2].map(|k| from[k] + t * way[k]);
+                    let off = (0..3).map(|k| (f64::from(found[k]) - point[k]).abs()).fold(0.0, f64::max);
+                    assert!(off <= most, "{eye:?} {word} {c} {r}: {found:?} is {off} away from {point:?}, not {most}");
+                    assert!(word == 8 || most <= 0.6, "{eye:?} {word} {c} {r}: {most}");
+                }
+                None => assert!(matches!(start, RayStart::Eye(_)) || !inside(-3.0), "{eye:?} {word} {c} {r} misses"),
+            }
+        }
+    }
+    assert!(entered > 5_000, "{entered}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! The grid of a scene: where its origin lies, how fine its steps are, and how coordinates become raw integers. Which number of fraction
 //! bits other quantities have is decided in [`crate::cadrage`].
 //!
-//! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles and
-//! the eye within |x| <= 2^(word-2) - 4 raw, and the way from any of their points to a light within 2^(word-1) - 8 along each axis: no ray
-//! starts at a light, so a light may stand twice as far away. Everything is computed relative to the box and relative to the largest coordinate's
+//! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles
+//! within |x| <= 2^(word-2) - 4 raw, and the way from any of their points to a light within 2^(word-1) - 8 along each axis: no ray
+//! starts at a light, so a light may stand twice as far away. The eye takes no part: rays start where they enter the triangles' box. Everything is computed relative to the box and relative to the largest coordinate's
 //! power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
 //! gives the same raw integers.
 
@@ -11,7 +11,7 @@ use messages::{Diagnostic, Report};
 
 use crate::camera::{self, Corners};
 use crate::kdtree::Bounds;
-use crate::model::{Camera, Scene, Vec3, View};
+use crate::model::{Scene, Vec3, View};
 use crate::vector::{AXES, exponent, largest, nearest, shifted, sub};
 
 /// Fewest bits of a coordinate that the scene's box may keep, in words that can hold as many.
@@ -24,7 +24,7 @@ pub struct Grid {
     pub word: u32,
     /// Raw units in a scene unit, as a power of two: raw = (x - centre) 2^position.
     pub position: i32,
-    /// Box of triangles and eye, raw: where rays start and end.
+    /// Box of the triangles, raw: where rays start and end.
     pub reach: Bounds,
     /// Along each axis the longest way within that box, or from it to a light, raw.
     pub span: [u32; 3],
@@ -78,21 +78,13 @@ impl Grid {
             number: k + 1,
             at: light.position,
         }));
-        // The eye takes part after the multiplication, because its default is computed from the box.
-        let given = match view.camera {
-            Camera::Perspective { eye: Some(eye), .. } => Some(eye),
-            _ => None,
-        };
-        let unit = points.iter().map(|p| p.at).chain(given).map(largest).fold(0.0, f64::max);
+        let unit = points.iter().map(|p| p.at).map(largest).fold(0.0, f64::max);
         let unit = exponent(unit);
         let down = |p: Vec3| p.map(|x| shifted(x, -unit));
         for point in &mut points {
             point.at = down(point.at);
         }
         let box_down = (points[0].at, points[1].at);
-        if let Some(eye) = camera::eye(box_down, &camera::mapped(&view.camera, down)) {
-            points.push(GridPoint { name: "the eye", number: 0, at: eye });
-        }
         let grid = |power: i32| Grid::with(&points, corners, word, unit, power);
         let limit = (1i64 << (word - 2)) - 4;
         let middle = camera::centre(box_down);
@@ -204,9 +196,6 @@ fn too_coarse(grid: &Grid, points: &[GridPoint], side: u32, is_chosen: bool) -> 
                 "light {} stands far away and sets the scale: move it nearer, or use a longer word with --word",
                 p.number
             )
-        }
-        Some(p) if p.name == "the eye" => {
-            "the eye stands far away and sets the scale: move it nearer, or use a longer word with --word".to_string()
         }
         _ => "use a longer word with --word".to_string(),
     };

@@ -66,7 +66,7 @@ or set with `--format`:
 
 | format | what has it | default in a word of `w` bits |
 | --- | --- | --- |
-| position | coordinates, relative to the middle of the scene's box | the finest power of two with triangles and eye within 2^(w-2), and the way to each light within 2^(w-1) |
+| position | coordinates, relative to the middle of the scene's box | the finest power of two with the triangles within 2^(w-2), and the way to each light within 2^(w-1) |
 | weight | material coefficients and colours, 0 to 1 | w - 2 |
 | colour | light colours and pixels | the most that hold the brightest sum, at most w - 3 |
 | index | indices of refraction | w - 4 |

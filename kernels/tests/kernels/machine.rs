@@ -1,0 +1,68 @@
+//! Perspective pictures as the machine draws them, pixel by pixel as the twins do: rays that enter the scene by one face, by any of three, by none,
+//! or start in it.
+
+use std::array::from_fn;
+
+use emu::machine::{Config, RunOptions, Setup};
+use emu::octets::Memory;
+use isa::Isa;
+use isa::number::{Modes, Vector};
+use kernels::build::{Crop, KernelOptions, SceneFeatures};
+use kernels::skip::Skips;
+use kernels::{KernelSet, twin};
+use scenes::generate::{self, GenerateOptions};
+use scenes::image::{self, MemoryKind, MemoryOptions};
+use scenes::layout::PIXEL;
+use scenes::model::{Camera, Scene, View};
+
+/// The pixels that the machine draws, and those of the twin.
+fn drawn(scene: &Scene, view: &View, set: KernelSet, word: u32, skips: Skips) -> [Vec<Vector>; 2] {
+    let mut config = Config::default();
+    config.arithmetic.word = word;
+    let memory = MemoryOptions { word, layout: set.layout(), ..MemoryOptions::default() };
+    let image = image::build(scene, view, &memory).expect("the scene fits the word");
+    let options = KernelOptions { profile: set, skips, ..KernelOptions::default() };
+    let isa = Isa::base();
+    let build = kernels::build(scene, view, &image, &isa, &options).expect("our kernels have no errors");
+    let (width, height) = view.size;
+    let crop = Crop { column: 0, row: 0, width, height };
+    let features = SceneFeatures::new(scene, view, &image.formats, &options);
+    let modes = Modes { word, ..Modes::default() };
+    let expected = twin::render(&image, &features, &crop, set, modes).expect("no ray is stuck");
+    let setup = Setup {
+        config: &config,
+        isa: &isa,
+        core: &build.cores,
+        main: &build.main,
+        kinds: Vec::new(),
+        options: RunOptions::default(),
+    };
+    let frame = emu::run(&setup, Memory::new(image.bytes.clone()), &mut |_| {}).expect("nothing traps");
+    let start = image.region(MemoryKind::Frame).start;
+    let word = |at: u32| frame.memory.word(at).expect("the frame is in memory");
+    let pixel = |number: u32| from_fn(|k| word(start + number * PIXEL.octets() + 4 * k as u32));
+    [(0..width * height).map(pixel).collect(), expected]
+}
+
+#[test]
+fn perspective_rays_are_those_of_the_twin() {
+    let size = (20, 15);
+    let options = GenerateOptions { level: Some(1), size, ..GenerateOptions::default() };
+    let scene = generate::scene("sphereflake", &options).expect("a scene of the list");
+    let (low, high) = scene.bounds().expect("it has triangles");
+    let at = |share: [f64; 3]| Some([0, 1, 2].map(|k| low[k] + share[k] * (high[k] - low[k])));
+    let eyes = [None, at([3.0, 2.5, 4.0]), at([-20.0, 0.5, 0.4]), at([0.5, 300.0, 900.0]), at([0.45, 0.52, 0.6])];
+    for (number, eye) in eyes.into_iter().enumerate() {
+        let field = [60.0, 60.0, 3.0, 0.1, 60.0][number];
+        let look = if number == 4 { at([0.5, 0.5, 0.0]) } else { None };
+        let view = View { camera: Camera::Perspective { eye, look, field }, ..View::new(size) };
+        for &set in KernelSet::ALL {
+            for (word, skips) in [(32, Skips::ALL), (20, Skips::NONE)] {
+                let [found, expected] = drawn(&scene, &view, set, word, skips);
+                let wrong = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
+                assert_eq!(wrong, 0, "{wrong} pixels by {set} in {word} bits from {eye:?}");
+                assert!(number == 4 || expected.iter().any(|pixel| pixel != &expected[0]), "{eye:?} sees nothing");
+            }
+        }
+    }
+}

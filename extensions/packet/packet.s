@@ -30,8 +30,7 @@
 packet_next:
     next_reference
     pass_tested
-    triangle_octets s12
-    load  slot, s15, s12
+    fetch_triangle slot, s15
     load_triangle slot
 .else
   .if LARGEST_PACKET > REFERENCES_AT_ONCE
@@ -40,14 +39,10 @@ packet_block:
     blt   s12, packet_count, 1f
     mov   s12, packet_count
 1:  isub  packet_count, packet_count, s12
-    slli  s14, s12, 2
-    movi  s13, REFERENCES
-    load  s13, packet_refs, s14
-    addr  packet_refs, packet_refs, s14
+    fetch_references s14, s12
+    pass_references s14
   .else
-    slli  s14, packet_count, 2
-    movi  s13, REFERENCES
-    load  s13, packet_refs, s14
+    fetch_references s14, packet_count
   .endif
     addr  s14, s13, s14
   .if !SKIP_EMPTY
@@ -55,9 +50,11 @@ packet_block:
   .endif
 ;-packet_next:
 ;-    lwp   s15, 4(s13)
+;-    find_triangle s15
 ;-    pass_tested
-;-    ldv3  v6, triangle.v0(s15)
+;-    fetch_vertices v6, s15
 ;-.endif
+    .assert !LAYOUT_PACKED, "rpacket reads structures in words: take the layout `wide`" ;+
     vput  v6, s13, 0 ;+
     vput  v6, s14, 1 ;+
   .if SKIP_TESTED ;+
@@ -109,13 +106,12 @@ packet_nearer:
     mov   s12, slot
     mov   slot, near_slot
     mov   near_slot, s12
-;-.elseif SKIP_OCTETS
+;-.elseif SKIP_OCTETS || LAYOUT_PACKED
 ;-    sv    v6, triangle.v0(near_slot)
 ;-    sv    v7, triangle.v1(near_slot)
 ;-    sv    v8, triangle.v2(near_slot)
 ;-.else
-;-    movi  s12, sizeof(triangle)
-;-    load  near_slot, s15, s12
+;-    fetch_whole_triangle near_slot, s15
 .endif
     jump  packet_rest
 .endif ;+

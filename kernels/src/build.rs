@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use isa::{Isa, Program};
-use messages::{Report, Source};
+use messages::{Diagnostic, Report, Source};
 use scenes::cadrage::Formats;
 use scenes::image::MemoryImage;
 use scenes::model::{Scene, View};
@@ -124,7 +124,7 @@ pub struct Build {
 /// Assembles the programs for a scene in memory.
 ///
 /// # Errors
-/// What the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
+/// A layout that the set of kernels does not read; what the assembler finds in the user's own kernels, or in ours where a format leaves no room for a shift.
 pub fn build(
     scene: &Scene,
     view: &View,
@@ -132,6 +132,11 @@ pub fn build(
     isa: &Isa,
     options: &KernelOptions,
 ) -> Result<Build, Report> {
+    if let Some(reason) = options.profile.refusal(image.layout) {
+        let refusal =
+            format!("the kernels of `{}` do not read the layout `{}`: {reason}", options.profile, image.layout);
+        return Err(Diagnostic::error(refusal).hint("use --layout wide, or --profile vector, ray or packet").into());
+    }
     let features = SceneFeatures::new(scene, view, &image.formats, options);
     // The crop goes into the programs alone; the memory image is the same for all crops.
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });

@@ -9,7 +9,7 @@ use messages::{Report, Source};
 use scenes::cadrage::Formats;
 use scenes::camera::{EntryFace, PixelFunction, RawCamera, RayStart};
 use scenes::image::{MemoryImage, MemoryKind};
-use scenes::layout::{BLOCK_NODES, Layout, Structure, TOP_NODES};
+use scenes::layout::{BLOCK_NODES, Layout, Structure, StructureSet, TOP_NODES};
 
 use crate::build::{Crop, SceneFeatures};
 use crate::constants::{Constants, SIDE_MARGIN};
@@ -36,7 +36,7 @@ const TRAP_STUCK: u32 = 1;
 /// A structure as a `.struct` of the assembler.
 pub(crate) fn structure(text: &mut String, structure: &Structure) {
     let _ = writeln!(text, ".struct {}", structure.name);
-    for field in structure.fields {
+    for field in structure.fields.iter() {
         let _ = writeln!(text, "    .field {}, {}    ; {}", field.name, field.octets(), field.holds);
     }
     let _ = writeln!(text, ".endstruct");
@@ -66,8 +66,15 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
         let _ = writeln!(text, ".equ {name}, {value}");
     }
     text.push_str(".equ T_QUOTIENT, dir + t - pos + T_SHIFT - EDGE_SHIFT\n\n");
-    for part in image.layout.structures() {
-        structure(&mut text, part);
+    for part in image.structures.all() {
+        match image.layout {
+            // In the buffer the same numbers are words.
+            Layout::Packed => structure(&mut text, &part.in_words()),
+            _ => structure(&mut text, part),
+        }
+    }
+    for (name, value) in widths(&image.structures) {
+        let _ = writeln!(text, ".equ {name}, {value}");
     }
     text.push_str(STRUCTURES);
     text.push_str(".buffer\n");
@@ -103,9 +110,32 @@ fn written_formats(formats: &Formats) -> Formats {
     Formats { position, t: position + finer, ..*formats }
 }
 
+/// Sizes of structures in global memory: octets, and bits of the integers that rows unpack.
+fn widths(structures: &StructureSet) -> Vec<(&'static str, u32)> {
+    let StructureSet { node, reference, triangle, material, light, .. } = structures;
+    let bits = |structure: &Structure, field: usize| structure.fields.get(field).map_or(0, |field| field.bits);
+    vec![
+        ("TRIANGLE_OCTETS", triangle.octets()),
+        ("MATERIAL_OCTETS", material.octets()),
+        ("LIGHT_OCTETS", light.octets()),
+        ("PLANE_BITS", bits(node, 0)),
+        ("LINK_BITS", bits(node, 1)),
+        ("REFERENCE_BITS", bits(reference, 0)),
+        ("VERTEX_BITS", bits(triangle, 0)),
+        ("MATERIAL_AT_OCTET", triangle.offset("material_id").unwrap_or(0)),
+        ("MATERIAL_ID_BITS", triangle.fields.last().map_or(0, |field| field.bits)),
+        ("MATERIAL_BITS", bits(material, 0)),
+        ("LIGHT_BITS", bits(light, 0)),
+    ]
+}
+
 /// True for a table (materials, lights) that lies in the buffer from the start.
 fn is_local(image: &MemoryImage, kind: MemoryKind) -> bool {
-    image.region(kind).len() as u32 <= TABLES / 2
+    let (structure, count) = match kind {
+        MemoryKind::Materials => (&image.structures.material, image.counts.materials),
+        _ => (&image.structures.light, image.counts.lights),
+    };
+    u64::from(count) * u64::from(structure.in_words().octets()) <= u64::from(TABLES / 2)
 }
 
 fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<(&'static str, i64)> {
@@ -115,6 +145,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
         ("LAYOUT_PACKET", (image.layout == Layout::Packet).into()),
+        ("LAYOUT_PACKED", (image.layout == Layout::Packed).into()),
         ("COORDINATE_SHIFT", image.layout.coordinate_shift(formats.word).into()),
         ("EDGE_SHIFT", edge_shift.into()),
         ("T_SHIFT", t_shift.into()),
@@ -128,10 +159,10 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("MOST_STEPS", most_steps.into()),
         ("LARGEST_PACKET", image.tree.most_triangles as i64),
         ("PACKET_AT_ONCE", PACKET_AT_ONCE.into()),
-        ("PACKET_OCTETS", Layout::Packet.octets_a_reference().into()),
+        ("PACKET_OCTETS", packet_octets().into()),
         ("TREE_NODES", image.tree.nodes as i64),
         ("TOP_NODES", top_nodes(image).into()),
-        ("BLOCK_OCTETS", (BLOCK_NODES * image.layout.node().octets()).into()),
+        ("BLOCK_NODES", BLOCK_NODES.into()),
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.depth.into()),
         ("ROOT", image.root.into()),
@@ -161,6 +192,11 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
     entries
 }
 
+/// Octets of a packet's triangle in the buffer: its name and its vertices.
+fn packet_octets() -> u32 {
+    Layout::Packet.fixed_structures().reference.octets() + Layout::Packet.octets_beside_reference()
+}
+
 /// Map of what a walk with boxes needs in any buffer.
 const BOXES: &str = "\
 NODE: .space 2 * sizeof(node)
@@ -185,11 +221,9 @@ fn top_nodes(image: &MemoryImage) -> u32 {
 /// The blocks of nodes in a buffer: the top of the tree, and one for the nodes below, if there are any. The address of an empty block is no node's.
 fn blocks(text: &mut String, image: &MemoryImage) {
     let _ = writeln!(text, "TOP: .word {}, TOP_NODES * sizeof(node)", image.root);
-    let start = image.root as usize;
-    let octets = top_nodes(image) * image.layout.node().octets();
-    words_of(text, &image.bytes[start..start + octets as usize]);
+    table(text, image, MemoryKind::Nodes, top_nodes(image) as usize);
     if image.tree.nodes as u32 > TOP_NODES {
-        text.push_str("BLOCK: .word 0, BLOCK_OCTETS\n    .space BLOCK_OCTETS\n");
+        text.push_str("BLOCK: .word 0, BLOCK_NODES * sizeof(node)\n    .space BLOCK_NODES * sizeof(node)\n");
     }
 }
 
@@ -215,13 +249,13 @@ fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: 
     let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));
     if is_local(image, MemoryKind::Materials) {
         text.push_str("MATERIALS:\n");
-        table(text, image, MemoryKind::Materials);
+        table(text, image, MemoryKind::Materials, usize::MAX);
     } else {
         text.push_str("MATERIAL_SLOT: .space sizeof(material)\n");
     }
     if is_local(image, MemoryKind::Lights) {
         text.push_str("LIGHTS_AT:\n");
-        table(text, image, MemoryKind::Lights);
+        table(text, image, MemoryKind::Lights, usize::MAX);
     } else {
         text.push_str("LIGHT_SLOT: .space sizeof(light)\n.equ LIGHTS_AT, 0\n");
     }
@@ -275,17 +309,12 @@ fn words(values: &[i32]) -> String {
     values.iter().map(i32::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// The words of a region of the image, as data.
-fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind) {
-    let range = image.region(kind);
-    words_of(text, &image.bytes[range.start as usize..range.end as usize]);
-}
-
-fn words_of(text: &mut String, octets: &[u8]) {
-    for row in octets.chunks(16) {
-        let (row, _) = row.as_chunks::<4>();
-        let values: Vec<i32> = row.iter().map(|&word| i32::from_le_bytes(word)).collect();
-        let _ = writeln!(text, "    .word {}", words(&values));
+/// The first structures of a region of the image, as words of the buffer.
+fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind, most: usize) {
+    let structures = image.table(kind).expect("the image was just built").into_iter().take(most);
+    let numbers: Vec<i32> = structures.flatten().map(|number| number as i32).collect();
+    for row in numbers.chunks(4) {
+        let _ = writeln!(text, "    .word {}", words(row));
     }
 }
 
@@ -336,7 +365,7 @@ fn camera(text: &mut String, image: &MemoryImage) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub fn included(layout: Layout) -> [Arc<Source>; 7] {
+pub fn included(layout: Layout) -> [Arc<Source>; 8] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -344,7 +373,12 @@ pub fn included(layout: Layout) -> [Arc<Source>; 7] {
     }
     let structures = match layout {
         Layout::Report => file!("report.inc"),
-        Layout::Wide | Layout::Packet => file!("wide.inc"),
+        Layout::Wide | Layout::Packet | Layout::Packed => file!("wide.inc"),
+    };
+    // Transfers: of structures as they are, or of packed ones.
+    let transfers = match layout {
+        Layout::Report | Layout::Wide | Layout::Packet => file!("words.inc"),
+        Layout::Packed => file!("packed.inc"),
     };
     [
         file!("registers.inc"),
@@ -352,6 +386,7 @@ pub fn included(layout: Layout) -> [Arc<Source>; 7] {
         file!("scalar.inc"),
         file!("surface.inc"),
         file!("search.inc"),
+        transfers,
         structures,
         file!("tested.inc"),
     ]

@@ -53,7 +53,7 @@ impl Variant {
     /// The variant with other kernels, those that were made for a layout in that.
     fn with(self, profile: KernelSet) -> Variant {
         let layout = match profile.layout() {
-            own @ (Layout::Report | Layout::Packet) => own,
+            own @ (Layout::Report | Layout::Packet | Layout::Packed) => own,
             Layout::Wide => self.layout,
         };
         Variant { profile, layout, ..self }

@@ -350,11 +350,13 @@ fn operations(machine: &Config, demand: &PictureDemand, left: &mut Vec<(Change, 
 /// Other layouts, sets of kernels and trees.
 fn pictures(job: &Job, triangles: usize) -> Vec<Change> {
     let mut found = Vec::new();
-    for layout in Layout::ALL.into_iter().filter(|&layout| layout != job.layout()) {
+    let is_read = |&layout: &Layout| layout != job.layout() && job.kernels.profile.refusal(layout).is_none();
+    for layout in Layout::ALL.into_iter().filter(is_read) {
         let words = format!("layout {}", layout.name());
         found.push(Change::of_option(ChangedPart::Layout, words, PictureOption::Layout(layout)));
     }
-    for &set in KernelSet::ALL.iter().filter(|&&set| set != job.kernels.profile) {
+    let reads = |set: &&KernelSet| job.layout.is_none_or(|layout| set.refusal(layout).is_none());
+    for &set in KernelSet::ALL.iter().filter(|&&set| set != job.kernels.profile).filter(reads) {
         let words = format!("kernels of {}", set.name());
         found.push(Change::of_option(ChangedPart::Kernels, words, PictureOption::Profile(set)));
     }

@@ -4,7 +4,7 @@ use emu::machine::Config;
 use emu::quantity::Octets;
 use isa::{Class, Program};
 use kernels::annex::{Figure, figures};
-use scenes::layout::{LIGHT, Layout, MATERIAL};
+use scenes::layout::Layout;
 
 use super::Measurement;
 
@@ -63,7 +63,7 @@ pub fn derive(measured: &[Measurement]) -> Vec<Derived> {
 fn counted(id: &str, pixel: Pixel, program: &Program) -> Option<f64> {
     let Pixel { operations, memory } = pixel;
     let symbol = |name: &str| program.symbols.get(name).map(|&value| value as f64);
-    let layout = Layout::Report;
+    let layout = Layout::Report.fixed_structures();
     Some(match id {
         "pixel_operations" => operations,
         "memory_clocks" => memory,
@@ -73,18 +73,18 @@ fn counted(id: &str, pixel: Pixel, program: &Program) -> Option<f64> {
         "pixel_time" => pixel.microseconds() / 1e3,
         "pixel_rate" => 1e3 / pixel.microseconds(),
         "frame_time" => FRAME * pixel.microseconds() / 1e6,
-        "buffer.kd_nodes" => f64::from(2 * layout.node().octets()),
+        "buffer.kd_nodes" => f64::from(2 * layout.node.octets()),
         // Registers hold both.
         "buffer.addresses" => 0.0,
         // One is tested at a time.
-        "buffer.triangles" | "buffer.nearest_triangle" | "storage.triangle" => f64::from(layout.triangle().octets()),
+        "buffer.triangles" | "buffer.nearest_triangle" | "storage.triangle" => f64::from(layout.triangle.octets()),
         // Two a level below the camera ray's.
         "buffer.ray_tree" => (2.0 * symbol("BOUNCES")? + 1.0) * (symbol("treenode.near_t")? + 4.0),
-        "buffer.materials_and_lights" => f64::from(MATERIAL.octets() + LIGHT.octets()),
+        "buffer.materials_and_lights" => f64::from(layout.material.octets() + layout.light.octets()),
         // The driver's own data begin there.
         "buffer.total" => symbol("START")?,
-        "storage.node" => f64::from(layout.node().octets()),
-        "storage.reference" => f64::from(layout.reference().octets()),
+        "storage.node" => f64::from(layout.node.octets()),
+        "storage.reference" => f64::from(layout.reference.octets()),
         _ => return None,
     })
 }

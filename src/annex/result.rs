@@ -280,8 +280,8 @@ impl SceneFigures {
         let whole = Pixel::new(scene.operations as f64, scene.octets);
         let hertz = emu::machine::Config::default().clock_hz as f64;
         let pixel_ms = scene.clocks as f64 / pixels / hertz * 1e3;
-        let layout = scenes::layout::Layout::Report;
-        let octets = [layout.triangle(), layout.node(), layout.reference()].map(|structure| structure.octets());
+        let layout = scenes::layout::Layout::Report.fixed_structures();
+        let octets = [layout.triangle, layout.node, layout.reference].map(|structure| structure.octets());
         SceneFigures {
             scene: scene.scene.clone(),
             pixel_operations: whole.operations / pixels,

@@ -126,6 +126,14 @@ pub static CASES: &[Case] = &[
     )
     .seed(1),
     Case::new(
+        "packed_words",
+        "rays aimed at vertices and edges of the six meshes in the layout `packed`, in words of 12, 16, 20 and 24 bits",
+        "leaks and wrong hits",
+        (200_000, closed::packed_words),
+        (40_000_000, closed::packed_words),
+    )
+    .seed(16),
+    Case::new(
         "split_planes",
         "rays in planes that divide the kd tree and through edges and corners of its boxes",
         "leaks, multiple and wrong hits",

@@ -3,14 +3,14 @@
 use std::cmp::Ordering;
 
 use isa::number::ray::{Meeting, Ray, TriangleEnd, triangle};
-use isa::number::{Nearest32, Vector};
+use isa::number::{Arithmetic, Nearest32, Vector};
 use kernels::KernelSet;
 use kernels::build::SceneFeatures;
 use kernels::twin::packets::PackedLeaves;
 use kernels::twin::planes::Packets;
 use kernels::twin::stage::StageNode;
 use kernels::twin::{Twin, ray};
-use scenes::image;
+use scenes::image::{self, MemoryOptions};
 use scenes::model::{Material, Scene, Triangle, View};
 
 use super::mesh::{ClosedMesh, TriangleCorners};
@@ -18,12 +18,12 @@ use super::mesh::{ClosedMesh, TriangleCorners};
 /// Sign of the determinant where a ray leaves a body whose triangles run anticlockwise, seen from outside.
 const OUTWARDS: i32 = -1;
 
-/// A mesh on the grid of a word of 32 bits.
-pub struct Target {
+/// A mesh on the grid of a word.
+pub struct Target<T = Nearest32> {
     /// Name of the target.
     pub name: &'static str,
     /// The kernels' functions for it.
-    pub twin: Twin<Nearest32>,
+    pub twin: Twin<T>,
     /// Packets of the tree, as the rows of the packet unit take them.
     pub packets: PackedLeaves,
     /// Coordinates of the planes that divide the tree, by axis.
@@ -34,8 +34,15 @@ pub struct Target {
 pub type Crossing = (i128, i128, i32, u32);
 
 impl Target {
-    /// The mesh as the loader puts it on the grid, with its tree.
+    /// The mesh as the loader puts it on the grid of 32 bits, with its tree.
     pub fn new(mesh: &ClosedMesh, profile: KernelSet) -> Target {
+        Target::stored(mesh, profile, &MemoryOptions::default(), Nearest32)
+    }
+}
+
+impl<T: Arithmetic> Target<T> {
+    /// The mesh as the loader stores it, with its tree; the arithmetic is that of the options' word.
+    pub fn stored(mesh: &ClosedMesh, profile: KernelSet, options: &MemoryOptions, arithmetic: T) -> Target<T> {
         let grey = Material { colour: [0.5; 3], reflection: 0.0, intensity: 1.0, index: 0.0 };
         let corner = |number: usize| 3 * number as u32;
         let scene = Scene {
@@ -49,9 +56,9 @@ impl Target {
                 .collect(),
         };
         let view = View::new(scene.size);
-        let image = image::build(&scene, &view, &image::MemoryOptions::default()).expect("the mesh fits the grid");
+        let image = image::build(&scene, &view, options).expect("the mesh fits the grid");
         let features = SceneFeatures::new(&scene, &view, &image.formats, &kernels::KernelOptions::default());
-        let twin = Twin::new(&image, &features, profile, Nearest32).expect("an image that was built can be read");
+        let twin = Twin::new(&image, &features, profile, arithmetic).expect("an image that was built can be read");
         let mut splits = [vec![], vec![], vec![]];
         for node in &twin.stage.nodes {
             if let StageNode::Inner { axis, at, .. } = *node {
@@ -170,6 +177,21 @@ impl Target {
             }
             let Some(surfaces) = met.next() else { break };
             ahead -= surfaces.iter().map(|crossing| crossing.2).sum::<i32>();
+        }
+        if is_searched { self.check_nearest(ray) } else { Ok(()) }
+    }
+
+    /// Checks that a ray from outside crosses the closed surface as often inwards as outwards, wherever rounding has moved its vertices to; and
+    /// where it `is_searched`, that the tree finds what there is.
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub fn check_leaks(&self, ray: &Ray, is_searched: bool) -> Result<(), String> {
+        let bounds = &self.twin.stage.bounds;
+        let starts_outside = (0..3).any(|k| ray.origin[k] < bounds.low[k] || ray.origin[k] > bounds.high[k]);
+        let sum: i32 = self.crossings(ray).iter().map(|crossing| crossing.2).sum();
+        if starts_outside && sum != 0 {
+            return Err(format!("{}, {ray:?}: {sum} surfaces without another side", self.name));
         }
         if is_searched { self.check_nearest(ray) } else { Ok(()) }
     }

@@ -64,8 +64,10 @@ fn aimed(subject: &Subject) -> impl Strategy<Value = [Vector; 2]> + use<> {
 }
 
 /// The sets that search in rows of the ray unit, each in its own layout and in another one.
-const SETS: [(KernelSet, Layout); 4] = [
+const SETS: [(KernelSet, Layout); 6] = [
     (KernelSet::Ray, Layout::Wide),
+    (KernelSet::Ray, Layout::Packed),
+    (KernelSet::Packet, Layout::Packed),
     (KernelSet::Ray, Layout::Packet),
     (KernelSet::Packet, Layout::Packet),
     (KernelSet::Packet, Layout::Wide),
@@ -74,7 +76,7 @@ const SETS: [(KernelSet, Layout); 4] = [
 /// Result of a search of a twin, as the kernel's registers have it.
 fn found(subject: &Subject, twin: &Twin<Modes>, ray: &TwinRay, mut search: TwinSearch) -> Vec<i32> {
     let triangles = subject.image.region(MemoryKind::Triangles).start;
-    let octets = subject.image.layout.triangle().octets();
+    let octets = subject.image.structures.triangle.octets();
     if let Some(first) = twin.own_packet(ray) {
         twin.trace(ray, first, &mut search).expect("a walk with planes ends");
     }

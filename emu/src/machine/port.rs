@@ -95,6 +95,13 @@ impl Link for CorePort<'_> {
         Ok(self.shared.memory.read_words(address, words)?)
     }
 
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+        let length = octets.len() as u32;
+        self.shared.memory.holds(address, length)?;
+        self.enter(transfer(Access::Read, address, length))?;
+        Ok(self.shared.memory.read(address, octets)?)
+    }
+
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         let octets = 4 * words.len() as u32;
         self.shared.memory.holds(address, octets)?;

@@ -65,6 +65,11 @@ impl Link for CheckedLink<'_> {
         Ok(self.memory.read_words(address, words)?)
     }
 
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+        self.ask(Access::Read, address, octets.len() as u32)?;
+        Ok(self.memory.read(address, octets)?)
+    }
+
     fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
         Err(self.refuse(WRITES))
     }

@@ -5,6 +5,7 @@ use isa::number::Vector;
 use isa::table::{Done, Each};
 
 use super::BusRoom;
+use super::unpack::{self, NodeWidths};
 use crate::code::octets::Buffer;
 use crate::code::trap::{Fault, Stop};
 
@@ -81,6 +82,12 @@ pub trait Link {
         Ok(words)
     }
 
+    /// Reads octets from global memory from `address` on, in one transfer.
+    ///
+    /// # Errors
+    /// An address beyond the memory, or not yet.
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop>;
+
     /// Writes words of 32 bits to global memory from `address` on, in one transfer.
     ///
     /// # Errors
@@ -119,6 +126,7 @@ macro_rules! methods {
             load(buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> ();
             store(buffer: &Buffer, to: u32, from: u32, octets: u32) -> ();
             read(address: u32, words: &mut [i32]) -> ();
+            read_octets(address: u32, octets: &mut [u8]) -> ();
             write(address: u32, words: &[i32]) -> ();
             fetch_add(address: u32, more: i32) -> i32;
             send(to: i32, message: Message) -> ();
@@ -150,6 +158,10 @@ macro_rules! at_once {
 
         fn read(&mut $link, address: u32, words: &mut [i32]) -> Result<(), Stop> {
             Ok($memory.read_words(address, words)?)
+        }
+
+        fn read_octets(&mut $link, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+            Ok($memory.read(address, octets)?)
         }
 
         fn write(&mut $link, address: u32, words: &[i32]) -> Result<(), Stop> {
@@ -190,6 +202,32 @@ pub struct Port<'a, L> {
     pub link: &'a mut L,
 }
 
+impl<L: Link> Port<'_, L> {
+    /// Moves records of `bits` bits each from global memory at `from` to the buffer at `to`, `N` words each, as `unpack` makes them of the
+    /// octets and the bit at which a record begins. Yields the octets that were moved.
+    fn unpack<const N: usize>(
+        &mut self,
+        (to, from): (u32, u32),
+        records: i32,
+        bits: u32,
+        unpack: impl Fn(&[u8], usize) -> [i32; N],
+    ) -> Result<Each, Stop> {
+        let records = records as u32;
+        // More words than there are addresses do not fit any buffer.
+        let place = self.buffer.slice_mut(to, records.saturating_mul(4 * N as u32))?;
+        let octets = (u64::from(records) * u64::from(bits)).div_ceil(8) as usize;
+        let mut moved = unpack::Moved::new(octets);
+        self.link.read_octets(from, moved.octets())?;
+        for (record, words) in place.chunks_exact_mut(4 * N).enumerate() {
+            let unpacked = unpack(moved.padded(), record * bits as usize);
+            for (octets, word) in words.chunks_exact_mut(4).zip(unpacked) {
+                octets.copy_from_slice(&word.to_le_bytes());
+            }
+        }
+        Ok(Each(octets as u32))
+    }
+}
+
 impl<L: Link> BusRoom for Port<'_, L> {
     #[inline]
     fn load(&mut self, a: u32, b: u32, c: i32) -> Result<Each, Stop> {
@@ -220,6 +258,41 @@ impl<L: Link> BusRoom for Port<'_, L> {
     fn ldv3(&mut self, a: u32, i: i32) -> Result<([Vector; 3], Done), Stop> {
         let words: [i32; 9] = self.link.words(a.wrapping_add_signed(i))?;
         Ok((std::array::from_fn(|at| std::array::from_fn(|component| words[3 * at + component])), Done))
+    }
+
+    #[inline]
+    fn loadf(&mut self, a: u32, b: u32, c: i32, i: i32) -> Result<Each, Stop> {
+        self.unpack((a, b), c, i as u32, |octets, at| [unpack::signed(octets, at, i as u32)])
+    }
+
+    #[inline]
+    fn loadfu(&mut self, a: u32, b: u32, c: i32, i: i32) -> Result<Each, Stop> {
+        self.unpack((a, b), c, i as u32, |octets, at| [unpack::unsigned(octets, at, i as u32) as i32])
+    }
+
+    #[inline]
+    fn ldv3f(&mut self, a: u32, i: i32, j: i32) -> Result<([Vector; 3], Each), Stop> {
+        let bits = j as u32;
+        let octets = (9 * bits).div_ceil(8);
+        let mut moved = unpack::Moved::new(octets as usize);
+        self.link.read_octets(a.wrapping_add_signed(i), moved.octets())?;
+        let component = |at: usize| unpack::signed(moved.padded(), at * bits as usize, bits);
+        Ok((std::array::from_fn(|vector| std::array::from_fn(|k| component(3 * vector + k))), Each(octets)))
+    }
+
+    #[inline]
+    fn ldnode(&mut self, a: u32, i: i32, j: i32) -> Result<(i64, Each), Stop> {
+        let widths = NodeWidths::new(i, j);
+        let mut moved = unpack::Moved::new(widths.octets() as usize);
+        self.link.read_octets(widths.address(a), moved.octets())?;
+        let [low, high] = widths.node(moved.padded(), 0);
+        Ok((i64::from(high) << 32 | i64::from(low as u32), Each(widths.octets())))
+    }
+
+    #[inline]
+    fn loadnode(&mut self, a: u32, b: u32, c: i32, i: i32, j: i32) -> Result<Each, Stop> {
+        let widths = NodeWidths::new(i, j);
+        self.unpack((a, widths.address(b)), c, 8 * widths.octets(), |octets, at| widths.node(octets, at))
     }
 
     #[inline]

@@ -12,6 +12,7 @@ mod scalar;
 mod split;
 #[cfg(test)]
 mod tests;
+mod unpack;
 mod vector;
 mod walk;
 mod watch;

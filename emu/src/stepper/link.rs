@@ -122,6 +122,12 @@ impl Link for TimedLone<'_> {
         Ok(())
     }
 
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+        self.link.memory.read(address, octets)?;
+        self.note(TransferKind::Read, address, octets.len() as u32);
+        Ok(())
+    }
+
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         self.link.memory.put_words(address, words)?;
         self.note(TransferKind::Write, address, 4 * words.len() as u32);

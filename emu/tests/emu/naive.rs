@@ -119,6 +119,10 @@ impl Link for Silent {
         Err(Stop::Wait)
     }
 
+    fn read_octets(&mut self, _: u32, _: &mut [u8]) -> Result<(), Stop> {
+        Err(Stop::Wait)
+    }
+
     fn write(&mut self, _: u32, _: &[i32]) -> Result<(), Stop> {
         Err(Stop::Wait)
     }

@@ -48,6 +48,16 @@ macro_rules! memory_instructions {
             ldwide (d: W, a: A, i: Off)       "100010 ddd10 aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 8)];
             /// Loads three vectors, nine words of 32 bits, from global memory at `a + i`.
             ldv3 (d: V3, a: A, i: Off)        "010111 ddddd aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 36)];
+            /// Copies `c` signed numbers of `i` bits each, which stand bit behind bit in global memory from octet `b` on, to words of the buffer at `a`. Of more than 32 bits the low 32 stay.
+            loadf (a: A, b: A, c: S, i: Sh)   "110110 aaaaa bbbbb ccccc iiiiii 00000"  [Done(mem 1; each octet 1)];
+            /// As `loadf`, for numbers without a sign.
+            loadfu (a: A, b: A, c: S, i: Sh)  "110110 aaaaa bbbbb ccccc iiiiii 00001"  [Done(mem 1; each octet 1)];
+            /// Loads three vectors, nine signed numbers of `j` bits each, which stand bit behind bit in global memory from octet `a + i` on.
+            ldv3f (d: V3, a: A, i: Off, j: Sh) "110111 ddddd aaaaa iiiiiiiiii jjjjjj"  [Done(mem 1; each octet 1)];
+            /// Loads the node of a kd tree that is named `a`, 8 times its number counted from address 0, as a pattern that the rows of walks take. In global memory a node has a signed plane of `i` bits and a link of `j`, in as many octets as they fill: a link is the axis or the 3 of a leaf in its two lowest bits, and an eighth of a name or an address above them.
+            ldnode (d: W, a: A, i: Sh, j: Un) "110110 ddd aaaaa iiiiii jjjjj -- 00010" [Done(mem 1; each octet 1)];
+            /// Copies `c` nodes from that named `b` on, as `ldnode` finds them, to patterns in the buffer at `a`.
+            loadnode (a: A, b: A, c: S, i: Sh, j: Un) "111000 aaaaa bbbbb ccccc iiiiii jjjjj" [Done(mem 1; each octet 1)];
             /// Stores 32 bits to global memory at `a + i`.
             stw (b: S, a: A, i: Off)          "101000 bbbbb aaaaa iiiiiiiiiiiiiiii"    [Done(mem 1, octet 4)];
             /// Stores three words of 32 bits to global memory at `a + i`.

@@ -58,15 +58,15 @@ references_\@:
   .if !SKIP_EMPTY
     beq   place, packet_count, references_end_\@
   .endif
+    begin_references gathered
 reference_\@:
     next_reference
     sw    s15, (place)
   .if LAYOUT_REPORT
-    movi  s12, sizeof(triangle)
-    load  slot, s15, s12
+    fetch_whole_triangle slot, s15
     load_triangle slot
   .else
-    ldv3  v6, triangle.v0(s15)
+    fetch_vertices v6, s15
   .endif
     addr  s14, place, stride
     .irp  vertex, v6, v7, v8
@@ -158,8 +158,7 @@ search_over:
     beqz  near, trace_end
     vget  near_t, nearest, 0
     bnez  any_hit, trace_end
-    movi  s12, sizeof(triangle)
-    load  near_slot, near, s12
+    fetch_whole_triangle near_slot, near
 trace_end:
     ret   link_trace
 .endfunc

@@ -12,7 +12,7 @@
     walk_boxes
 .else
 descend_node:
-    ldwide split, (packet_refs)
+    fetch_node split, packet_refs
     rstep packet_refs, s14, origin, split, sizeof(node)
     beqz  s14, descend_node
     bltz  s14, descend_leaf

@@ -29,7 +29,7 @@ first_leave:
     lhu   packet_count, node.pnum(packet_count)
   .else
     li    packet_refs, ROOT
-2:  ldwide split, (packet_refs)
+2:  fetch_node split, packet_refs
     whigh s12, split
     andi  s13, s12, 3
     xor   packet_refs, s12, s13

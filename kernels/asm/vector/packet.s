@@ -18,15 +18,14 @@ packet_block:
     blt   s12, packet_count, 1f             ; not min, which is of words: a count may not fit one
     mov   s12, packet_count
 1:  isub  packet_count, packet_count, s12
-    slli  s12, s12, 2
-    movi  s13, REFERENCES
-    load  s13, packet_refs, s12
+    fetch_references s12, s12
     addr  s14, s13, s12
-    addr  packet_refs, packet_refs, s12
+    pass_references s12
   .if !SKIP_EMPTY
     beq   s13, s14, 4f
   .endif
 2:  lwp   s15, 4(s13)
+    find_triangle s15
 .endif
 .if SKIP_TESTED
     tested_place s12, s15
@@ -34,8 +33,7 @@ packet_block:
     beq   tested, s15, 3f
     sw    s15, TESTED(s12)
 .endif
-    triangle_octets s12
-    load  slot, s15, s12
+    fetch_triangle slot, s15
     call  link_step, triangle
     .holds s12, t
     blt   near_t, s12, 3f

@@ -45,6 +45,8 @@ pub(crate) struct SetAnswers {
     pub formulas: Formulas,
     /// Skips that its kernels know.
     pub skips: &'static [Skip],
+    /// Refusal of the layout `packed`, the reason; `None` where its kernels read it.
+    pub refuses_packed: Option<&'static str>,
 }
 
 /// Exactness with which a set decides between hit and miss.
@@ -120,6 +122,14 @@ impl KernelSet {
     /// Layout of memory that goes with the set unless the user chooses another.
     pub const fn layout(self) -> Layout {
         self.answers().layout
+    }
+
+    /// Reason for which the set's kernels cannot read a layout; `None` where they can.
+    pub const fn refusal(self, layout: Layout) -> Option<&'static str> {
+        match layout {
+            Layout::Packed => self.answers().refuses_packed,
+            Layout::Report | Layout::Wide | Layout::Packet => None,
+        }
     }
 
     /// Exactness of the set's decisions.

@@ -31,4 +31,5 @@ pub(super) static SET: SetAnswers = SetAnswers {
     decisions: Decisions::Exact,
     formulas: Formulas::Vector,
     skips: &[Skip::Features, Skip::Weightless, Skip::Unlit, Skip::AnyHit, Skip::Missed, Skip::Beyond, Skip::Empty],
+    refuses_packed: None,
 };

@@ -31,4 +31,5 @@ pub(super) static SET: SetAnswers = SetAnswers {
     decisions: Decisions::Exact,
     formulas: Formulas::Vector,
     skips: Skip::ALL,
+    refuses_packed: None,
 };

@@ -40,4 +40,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     decisions: Decisions::Rounded,
     formulas: Formulas::Printed,
     skips: &[Skip::Features, Skip::Weightless, Skip::Unlit, Skip::AnyHit, Skip::Beyond],
+    refuses_packed: Some(
+        "they read structures octet by octet, as the report prints them, and the report has no rows that unpack fields of few bits",
+    ),
 };

@@ -42,4 +42,5 @@ pub(super) static SET: SetAnswers = SetAnswers {
     decisions: Decisions::Wide,
     formulas: Formulas::Vector,
     skips: Skip::ALL,
+    refuses_packed: None,
 };

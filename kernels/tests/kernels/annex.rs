@@ -102,6 +102,10 @@ impl Link for Alone {
         Ok(self.0.read_words(address, words)?)
     }
 
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+        Ok(self.0.read(address, octets)?)
+    }
+
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         Ok(self.0.put_words(address, words)?)
     }

@@ -7,5 +7,6 @@ mod drawing;
 mod formats;
 mod machine;
 mod modes;
+mod packed;
 mod packets;
 mod ties;

@@ -2,7 +2,7 @@
 
 use super::{MemoryImage, MemoryKind};
 use crate::kdtree::{Bounds, KdTree, UnlinkedNode};
-use crate::layout::{LIGHT, Layout, MATERIAL, Structure, WIDE_LEAF};
+use crate::layout::{Layout, NODE_NAMES, Structure, WIDE_LEAF, bits_at, unpacked_link};
 use crate::model::{Scene, Triangle};
 
 /// A triangle as it is stored, its coordinates shifted back to positions.
@@ -31,20 +31,33 @@ impl MemoryImage {
     /// Reads tree, triangles, materials and lights from the octets; `None` when an address leads out of its region or the tree is none.
     pub fn decode(&self) -> Option<DecodedImage> {
         let nodes =
-            (self.tree.nodes as u32).min(self.region(MemoryKind::Nodes).len() as u32 / self.layout.node().octets());
+            (self.tree.nodes as u32).min(self.region(MemoryKind::Nodes).len() as u32 / self.structures.node.octets());
         Some(DecodedImage {
             tree: match self.layout {
                 Layout::Report => self.report_tree(nodes)?,
-                Layout::Wide | Layout::Packet => self.wide_tree(nodes)?,
+                Layout::Wide | Layout::Packet | Layout::Packed => self.wide_tree(nodes)?,
             },
             triangles: (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?,
-            materials: (0..self.counts.materials)
-                .map(|k| self.element(MemoryKind::Materials, &MATERIAL, k))
-                .collect::<Option<_>>()?,
-            lights: (0..self.counts.lights)
-                .map(|k| self.element(MemoryKind::Lights, &LIGHT, k))
-                .collect::<Option<_>>()?,
+            materials: self.table(MemoryKind::Materials)?,
+            lights: self.table(MemoryKind::Lights)?,
         })
+    }
+
+    /// The integers of the structures of a kind, of which there is nothing else: nodes, materials or lights; `None` for other kinds.
+    ///
+    /// The links of nodes are as the rows that walk take them.
+    pub fn table(&self, kind: MemoryKind) -> Option<Vec<Vec<i64>>> {
+        let (structure, count) = match kind {
+            MemoryKind::Nodes => (&self.structures.node, self.tree.nodes as u32),
+            MemoryKind::Materials => (&self.structures.material, self.counts.materials),
+            MemoryKind::Lights => (&self.structures.light, self.counts.lights),
+            _ => return None,
+        };
+        let element = |number| match kind {
+            MemoryKind::Nodes if self.layout != Layout::Report => self.wide_node(number).map(|node| node.to_vec()),
+            _ => self.element(kind, structure, number),
+        };
+        (0..count).map(element).collect()
     }
 
     /// The scene with its vertices where the image has them; each triangle has vertices of its own.
@@ -61,7 +74,7 @@ impl MemoryImage {
 
     /// A triangle by its index.
     pub fn triangle(&self, index: u32) -> Option<StoredTriangle> {
-        let values = self.element(MemoryKind::Triangles, self.layout.triangle(), index)?;
+        let values = self.element(MemoryKind::Triangles, &self.structures.triangle, index)?;
         let vertex = |k: usize| [0, 1, 2].map(|axis| self.loaded(values[3 * k + axis]));
         Some(StoredTriangle { vertices: [0, 1, 2].map(vertex), material: *values.last()? as u32 })
     }
@@ -89,7 +102,7 @@ impl MemoryImage {
     }
 
     fn report_tree(&self, count: u32) -> Option<KdTree> {
-        let structure = self.layout.node();
+        let structure = &self.structures.node;
         let number = |address: i64| self.number(MemoryKind::Nodes, structure, address as u32);
         let (mut nodes, mut places) = (Vec::new(), Vec::new());
         // Children come in pairs, in the order of their parents.
@@ -125,12 +138,12 @@ impl MemoryImage {
 
     /// The triangles of a linked list that is `count` long.
     fn list(&self, mut address: u32, count: u32) -> Option<Vec<u32>> {
-        let structure = self.layout.reference();
+        let structure = &self.structures.reference;
         let mut triangles = Vec::new();
         while address != 0 {
             let number = self.number(MemoryKind::References, structure, address)?;
             let &[triangle, next] = self.element(MemoryKind::References, structure, number)?.first_chunk()?;
-            triangles.push(self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)?);
+            triangles.push(self.number(MemoryKind::Triangles, &self.structures.triangle, triangle as u32)?);
             if triangles.len() > count as usize {
                 return None;
             }
@@ -139,21 +152,36 @@ impl MemoryImage {
         (triangles.len() == count as usize).then_some(triangles)
     }
 
+    /// Plane and link of a node, the link as the rows that walk take it.
+    fn wide_node(&self, number: u32) -> Option<[i64; 2]> {
+        let &[plane, link] = self.element(MemoryKind::Nodes, &self.structures.node, number)?.first_chunk()?;
+        let is_packed = self.layout == Layout::Packed;
+        Some([plane, if is_packed { unpacked_link(link as u32).into() } else { link }])
+    }
+
     fn wide_tree(&self, count: u32) -> Option<KdTree> {
-        let structure = self.layout.node();
+        let structure = &self.structures.node;
         let mut nodes = Vec::new();
-        let mut addresses = vec![self.root];
-        while let Some(&address) = addresses.get(nodes.len()) {
-            let number = self.number(MemoryKind::Nodes, structure, address)?;
-            let &[plane, link] = self.element(MemoryKind::Nodes, structure, number)?.first_chunk()?;
+        let mut names = vec![self.root];
+        while let Some(&name) = names.get(nodes.len()) {
+            let number = match self.layout {
+                // Names are numbers from address 0 on, and the region begins at a whole one.
+                Layout::Packed => {
+                    let first = self.region(MemoryKind::Nodes).start / structure.octets();
+                    (name / NODE_NAMES).checked_sub(first).filter(|&number| number < count)?
+                }
+                _ => self.number(MemoryKind::Nodes, structure, name)?,
+            };
+            let [plane, link] = self.wide_node(number)?;
             let (tag, address) = (link as u32 & 3, link as u32 & !3);
             nodes.push(if tag == WIDE_LEAF {
                 UnlinkedNode::Leaf(self.array(address, plane)?)
             } else {
-                addresses.extend([address, address.checked_add(structure.octets())?]);
+                let step = if self.layout == Layout::Packed { NODE_NAMES } else { structure.octets() };
+                names.extend([address, address.checked_add(step)?]);
                 UnlinkedNode::Inner { axis: tag as usize, at: i32::try_from(plane).ok()? }
             });
-            if addresses.len() > count as usize {
+            if names.len() > count as usize {
                 return None;
             }
         }
@@ -162,16 +190,36 @@ impl MemoryImage {
 
     /// The triangles of an array of `count` references.
     fn array(&self, address: u32, count: i64) -> Option<Vec<u32>> {
-        let structure = self.layout.reference();
+        if self.layout == Layout::Packed {
+            return self.packed_array(address, count);
+        }
+        let structure = &self.structures.reference;
         let first = if count == 0 { 0 } else { self.number(MemoryKind::References, structure, address)? };
         let end = first.checked_add(u32::try_from(count).ok()?)?;
         let triangle = |k| {
             let triangle = *self.element(MemoryKind::References, structure, k)?.first()?;
-            self.number(MemoryKind::Triangles, self.layout.triangle(), triangle as u32)
+            self.number(MemoryKind::Triangles, &self.structures.triangle, triangle as u32)
         };
         let triangles = (first..end).map(triangle).collect::<Option<Vec<u32>>>()?;
         let is_whole = self.layout != Layout::Packet || self.has_vertices(end, &triangles)?;
         is_whole.then_some(triangles)
+    }
+
+    /// The triangles of an array of `count` references that stand bit behind bit.
+    fn packed_array(&self, address: u32, count: i64) -> Option<Vec<u32>> {
+        let (bits, octets) = (self.structures.reference.fields[0].bits, self.structures.triangle.octets());
+        let length = u32::try_from(count).ok()?.checked_mul(bits)?.div_ceil(8);
+        let end = address.checked_add(length)?;
+        let region = self.region(MemoryKind::References);
+        if length > 0 && (address < region.start || end > region.end) {
+            return None;
+        }
+        let array = self.bytes.get(address as usize..end as usize)?;
+        let triangle = |k: usize| {
+            let address = u32::try_from(bits_at(array, k * bits as usize, bits, false)).ok()?.checked_mul(octets)?;
+            self.number(MemoryKind::Triangles, &self.structures.triangle, address)
+        };
+        (0..count as usize).map(triangle).collect()
     }
 
     /// The words behind the references of a packet are the vertices of its triangles; `first` is the number of the first word, counted as
@@ -181,7 +229,7 @@ impl MemoryImage {
             triangles.iter().map(|&triangle| Some(self.triangle(triangle)?.vertices)).collect::<Option<_>>()?;
         let words = (0..9).flat_map(|kind| vertices.iter().map(move |vertices| vertices.as_flattened()[kind]));
         for (k, word) in (first..).zip(words) {
-            if *self.element(MemoryKind::References, self.layout.reference(), k)?.first()? as i32 != word {
+            if *self.element(MemoryKind::References, &self.structures.reference, k)?.first()? as i32 != word {
                 return Some(false);
             }
         }

@@ -2,23 +2,25 @@
 
 use messages::{Diagnostic, Report};
 
-use super::{HEADER, MemoryKind, Regions, blocks, out_of_range, stored, three};
+use super::arrange::{ImageParts, arrange, packed_octets};
+use super::{Regions, blocks, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};
 use crate::grid::Grid;
-use crate::kdtree::{Bounds, BuiltTree, Content, Node, NumberedNode, Triangles};
-use crate::layout::{LIGHT, Layout, MATERIAL, PIXEL, Structure, WIDE_LEAF};
+use crate::kdtree::{Bounds, Content, Node, NumberedNode, Triangles};
+use crate::layout::{Layout, NODE_NAMES, Structure, StructureSet, WIDE_LEAF, packed_link, put_bits};
 use crate::model::Scene;
 
 /// Materials and lights as raw integers, in the order of their fields.
 pub(super) struct Tables {
-    materials: Vec<[i32; 8]>,
-    lights: Vec<[i32; 6]>,
+    pub materials: Vec<[i32; 8]>,
+    pub lights: Vec<[i32; 6]>,
 }
 
 impl Tables {
     /// Rounds all coefficients to their formats (nearest, ties up).
     pub(super) fn new(scene: &Scene, grid: &Grid, formats: &Formats, layout: Layout) -> Result<Tables, Report> {
-        let most = 1usize << (8 * layout.triangle().fields[layout.triangle().fields.len() - 1].width);
+        // A triangle ends with the number of its material.
+        let most = layout.fixed_structures().triangle.fields.last().map_or(0, |field| 1usize << field.bits);
         if scene.materials.len() > most {
             return Err(Diagnostic::error(format!(
                 "{} materials are more than the {most} of layout `{layout}`",
@@ -26,7 +28,7 @@ impl Tables {
             ))
             .hint(match layout {
                 Layout::Report => "use --layout wide, which has room for 65536",
-                Layout::Wide | Layout::Packet => "merge materials that are the same",
+                Layout::Wide | Layout::Packet | Layout::Packed => "merge materials that are the same",
             })
             .into());
         }
@@ -62,47 +64,41 @@ impl Tables {
     }
 }
 
-/// All octets, and which addresses hold what.
-pub(super) fn memory(
-    tree: &BuiltTree,
-    scene: &Scene,
-    triangles: &impl Triangles,
-    tables: &Tables,
-    layout: Layout,
-    shift: u32,
-    size: (u32, u32),
-) -> Result<(Vec<u8>, Regions), Report> {
-    let octets = [
-        u64::from(HEADER),
-        u64::from(tree.count()) * u64::from(layout.node().octets()),
-        u64::from(tree.references()) * u64::from(layout.octets_a_reference()),
-        triangles.count() as u64 * u64::from(layout.triangle().octets()),
-        tables.materials.len() as u64 * u64::from(MATERIAL.octets()),
-        tables.lights.len() as u64 * u64::from(LIGHT.octets()),
-        (u64::from(size.0) * u64::from(size.1)).saturating_mul(u64::from(PIXEL.octets())),
-    ];
-    let mut end = 0u64;
-    let mut regions = MemoryKind::ALL.map(|kind| (kind, 0..0));
-    for ((_, range), length) in regions.iter_mut().zip(octets) {
-        // Each region begins at a multiple of 8, because a link of the wide layout keeps the axis in the lowest bits.
-        let start = end.next_multiple_of(8);
-        end = start.saturating_add(length);
-        *range = u32::try_from(start).and_then(|start| Ok(start..u32::try_from(end)?)).map_err(|_| {
-            let mebioctets = octets.iter().fold(0u64, |sum, &n| sum.saturating_add(n)) >> 20;
-            Diagnostic::error(format!("the memory image needs {mebioctets} MiB, more than 32-bit addresses reach"))
-                .hint("use a smaller picture, or a lower tree with --kd-depth")
-        })?;
-    }
-    let mut bytes = vec![0; end as usize];
+/// Octets of an image, and where they hold what.
+pub(super) struct EncodedMemory {
+    pub bytes: Vec<u8>,
+    pub regions: Regions,
+    pub structures: StructureSet,
+    /// Address, in the layout `packed` name, of the root.
+    pub root: u32,
+}
+
+/// Writes all octets.
+pub(super) fn memory(parts: &ImageParts<impl Triangles>) -> Result<EncodedMemory, Report> {
+    let &ImageParts { tree, scene, triangles, tables, layout, shift, .. } = parts;
+    let (structures, regions) = arrange(parts)?;
+    let StructureSet { node: node_structure, reference, triangle: triangle_structure, material, light, .. } =
+        &structures;
+    let mut bytes = vec![0; regions.iter().map(|(_, range)| range.end).max().unwrap_or(0) as usize];
     let start = |kind: usize| regions[kind].1.start;
     let places = if layout == Layout::Packet { blocks::places(tree) } else { Vec::new() };
-    let addresses = Addresses { nodes: start(1), places, references: start(2), triangles: start(3), layout };
-    let mut put = |address: u32, structure: &Structure, values: &mut dyn Iterator<Item = i64>| {
-        structure.write(&mut bytes[address as usize..], values);
+    let addresses = Addresses {
+        nodes: start(1),
+        places,
+        references: start(2),
+        triangles: start(3),
+        layout,
+        octets: [node_structure, reference, triangle_structure].map(Structure::octets),
     };
-    for NumberedNode { number, first: reference, node } in tree.nodes() {
+    // Octets of leaves that stand in the order in which they come here: see `leaf`.
+    let mut filled = 0;
+    for NumberedNode { number, first: before, node } in tree.nodes() {
         let packet = packet(node.content);
-        let first = if packet.is_empty() { 0 } else { addresses.leaf(reference) };
+        let first = match layout {
+            _ if packet.is_empty() => 0,
+            Layout::Packed => start(2) + filled,
+            _ => addresses.leaf(before),
+        };
         let values = match layout {
             Layout::Report => {
                 if packet.len() > usize::from(u16::MAX) {
@@ -116,47 +112,59 @@ pub(super) fn memory(
                 addresses.report_node(&node, first, shift)
             }
             Layout::Wide | Layout::Packet => addresses.wide_node(node.content, first),
+            Layout::Packed => addresses.packed_node(node.content, first),
         };
-        put(addresses.node(number), layout.node(), &mut values.into_iter());
-        let octets = layout.reference().octets();
+        node_structure.write(&mut bytes[addresses.node(number) as usize..], values);
+        if layout == Layout::Packed {
+            let bits = reference.fields[0].bits;
+            let divided = packet.iter().map(|&triangle| addresses.triangle(triangle) / triangle_structure.octets());
+            for (at, name) in divided.enumerate() {
+                put_bits(&mut bytes[first as usize..], at * bits as usize, bits, name.into());
+            }
+            filled += packed_octets(packet.len(), bits) as u32;
+            continue;
+        }
+        let octets = reference.octets();
         for (here, &triangle) in (first..).step_by(octets as usize).zip(packet) {
             // A packet names no triangle twice, so the last one is known by its number.
             let is_last = packet.last() == Some(&triangle);
             let next = if is_last { 0 } else { here + octets };
             let values = [addresses.triangle(triangle), next].map(i64::from);
-            put(here, layout.reference(), &mut values.into_iter().take(layout.reference().fields.len()));
+            reference.write(&mut bytes[here as usize..], values.into_iter().take(reference.fields.len()));
         }
     }
     for (number, triangle) in (0..).zip(&scene.triangles) {
         let vertices = triangles.vertices(number as usize);
         let Bounds { low, high } = Bounds::of_triangle(&vertices);
-        // The report keeps each triangle's box beside it; the wide layout works boxes out where they are needed.
+        // The report keeps each triangle's box beside it; the other layouts work boxes out where they are needed.
         let own: &[[i32; 3]] = match layout {
             Layout::Report => &[low, high],
-            Layout::Wide | Layout::Packet => &[],
+            Layout::Wide | Layout::Packet | Layout::Packed => &[],
         };
-        let mut values = vertices
+        let values = vertices
             .iter()
             .chain(own)
             .flatten()
             .map(|&x| i64::from(stored(x, shift)))
             .chain([i64::from(triangle.material)]);
-        put(addresses.triangle(number), layout.triangle(), &mut values);
+        triangle_structure.write(&mut bytes[addresses.triangle(number) as usize..], values);
     }
-    for (number, material) in (0..).zip(&tables.materials) {
-        put(start(4) + number * MATERIAL.octets(), &MATERIAL, &mut material.iter().map(|&x| i64::from(x)));
+    for (number, values) in (0..).zip(&tables.materials) {
+        material.write(&mut bytes[(start(4) + number * material.octets()) as usize..], values.map(i64::from));
     }
-    for (number, light) in (0..).zip(&tables.lights) {
-        put(start(5) + number * LIGHT.octets(), &LIGHT, &mut light.iter().map(|&x| i64::from(x)));
+    for (number, values) in (0..).zip(&tables.lights) {
+        light.write(&mut bytes[(start(5) + number * light.octets()) as usize..], values.map(i64::from));
     }
     if layout == Layout::Packet {
-        for NumberedNode { first: reference, node, .. } in tree.nodes() {
+        for NumberedNode { first: before, node, .. } in tree.nodes() {
             let packet = packet(node.content);
-            let behind = addresses.leaf(reference) + packet.len() as u32 * layout.reference().octets();
+            let behind = addresses.leaf(before) + packet.len() as u32 * reference.octets();
             components(&mut bytes[behind as usize..], triangles, packet);
         }
     }
-    Ok((bytes, regions))
+    // The root is the first node, whatever the layout.
+    let root = addresses.name(0);
+    Ok(EncodedMemory { bytes, regions, structures, root })
 }
 
 /// Writes the vertices of a packet: all x of first vertices, then all y, and so on up to all z of third ones.
@@ -172,7 +180,7 @@ fn components(octets: &mut [u8], triangles: &impl Triangles, packet: &[u32]) {
 }
 
 /// The triangles of a leaf, none for an inner node.
-fn packet(content: Content<'_>) -> &[u32] {
+pub(super) fn packet(content: Content<'_>) -> &[u32] {
     match content {
         Content::Leaf { triangles } => triangles,
         Content::Inner { .. } => &[],
@@ -187,21 +195,31 @@ struct Addresses {
     references: u32,
     triangles: u32,
     layout: Layout,
+    /// Octets of a node, a reference and a triangle.
+    octets: [u32; 3],
 }
 
 impl Addresses {
     fn node(&self, number: u32) -> u32 {
         let place = self.places.get(number as usize).copied().unwrap_or(number);
-        self.nodes + place * self.layout.node().octets()
+        self.nodes + place * self.octets[0]
+    }
+
+    /// A node as links name it: its address, in the layout `packed` its number times [`NODE_NAMES`].
+    fn name(&self, number: u32) -> u32 {
+        match self.layout {
+            Layout::Packed => (self.nodes / self.octets[0] + number) * NODE_NAMES,
+            _ => self.node(number),
+        }
     }
 
     /// Address of a leaf's references, behind so many of other leaves.
     fn leaf(&self, references: u32) -> u32 {
-        self.references + references * self.layout.octets_a_reference()
+        self.references + references * (self.octets[1] + self.layout.octets_beside_reference())
     }
 
     fn triangle(&self, number: u32) -> u32 {
-        self.triangles + number * self.layout.triangle().octets()
+        self.triangles + number * self.octets[2]
     }
 
     fn report_node(&self, node: &Node, first: u32, shift: u32) -> Vec<i64> {
@@ -219,8 +237,14 @@ impl Addresses {
 
     fn wide_node(&self, content: Content, first: u32) -> Vec<i64> {
         match content {
-            Content::Inner { axis, at, left } => vec![i64::from(at), i64::from(self.node(left) | axis as u32)],
+            Content::Inner { axis, at, left } => vec![i64::from(at), i64::from(self.name(left) | axis as u32)],
             Content::Leaf { triangles } => vec![triangles.len() as i64, i64::from(first | WIDE_LEAF)],
         }
+    }
+
+    fn packed_node(&self, content: Content, first: u32) -> Vec<i64> {
+        let mut values = self.wide_node(content, first);
+        values[1] = i64::from(packed_link(values[1] as u32));
+        values
     }
 }

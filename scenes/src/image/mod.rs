@@ -1,6 +1,7 @@
 //! The image of global memory that a machine starts with: kd tree, triangles, materials, lights and an empty frame, and what the kernels
 //! have to be told beside it. How structures look is said in [`crate::layout`].
 
+mod arrange;
 mod blocks;
 mod decode;
 mod encode;
@@ -15,7 +16,7 @@ use crate::cadrage::{self, Formats, Overrides};
 use crate::camera::{self, RawCamera, Rays};
 use crate::grid::Grid;
 use crate::kdtree::{self, Bounds, Statistics, Triangles};
-use crate::layout::Layout;
+use crate::layout::{Layout, StructureSet};
 use crate::model::{Scene, Triangle, Vec3, View};
 pub use decode::{DecodedImage, StoredTriangle};
 
@@ -104,9 +105,11 @@ pub struct MemoryImage {
     pub bytes: Vec<u8>,
     /// The layout of triangles and tree.
     pub layout: Layout,
+    /// The structures, with the widths of their fields.
+    pub structures: StructureSet,
     /// Addresses of each kind, in the order of [`MemoryKind::ALL`]; they start at multiples of 8, and may be empty.
     pub regions: Regions,
-    /// Address of the tree's root.
+    /// Address of the tree's root, in the layout `packed` its name.
     pub root: u32,
     /// Box of the tree's root, raw: the scene's, one stored unit larger on every side.
     pub bounds: Bounds,
@@ -187,9 +190,9 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     let background = three(view.background, |x| colour("the background", x))?;
     let tree = kdtree::build_in_order(&mesh, bounds, options.kd_depth, options.kd_method)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
-    let (bytes, regions) = encode::memory(&tree, scene, &mesh, &tables, layout, shift, view.size)?;
-    // The root is the first node, whatever the layout.
-    let root = regions[1].1.start;
+    let parts =
+        arrange::ImageParts { tree: &tree, scene, triangles: &mesh, tables: &tables, layout, shift, size: view.size };
+    let encode::EncodedMemory { bytes, regions, structures, root } = encode::memory(&parts)?;
     let counts = StructureCounts {
         triangles: scene.triangles.len() as u32,
         materials: scene.materials.len() as u32,
@@ -198,6 +201,7 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     Ok(MemoryImage {
         bytes,
         layout,
+        structures,
         regions,
         root,
         bounds,

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{BLOCK_NODES, Field, LIGHT, Layout, MATERIAL, PIXEL, Structure, TOP_NODES};
-use crate::image::{HEADER, MemoryKind};
+use super::{BLOCK_NODES, Field, LIGHT, Layout, MATERIAL, PIXEL, Structure, StructureSet, TOP_NODES};
+use crate::generate;
+use crate::image::{HEADER, MemoryKind, MemoryOptions, build};
+use crate::model::View;
 
 /// The manual of all layouts: `docs/layouts.md`.
 pub fn manual() -> String {
@@ -26,16 +28,19 @@ pub fn manual() -> String {
             Layout::Report => REPORT,
             Layout::Wide => WIDE,
             Layout::Packet => &format!("{PACKET}{}", blocks()),
+            Layout::Packed => PACKED,
         };
         line(&mut text, &format!("## Layout `{layout}`\n\n{about}"));
-        if layout == Layout::Packet {
-            continue;
-        }
-        for structure in [layout.node(), layout.reference(), layout.triangle()] {
-            table(&mut text, structure);
+        match layout {
+            Layout::Packet => {}
+            Layout::Packed => packed(&mut text),
+            Layout::Report | Layout::Wide => {
+                let StructureSet { node, reference, triangle, .. } = layout.fixed_structures();
+                [node, reference, triangle].iter().for_each(|structure| table(&mut text, structure));
+            }
         }
     }
-    line(&mut text, "## Structures of all layouts\n");
+    line(&mut text, "## Structures of all layouts but `packed`\n");
     for structure in [&MATERIAL, &LIGHT, &PIXEL] {
         table(&mut text, structure);
     }
@@ -51,8 +56,9 @@ const INTRODUCTION: &str = "\
 <!-- Written by scenes::layout::manual from the tables in scenes/src/layout.rs; a test says when this file is stale. -->
 
 A scene is put into global memory once, before the machine starts; kernels read it there and write the frame. There are
-three layouts: `report` has the report's structures bit for bit (Annex I), `wide` is the default and keeps all bits of a
-coordinate, `packet` is `wide` with the vertices of a leaf's triangles beside its references. `--layout` chooses one.
+four layouts: `report` has the report's structures bit for bit (Annex I), `wide` is the default and keeps all bits of a
+coordinate, `packet` is `wide` with the vertices of a leaf's triangles beside its references, `packed` is `wide` in as few
+bits as scene and tree allow. `--layout` chooses one.
 
 Integers are little-endian, signed ones in two's complement, and structures have no gaps between their fields.
 Structures follow each other without gaps too, in this order; each kind starts at the next multiple of 8:
@@ -90,6 +96,47 @@ vertices of its triangles, as the rows `rnear` and `rany` take them: for a leaf 
 reference, and one transfer brings all of it. A triangle that lies in several leaves has its vertices in each.
 ";
 
+const PACKED: &str = "\
+Fields take as many bits as the scene needs, and stand bit behind bit: an integer begins with its lowest bit, in the
+lowest bit of an octet that is free. Only structures, the references of a leaf and `material_id` begin with an octet. In
+a core's buffer and its registers the same numbers are words: the rows `ldv3f`, `ldnode`, `loadf`, `loadfu` and `loadnode`
+unpack what they move, so that all but transfers is as in `wide`, and pictures are the same, bit for bit. The frame
+stays in words, since hosts read it.
+
+How wide a field is follows from what it holds: coordinates and planes are as wide as the largest one with its sign, so
+that coarser positions (`--word`, `--format pos=`) make it narrower; links and references reach just as far as tree and
+scene do. Whole octets a field were measured, too: of words of 20 bits they move three quarters of the octets of `wide`,
+and bits less than two thirds.
+
+Nodes and triangles are named by numbers, counted from address 0, so each of these two kinds starts at a multiple of its
+structure's octets. The name of a node is 8 times its number, which is what links become in registers: rows that walk
+take them as they take addresses of `wide`. The references of a leaf begin at a multiple of 8. The rows that unpack are
+no rows of the report, so its kernels (`--profile report`) are refused.
+
+These are the structures of the Cornell box in words of 16 bits; of other scenes and words only the widths differ.
+
+";
+
+/// Structures of the layout `packed`, of a scene.
+fn packed(text: &mut String) {
+    let scene = generate::scene("cornell", &generate::GenerateOptions::default()).expect("the scene is one of ours");
+    let options = MemoryOptions { word: 16, layout: Layout::Packed, ..MemoryOptions::default() };
+    let image = build(&scene, &View::new(scene.size), &options).expect("16 bits hold the scene");
+    let StructureSet { node, reference, triangle, material, light, .. } = &image.structures;
+    for structure in [node, reference, triangle, material, light] {
+        let mut write = || {
+            writeln!(text, "### `{}`: {} octets\n", structure.name, structure.octets())?;
+            writeln!(text, "| bit | bits | field | integers | holds |\n| ---: | ---: | --- | --- | --- |")?;
+            for (start, field) in structure.places() {
+                let (bits, kind) = (field.elements * field.bits, kind(field));
+                writeln!(text, "| {start} | {bits} | `{}` | {kind} | {} |", field.name, field.holds)?;
+            }
+            writeln!(text)
+        };
+        write().expect("text takes whatever is written to it");
+    }
+}
+
 /// The order of the nodes in the layout `packet`.
 fn blocks() -> String {
     format!(
@@ -106,7 +153,7 @@ fn line(text: &mut String, line: &str) {
 /// Description of an integer of a field.
 fn kind(field: &Field) -> String {
     let sign = if field.is_signed { "signed" } else { "unsigned" };
-    let bits = 8 * field.width;
+    let bits = field.bits;
     match field.elements {
         1 => format!("{sign} {bits}"),
         count => format!("{count} x {sign} {bits}"),
@@ -117,8 +164,8 @@ fn table(text: &mut String, structure: &Structure) {
     let mut write = || {
         writeln!(text, "### `{}`: {} octets\n", structure.name, structure.octets())?;
         writeln!(text, "| offset | octets | field | bits | holds |\n| ---: | ---: | --- | --- | --- |")?;
-        for (offset, field) in structure.offsets() {
-            let (octets, kind) = (field.octets(), kind(field));
+        for (start, field) in structure.places() {
+            let (offset, octets, kind) = (start / 8, field.octets(), kind(field));
             writeln!(text, "| {offset} | {octets} | `{}` | {kind} | {} |", field.name, field.holds)?;
         }
         writeln!(text)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use scenes::image::MemoryOptions;
-use scenes::info::SceneInfo;
+use scenes::info::{SceneInfo, StructureInfo};
 use scenes::layout::Layout;
 
 use crate::arguments::{SettingsArguments, TreeArguments, overrides};
@@ -166,5 +166,16 @@ fn memory(facts: &SceneInfo) -> String {
     let mut rows = vec![row(["memory", "octets"])];
     rows.extend(memory.octets.0.iter().map(|(name, octets)| vec![(*name).to_owned(), grouped(*octets)]));
     rows.push(vec![format!("all ({})", memory.layout), grouped(memory.total as u64)]);
-    table(rows)
+    table(rows) + &structures(facts)
+}
+
+/// Octets of one structure of each kind, with the bits of its fields where these are no words.
+fn structures(facts: &SceneInfo) -> String {
+    let one = |structure: &StructureInfo| {
+        let fields = structure.bits.0.iter().map(|(name, bits)| format!("{name} {bits}"));
+        vec![structure.name.to_owned(), grouped(structure.octets.into()), fields.collect::<Vec<_>>().join(", ")]
+    };
+    let mut rows = vec![row(["structure", "octets", "bits of an integer"])];
+    rows.extend(facts.memory.structures.iter().map(one));
+    format!("\n{}", table(rows))
 }

@@ -149,6 +149,44 @@ table:  .byte   1, 2, 3, 4
         ldv3    v4, 0(s2)               ; v4 = 0, 0, 0; v5 = 1, 2, 3; v6 = 0, 0, 0
         halt
 
+;; loadf
+        li      s1, 0x00fab123
+        stw     s1, 0(s0)
+        movi    s2, 2
+        movi    s3, 100
+        loadf   s3, s0, s2, 12          ; buffer[100] = 35, 1, 0, 0, 171, 255, 255, 255
+        halt
+
+;; loadfu
+        li      s1, 0x00fab123
+        stw     s1, 0(s0)
+        movi    s2, 2
+        movi    s3, 100
+        loadfu  s3, s0, s2, 12          ; buffer[100] = 35, 1, 0, 0, 171, 15, 0, 0
+        halt
+
+;; ldv3f
+        li      s1, 0x08f7
+        stw     s1, 0(s0)
+        ldv3f   v1, 0(s0), 4            ; v1 = 7, -1, -8; v2 = 0, 0, 0; v3 = 0, 0, 0
+        halt
+
+;; ldnode
+        movi    s1, 0x7a
+        stw     s1, 16(s0)
+        movi    s2, 128
+        ldnode  w0, s2, 3, 4            ; w0 = 115964116994
+        halt
+
+;; loadnode
+        movi    s1, 0x7a
+        stw     s1, 16(s0)
+        movi    s2, 128
+        movi    s3, 1
+        movi    s4, 100
+        loadnode s4, s2, s3, 3, 4       ; buffer[100] = 2, 0, 0, 0, 27, 0, 0, 0
+        halt
+
 ;; stw
         movi    s1, 7
         movi    s2, 8

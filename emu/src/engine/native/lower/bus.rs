@@ -229,6 +229,11 @@ impl BusRoom for Lower<'_, '_> {
     called! {
         load(S, S, S) -> ();
         store(S, S, S) -> ();
+        loadf(S, S, S, i32) -> ();
+        loadfu(S, S, S, i32) -> ();
+        ldv3f(S, i32, i32) -> ([Value; 3]);
+        ldnode(S, i32, i32) -> (Value);
+        loadnode(S, S, S, i32, i32) -> ();
         stw(S, S, i32) -> ();
         stv(V, S, i32) -> ();
         fetchadd(S, S) -> (Value);

@@ -32,6 +32,23 @@ pub enum Comparison {
     None,
 }
 
+/// Number of each pixel that a heat map shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum HeatOf {
+    /// Elementary operations.
+    #[default]
+    Operations,
+    /// Clocks from its first message to its end.
+    Clocks,
+    /// Clocks of those in which its core waited for transfers.
+    Waits,
+    /// Octets that were moved.
+    Octets,
+    /// Instructions.
+    Instructions,
+}
+
 /// Times that the host took.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Times {
@@ -134,7 +151,8 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     // Run the machine, with the reference beside it on a thread of its own.
     let profile = match job.detail {
         Detail::Totals => ProfileLevel::None,
-        Detail::Functions | Detail::Course => ProfileLevel::Totals,
+        Detail::Functions => ProfileLevel::Totals,
+        Detail::Clocks | Detail::Course => ProfileLevel::Clocks,
         Detail::Extremes => ProfileLevel::Extremes,
     };
     let (has_losses, has_course, engine) = (job.flags, job.detail == Detail::Course, job.engine);
@@ -226,14 +244,25 @@ impl Drawing {
 
     /// Elementary operations of each pixel, row 0 first.
     pub fn operations(&self) -> Vec<u64> {
-        let mut operations = vec![0; self.words.len()];
+        self.heat(HeatOf::Operations)
+    }
+
+    /// Number of each pixel, row 0 first; 0 for pixels that were interpolated.
+    pub fn heat(&self, of: HeatOf) -> Vec<u64> {
+        let mut heat = vec![0; self.words.len()];
         for item in &self.frame.items {
             // The first component of a work item's message is the number of its pixel.
-            if let Some(pixel) = usize::try_from(item.subject[0]).ok().and_then(|at| operations.get_mut(at)) {
-                *pixel += item.elementary;
+            if let Some(pixel) = usize::try_from(item.subject[0]).ok().and_then(|at| heat.get_mut(at)) {
+                *pixel += match of {
+                    HeatOf::Operations => item.elementary,
+                    HeatOf::Clocks => (item.end - item.start).0,
+                    HeatOf::Waits => item.waiting.0,
+                    HeatOf::Octets => item.octets.0,
+                    HeatOf::Instructions => item.instructions,
+                };
             }
         }
-        operations
+        heat
     }
 
     /// The difference of each pixel from the reference, where there is one.

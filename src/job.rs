@@ -23,6 +23,8 @@ pub enum Detail {
     Extremes,
     /// Totals of functions and regions.
     Functions,
+    /// Those, and their clocks of computing and waiting, which take some time.
+    Clocks,
     /// Those, and the clocks of the bus over time.
     Course,
     /// Nothing more.

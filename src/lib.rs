@@ -9,6 +9,8 @@ pub mod benchmark;
 #[cfg(feature = "cli")]
 pub mod chart;
 #[cfg(feature = "cli")]
+pub mod clocks;
+#[cfg(feature = "cli")]
 pub mod command;
 pub mod cores;
 #[cfg(feature = "cli")]

@@ -56,9 +56,9 @@ pub fn brief(result: &Render) -> String {
     );
     // Own operations say where the work is done; those of a caller would say so again.
     let mut functions: Vec<&RegionCounts> = result.functions.iter().chain(&result.regions).collect();
-    functions.sort_by_key(|function| std::cmp::Reverse(function.exclusive.0.elementary()));
+    functions.sort_by_key(|function| std::cmp::Reverse(function.exclusive.counts.0.elementary()));
     let own = |function: &&RegionCounts| {
-        let share = percent(function.exclusive.0.elementary(), counts.elementary());
+        let share = percent(function.exclusive.counts.0.elementary(), counts.elementary());
         format!("{} {share}", function.name)
     };
     let functions: Vec<String> = functions.iter().take(FUNCTIONS_NAMED).map(own).collect();
@@ -115,15 +115,15 @@ pub fn function_table(lists: &[(&[RegionCounts], &str)]) -> String {
     let mut rows: Vec<Vec<String>> = vec![head.chain(COLUMNS.iter().map(|class| class.name().to_owned())).collect()];
     for (regions, prefix) in lists {
         let mut regions: Vec<&RegionCounts> = regions.iter().filter(|region| region.calls != 0).collect();
-        regions.sort_by_key(|region| std::cmp::Reverse(region.inclusive.0.elementary()));
+        regions.sort_by_key(|region| std::cmp::Reverse(region.inclusive.counts.0.elementary()));
         rows.extend(regions.into_iter().map(|region| function(region, prefix)));
     }
     table(rows)
 }
 
 fn function(region: &RegionCounts, prefix: &str) -> Vec<String> {
-    let own = &region.exclusive.0;
-    let totals = [region.calls, region.inclusive.0.elementary(), own.elementary()];
+    let own = &region.exclusive.counts.0;
+    let totals = [region.calls, region.inclusive.counts.0.elementary(), own.elementary()];
     let classes = COLUMNS.iter().map(|&class| own[class]);
     std::iter::once(format!("{prefix}{}", region.name)).chain(totals.into_iter().chain(classes).map(short)).collect()
 }

@@ -4,6 +4,7 @@
 
 mod canvas;
 mod draw;
+mod flame;
 mod font;
 mod label;
 mod pdf;
@@ -11,6 +12,7 @@ mod scale;
 mod style;
 mod svg;
 
+pub use flame::{FlameFigure, FlameKind, FlameNode};
 pub use style::{ChartColumns, ChartStyle, ChartTheme};
 
 use canvas::Canvas;
@@ -131,7 +133,17 @@ impl ChartPoint {
 
 /// The figure as an SVG file.
 pub fn svg(figure: &ChartFigure, style: ChartStyle) -> String {
-    svg::text(&drawn(figure, style), figure)
+    svg::text(&drawn(figure, style), &figure.title)
+}
+
+/// The flame graph as an SVG file.
+pub fn flame_svg(figure: &FlameFigure, style: ChartStyle) -> String {
+    svg::text(&flame::figure(figure, style), &figure.title)
+}
+
+/// The flame graph as a PDF file of one page.
+pub fn flame_pdf(figure: &FlameFigure, style: ChartStyle) -> Vec<u8> {
+    pdf::octets(&flame::figure(figure, style))
 }
 
 /// The figure as a PDF file of one page.

@@ -2,16 +2,15 @@
 
 use std::fmt::Write;
 
-use super::ChartFigure;
 use super::canvas::{Canvas, Colour, DrawnShape, PagePlace, TextAnchor, TextLine};
 
 /// The file; the figure's title is its title for viewers and screen readers.
-pub fn text(canvas: &Canvas, figure: &ChartFigure) -> String {
+pub fn text(canvas: &Canvas, title: &str) -> String {
     let (width, height) = canvas.size;
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}pt\" height=\"{height:.0}pt\" viewBox=\"0 0 {width} {height:.0}\" \
          role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\">\n<title>{}</title>\n",
-        escaped(&figure.title)
+        escaped(title)
     );
     for shape in &canvas.shapes {
         let _ = match shape {

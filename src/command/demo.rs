@@ -8,7 +8,7 @@ use scenes::generate;
 
 use super::render::{draw, maps};
 use crate::arguments::Size;
-use crate::drawing::Comparison;
+use crate::drawing::{Comparison, HeatOf};
 use crate::failure::{Exit, Failure};
 use crate::files::map::LEAST_ERROR;
 use crate::files::picture::PictureFormat;
@@ -50,7 +50,7 @@ pub(super) fn execute(size: Size, terminal: &mut Terminal) -> Result<Exit, Failu
     let result = Render::new(&job, &drawing);
     // Write the picture and its maps.
     let paths = ["cornell.png", "cornell-heat.png", "cornell-error.png"].map(|name| folder.join(name));
-    let mut files = maps(&drawing, Some(&paths[1]), Some(&paths[2]));
+    let mut files = maps(&drawing, Some((&paths[1], HeatOf::default())), Some(&paths[2]));
     files.push((&paths[0], PictureFormat::Png.encode(&drawing.picture)));
     files::write_all(&files)?;
     let [picture, heat, error] = paths.map(|path| path.display().to_string());

@@ -7,20 +7,22 @@ use clap::Args;
 use messages::Diagnostic;
 
 use super::expectation::ExpectationArguments;
-use crate::arguments::JobArguments;
-use crate::drawing::{self, Comparison, Drawing};
+use crate::arguments::{JobArguments, chart_file};
+use crate::chart::{self, ChartStyle};
+use crate::drawing::{self, Comparison, Drawing, HeatOf};
 use crate::energy::{self, EnergyResult};
 use crate::failure::{Exit, Failure};
 use crate::files::picture::PictureFormat;
 use crate::files::{self, map};
-use crate::job::{Job, result_name};
+use crate::job::{Detail, Job, result_name};
 use crate::result::{Host, Render, loss_table};
 use crate::terminal::Terminal;
-use crate::{machine, summary};
+use crate::{clocks, machine, summary};
 
 const EXAMPLES: &str = "\
 Examples:
   lancer render cornell
+  lancer render cornell --size 160x120 --full --flame flame.svg --heat waits.png --heat-of waits
   lancer render house.dsc -o house.png --heat heat.png --error error.png
   lancer render bunny.off --size 640x480 --camera perspective --eye 0,-1,3 -o bunny.pfm
   lancer render sphereflake --json --cores 8 --word 24 > counts.json
@@ -66,9 +68,18 @@ pub struct RenderArguments {
     /// Adds the host's times, in seconds.
     #[arg(long, help_heading = "Results")]
     timing: bool,
-    /// Map of the elementary operations of each pixel, logarithmic: .png, .ppm or .pfm.
+    /// Map of the elementary operations of each pixel, or of what --heat-of says, logarithmic: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     heat: Option<PathBuf>,
+    /// Number that --heat shows: elementary operations, clocks from begin to end, clocks of waiting, octets, or instructions.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = HeatOf::Operations, requires = "heat", help_heading = "Results")]
+    heat_of: HeatOf,
+    /// Clocks by stack of functions, a line each, for tools that draw flame graphs; waits stand on top by kind of data.
+    #[arg(long, value_name = "FILE", help_heading = "Results")]
+    folded: Option<PathBuf>,
+    /// Flame graph of the clocks of the cores by stack of functions: .svg or .pdf.
+    #[arg(long, value_name = "FILE", value_parser = chart_file, help_heading = "Results")]
+    flame: Option<PathBuf>,
     /// Map of the nanojoules of each pixel by the machine's first table, logarithmic: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, help_heading = "Results")]
     energy_map: Option<PathBuf>,
@@ -95,7 +106,10 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     settings.results.error &= !arguments.no_error;
     // A map of errors is nothing without them.
     settings.results.error |= arguments.error.is_some();
-    let job = arguments.job.job_of(&settings)?;
+    let mut job = arguments.job.job_of(&settings)?;
+    if arguments.tells_clocks() {
+        job.detail = Detail::Clocks;
+    }
     let load = start.elapsed();
     terminal.show(&job.warnings);
     // One pixel is looked at in the tables; it must not replace the picture.
@@ -110,8 +124,9 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
         let message = Diagnostic::error("there is no picture to write the results beside");
         return Err(Failure::usage(message.hint("name one with `-o FILE`")));
     }
-    let targets =
-        [&output, &arguments.heat, &arguments.error, &sidecar, &arguments.energy_map].map(|path| path.as_deref());
+    let (folded, flame) = (&arguments.folded, &arguments.flame);
+    let targets = [&output, &arguments.heat, &arguments.error, &sidecar, &arguments.energy_map, folded, flame];
+    let targets = targets.map(|path| path.as_deref());
     files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
     let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
     files::check_spared(targets.into_iter().flatten(), &job.files).map_err(Failure::usage)?;
@@ -126,8 +141,9 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let mut result = Render::new(&job, &drawing);
     result.energy = arguments.energy.then(|| EnergyResult::of(&job, &drawing, Some(result.rays.all())));
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
-    let [output, heat, error, sidecar, energy_map] = targets;
-    let mut files = maps(&drawing, heat, error);
+    let [output, heat, error, sidecar, energy_map, folded, flame] = targets;
+    let mut files = maps(&drawing, heat.map(|heat| (heat, arguments.heat_of)), error);
+    files.extend(clock_files(&result, &drawing, folded, flame));
     files.extend(output.map(|output| (output, format(output).encode(&drawing.picture))));
     files.extend(sidecar.map(|sidecar| (sidecar, result.json().into_bytes())));
     let size = drawing.picture.size;
@@ -138,7 +154,7 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
         terminal.print(&result.json())?;
     } else if !is_taken && !arguments.quiet {
         terminal.tell(&if arguments.full {
-            full(&result, &drawing, energies.as_deref())
+            full(&job, &result, &drawing, energies.as_deref())
         } else {
             brief(&result, &drawing, energies.as_deref())
         })?;
@@ -163,12 +179,44 @@ pub(super) fn draw(job: &Job, comparison: Comparison, terminal: &Terminal) -> Re
 }
 
 /// The maps that are asked for, as the octets of their files.
-pub(super) fn maps<'p>(drawing: &Drawing, heat: Option<&'p Path>, error: Option<&'p Path>) -> Vec<(&'p Path, Vec<u8>)> {
+pub(super) fn maps<'p>(
+    drawing: &Drawing,
+    heat: Option<(&'p Path, HeatOf)>,
+    error: Option<&'p Path>,
+) -> Vec<(&'p Path, Vec<u8>)> {
     let size = drawing.picture.size;
-    let heat = heat.map(|path| (path, format(path).encode_pixels(&map::heat(size, &drawing.operations()))));
+    let heat = heat.map(|(path, of)| (path, format(path).encode_pixels(&map::heat(size, &drawing.heat(of)))));
     let error = error.zip(drawing.differences());
     let error = error.map(|(path, differences)| (path, format(path).encode_pixels(&map::error(size, &differences))));
     heat.into_iter().chain(error).collect()
+}
+
+/// The files of clocks that are asked for.
+fn clock_files<'p>(
+    result: &Render,
+    drawing: &Drawing,
+    folded: Option<&'p Path>,
+    flame: Option<&'p Path>,
+) -> Vec<(&'p Path, Vec<u8>)> {
+    if folded.is_none() && flame.is_none() {
+        return Vec::new();
+    }
+    let stacks = clocks::stacks(&drawing.build.cores, &drawing.frame);
+    let folded = folded.map(|path| (path, clocks::folded(&stacks).into_bytes()));
+    let flame = flame.map(|path| {
+        let (figure, style) = (clocks::flame(result.title(), &stacks), ChartStyle::default());
+        let is_pdf = path.extension().is_some_and(|end| end == "pdf");
+        let octets = || chart::flame_svg(&figure, style).into_bytes();
+        (path, if is_pdf { chart::flame_pdf(&figure, style) } else { octets() })
+    });
+    folded.into_iter().chain(flame).collect()
+}
+
+impl RenderArguments {
+    /// Something is asked for that tells clocks of functions, so that they have to be measured.
+    fn tells_clocks(&self) -> bool {
+        self.json || self.sidecar || self.full || self.folded.is_some() || self.flame.is_some()
+    }
 }
 
 fn format(path: &Path) -> PictureFormat {
@@ -193,10 +241,12 @@ fn brief(result: &Render, drawing: &Drawing, energies: Option<&[u64]>) -> String
 }
 
 /// All tables of the picture.
-fn full(result: &Render, drawing: &Drawing, energies: Option<&[u64]>) -> String {
+fn full(job: &Job, result: &Render, drawing: &Drawing, energies: Option<&[u64]>) -> String {
     let mut parts = vec![
         summary::title(result) + &summary::rays(result),
         summary::functions(result),
+        clocks::functions(result),
+        clocks::line_table(&clocks::lines(job, drawing)),
         summary::classes(result),
         summary::processors(result),
     ];

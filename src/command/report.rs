@@ -24,7 +24,7 @@ Examples:
 /// Draws a picture and writes one page of the run, which needs no other file: .html.
 ///
 /// The page has the settings, the picture beside double precision with a slider between them, maps of operations and of errors
-/// that tell their values under the cursor, functions and source lines to sort, the bus over time, the advice of lancer advise,
+/// that tell their values under the cursor, a flame graph, functions and source lines to sort, the bus over time, the advice of lancer advise,
 /// and the annexes' rows beside what a call takes here.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]

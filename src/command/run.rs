@@ -135,7 +135,7 @@ pub(super) fn execute(
     let one_core = OneCore {
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
-        profile: ProfileLevel::Totals,
+        profile: ProfileLevel::Clocks,
         has_losses: arguments.flags,
         ..OneCore::new(config, &isa, &program)
     };

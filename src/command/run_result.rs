@@ -20,6 +20,9 @@ use crate::table::{row, table};
 /// Version of [`RunResult`].
 pub const SCHEMA: &str = "lancer-run-1";
 
+/// Kinds of data of a program that runs by itself: its memory has no names.
+const KINDS: [&str; 2] = ["messages", "other"];
+
 /// The results of a program.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RunResult {
@@ -138,8 +141,8 @@ impl RunResult {
             ),
             listed: if shown.is_empty() { listed } else { Vec::new() },
             shown,
-            functions: regions(run.profile.as_ref(), true),
-            regions: regions(run.profile.as_ref(), false),
+            functions: regions(run.profile.as_ref(), &KINDS, true),
+            regions: regions(run.profile.as_ref(), &KINDS, false),
             flags,
             dumps: dumps.iter().filter_map(|&dump| dumped(run, dump)).collect::<Result<_, _>>()?,
             trap,

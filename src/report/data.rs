@@ -1,15 +1,13 @@
 //! Contents of the page, in the form that its script reads.
 
-use std::collections::BTreeMap;
-
-use emu::code::Code;
-use isa::Program;
 use scenes::model::Picture;
 use serde::Serialize;
 
 use super::base64;
 use crate::advise::AdviceResult;
 use crate::annex::result::Annexes;
+use crate::chart::{self, ChartStyle, ChartTheme};
+use crate::clocks::{self, LineClocks};
 use crate::drawing::Drawing;
 use crate::files::map;
 use crate::files::picture::PictureFormat;
@@ -34,15 +32,17 @@ pub struct PageData<'a> {
     /// Difference of each pixel from double precision, as numbers of 32 bits; null where it was not measured.
     differences: Option<String>,
     /// Source lines of the cores' program that were executed.
-    lines: Vec<LineRow>,
+    lines: Vec<LineClocks>,
     /// The bus over time.
     course: Option<CourseData>,
     /// Advice on the machine.
     advice: Option<&'a AdviceResult>,
     /// The annexes' rows.
     annexes: Option<&'a Annexes>,
-    /// Functions of the cores' program.
-    functions: &'a [RegionCounts],
+    /// Functions of the cores' program, and the regions in them.
+    functions: Vec<&'a RegionCounts>,
+    /// Flame graph of the cores' clocks, as SVG; light and dark.
+    flames: [String; 2],
 }
 
 /// Pictures as PNG, as text.
@@ -52,23 +52,6 @@ struct PagePictures {
     reference: Option<String>,
     heat: String,
     error: Option<String>,
-}
-
-/// A source line with what it took.
-#[derive(Clone, Debug, Serialize)]
-struct LineRow {
-    /// File and line.
-    place: String,
-    /// Innermost function.
-    function: String,
-    /// The line's text.
-    text: String,
-    /// Instructions executed.
-    instructions: u64,
-    /// Elementary operations.
-    operations: u64,
-    /// Octets asked for.
-    octets: u64,
 }
 
 /// Clocks of the bus in equal parts of the frame.
@@ -94,10 +77,7 @@ impl<'a> PageData<'a> {
         let picture = |picture: &Picture| base64::text(&PictureFormat::Png.encode(picture));
         let cut = |&number: &u64| u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes();
         PageData {
-            title: format!(
-                "{}, {} x {} pixels, kernels {}, machine {}",
-                result.scene, size.0, size.1, result.profile, result.machine
-            ),
+            title: result.title(),
             render: result,
             size,
             corner: (drawing.crop.column, drawing.crop.row),
@@ -112,7 +92,7 @@ impl<'a> PageData<'a> {
                 let octets = differences.iter().flat_map(|&difference| (difference as f32).to_le_bytes());
                 base64::text(&octets.collect::<Vec<u8>>())
             }),
-            lines: lines(job, drawing),
+            lines: clocks::lines(job, drawing),
             course: drawing
                 .frame
                 .course
@@ -120,40 +100,17 @@ impl<'a> PageData<'a> {
                 .map(|course| CourseData { part: course.part.0, busy: course.busy.clone() }),
             advice,
             annexes,
-            functions: &result.functions,
+            functions: result.functions.iter().chain(&result.regions).collect(),
+            flames: [ChartTheme::Light, ChartTheme::Dark].map(|theme| flame(result, drawing, theme)),
         }
     }
 }
 
-/// The executed lines of the cores' program, with their costs.
-fn lines(job: &Job, drawing: &Drawing) -> Vec<LineRow> {
-    let (program, timing) = (&drawing.build.cores, job.machine.timing());
-    let code = Code::new(program, &job.isa, timing);
-    // Words of one line are added up: macros and pseudo-instructions make several of them.
-    let mut found: BTreeMap<(u16, u32), LineRow> = BTreeMap::new();
-    for (pc, line) in (0u32..).zip(&program.lines) {
-        let word = drawing.frame.tally.word(&code, pc);
-        if word.instructions == 0 {
-            continue;
-        }
-        let row = found.entry((line.source, line.line)).or_insert_with(|| LineRow {
-            place: program.place(pc).unwrap_or_default(),
-            function: program.function(pc).unwrap_or("(outside)").to_owned(),
-            text: text(program, line.source, line.line),
-            instructions: 0,
-            operations: 0,
-            octets: 0,
-        });
-        row.instructions += word.instructions;
-        row.operations += word.counts.elementary();
-        row.octets += word.counts[isa::Class::Octet];
-    }
-    found.into_values().collect()
-}
-
-/// A line of a source, without its indentation.
-fn text(program: &Program, source: u16, line: u32) -> String {
-    let source = program.sources.get(usize::from(source));
-    let line = source.and_then(|source| source.text.lines().nth(line.saturating_sub(1) as usize));
-    line.unwrap_or_default().trim().to_owned()
+/// The flame graph of the cores' clocks, for a page of HTML.
+fn flame(result: &Render, drawing: &Drawing, theme: ChartTheme) -> String {
+    let stacks = clocks::stacks(&drawing.build.cores, &drawing.frame);
+    let figure = clocks::flame(result.title(), &stacks);
+    let svg = chart::flame_svg(&figure, ChartStyle { theme, ..ChartStyle::default() });
+    // HTML knows SVG without its name space, and the page names nothing outside of itself.
+    svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use super::regions::without_clocks;
 use super::{BusResult, ByClass, Main, ProcessorResult, RegionCounts, Render, hexadecimal};
 
 /// SHA-256 over width and height (unsigned, 32 bits, little-endian) and the three raw words of each pixel (signed, 32
@@ -19,7 +20,7 @@ pub fn image_hash(size: (u32, u32), words: &[[i32; 3]]) -> String {
 
 /// SHA-256 over the JSON, without blanks, of the keys `image_hash`, `instructions`, `counts`, `octets`, `clocks`,
 /// `cores`, `functions`, `regions`, `main` and `bus`: picture, counts and clocks, but nothing that depends on how the
-/// host computes the reference; in hexadecimal.
+/// host computes the reference, and no clocks of functions; in hexadecimal.
 pub fn run_hash(result: &Render) -> String {
     #[derive(Serialize)]
     struct Run<'a> {
@@ -28,12 +29,14 @@ pub fn run_hash(result: &Render) -> String {
         counts: ByClass,
         octets: u64,
         clocks: u64,
-        cores: &'a [ProcessorResult],
-        functions: &'a [RegionCounts],
-        regions: &'a [RegionCounts],
-        main: &'a Main,
+        cores: Vec<ProcessorResult>,
+        functions: Vec<RegionCounts>,
+        regions: Vec<RegionCounts>,
+        main: Main,
         bus: &'a BusResult,
     }
+    // Clocks of functions are there only when they were asked for, and say nothing of another run.
+    let core = |core: &ProcessorResult| ProcessorResult { functions: None, regions: None, ..core.clone() };
     // The order of the keys is part of the hash.
     let run = Run {
         image_hash: &result.image_hash,
@@ -41,10 +44,10 @@ pub fn run_hash(result: &Render) -> String {
         counts: result.counts,
         octets: result.octets,
         clocks: result.clocks,
-        cores: &result.cores,
-        functions: &result.functions,
-        regions: &result.regions,
-        main: &result.main,
+        cores: result.cores.iter().map(core).collect(),
+        functions: without_clocks(&result.functions),
+        regions: without_clocks(&result.regions),
+        main: Main { functions: without_clocks(&result.main.functions), regions: None, ..result.main.clone() },
         bus: &result.bus,
     };
     let text = serde_json::to_vec(&run).expect("results have string keys");

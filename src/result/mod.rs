@@ -37,7 +37,9 @@ pub use loss_table::loss_table;
 pub use losses::{Loss, losses};
 pub use provenance::WithSettings;
 pub use rays::RaysByKind;
-pub use regions::regions;
+pub use regions::{
+    CoreFunction, FunctionClocks, OUTSIDE, RegionCost, RegionCounts, core_functions, regions, waiting_kinds,
+};
 pub use times::OperationTimes;
 
 /// Version of [`Render`]: a key that goes away or changes its meaning changes it, a new key does not.
@@ -180,21 +182,12 @@ pub struct ProcessorResult {
     pub longest_wait: u64,
     /// Waits by length: how many of no clock, of 1, of 2 to 3, of 4 to 7 and so on, up to the longest one.
     pub waits: Vec<u64>,
-}
-
-/// A function or region.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct RegionCounts {
-    /// Name of the region.
-    pub name: String,
-    /// Number of calls, or of entries.
-    pub calls: u64,
-    /// Instructions of its own.
-    pub instructions: u64,
-    /// Operations from entering to leaving it, with all that it calls.
-    pub inclusive: ByClass,
-    /// Operations of its own instructions.
-    pub exclusive: ByClass,
+    /// Clocks of its functions, where they were measured; of the main processor they stand in its functions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub functions: Option<Vec<CoreFunction>>,
+    /// Clocks of its regions inside functions, where they were measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regions: Option<Vec<CoreFunction>>,
 }
 
 /// The main processor, which makes the camera rays and feeds the cores.
@@ -211,6 +204,9 @@ pub struct Main {
     pub load: f64,
     /// Functions of its program.
     pub functions: Vec<RegionCounts>,
+    /// Regions inside functions of its program, where clocks of functions were measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub regions: Option<Vec<RegionCounts>>,
 }
 
 /// The bus.
@@ -314,6 +310,17 @@ impl Render {
         // Sum the operations of both programs, each over all that execute it.
         let counts = frame.profile.as_ref().map(Profile::total).unwrap_or_default();
         let main_counts = frame.main_profile.as_ref().map(Profile::total).unwrap_or_default();
+        let kinds: Vec<&str> = frame.kinds.iter().map(|kind| kind.kind.as_str()).collect();
+        let has_clocks = !frame.core_clocks.is_empty();
+        let program = &drawing.build.cores;
+        let core = |number: usize, used: &ProcessorUse| {
+            let clocks = frame.core_clocks.get(number);
+            ProcessorResult {
+                functions: clocks.map(|clocks| core_functions(program, clocks, true)),
+                regions: clocks.map(|clocks| core_functions(program, clocks, false)),
+                ..ProcessorResult::new(used, frame.waits.get(number))
+            }
+        };
         let crop = [drawing.crop.column, drawing.crop.row, drawing.crop.width, drawing.crop.height];
         let mut result = Render {
             schema: SCHEMA,
@@ -342,16 +349,17 @@ impl Render {
             stepped_because: frame.method.reason(),
             engine: drawing.engine.kind.name(),
             engine_because: drawing.engine.refusal,
-            cores: (0..).zip(cores).map(|(number, core)| ProcessorResult::new(core, frame.waits.get(number))).collect(),
-            functions: regions(frame.profile.as_ref(), true),
-            regions: regions(frame.profile.as_ref(), false),
+            cores: (0..).zip(cores).map(|(number, used)| core(number, used)).collect(),
+            functions: regions(frame.profile.as_ref(), &kinds, true),
+            regions: regions(frame.profile.as_ref(), &kinds, false),
             main: Main {
                 instructions: main.iter().map(|main| main.instructions).sum(),
                 counts: ByClass(main_counts),
                 clocks: ProcessorResult::new(&main_use, frame.waits.get(cores.len())),
                 // Share of the frame in which it was not idle; a frame of no clocks has none.
                 load: (main_use.busy + main_use.waiting).0 as f64 / frame.clocks.0.max(1) as f64,
-                functions: regions(frame.main_profile.as_ref(), true),
+                functions: regions(frame.main_profile.as_ref(), &kinds, true),
+                regions: has_clocks.then(|| regions(frame.main_profile.as_ref(), &kinds, false)),
             },
             bus: BusResult {
                 busy: frame.bus.busy.0,
@@ -384,6 +392,14 @@ impl Render {
         result
     }
 
+    /// Scene, size, kernels and machine, as titles of charts and pages name them.
+    pub fn title(&self) -> String {
+        format!(
+            "{}, {} x {} pixels, kernels {}, machine {}",
+            self.scene, self.width, self.height, self.profile, self.machine
+        )
+    }
+
     /// The text that `--json` prints: one object, a line feed at its end.
     pub fn json(&self) -> String {
         json(self)
@@ -410,6 +426,8 @@ impl ProcessorResult {
             items,
             longest_wait: longest_wait.0,
             waits: waits[..columns].to_vec(),
+            functions: None,
+            regions: None,
         }
     }
 }

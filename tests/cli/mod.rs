@@ -3,6 +3,7 @@
 mod advise;
 mod annex;
 mod bench;
+mod clocks;
 mod comparisons;
 mod convert;
 mod cores;

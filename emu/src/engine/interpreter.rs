@@ -9,7 +9,7 @@ use crate::code::Code;
 use crate::code::registers::{read, write};
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
-use crate::profile::Observer;
+use crate::profile::{Observer, UnitCount};
 use crate::semantics::{
     BusRoom, ControlRoom, End, Flow, IntegerRoom, Link, LocalRoom, Motion, PacketRoom, Port, RayRoom, ScalarRoom,
     VectorRoom, WalkRoom, Watch, WideRoom, split_operands,
@@ -183,14 +183,18 @@ pub fn run<T: Watch, O: Observer>(
         clocks += u64::from(pass.cost.clocks);
         elementary += u64::from(pass.cost.elementary);
         pass.units += u64::from(units);
+        let mut unit_clocks = 0;
         if units != 0 && pass.cost.has_busy_units {
             let (more_clocks, more_elementary) = code.unit_cost(number, units);
-            clocks += more_clocks.0;
+            unit_clocks = more_clocks.0;
+            pass.unit_clocks += unit_clocks;
+            clocks += unit_clocks;
             elementary += more_elementary;
         }
         if O::IS_ACTIVE {
             // What ends here goes nowhere: the word after a `halt` may belong to another function.
-            observer.step(pc, number, units, if matches!(after, After::Ends(_)) { pc } else { next }, motion);
+            let next = if matches!(after, After::Ends(_)) { pc } else { next };
+            observer.step(pc, number, UnitCount { units, clocks: unit_clocks }, next, motion);
         }
         match after {
             After::Goes => {}

@@ -117,6 +117,8 @@ pub enum Stopped {
 pub struct RequestTime {
     /// Word of the instruction.
     pub pc: u32,
+    /// Calling context, where functions are measured; else 0.
+    pub context: u32,
     /// Clocks that the item has computed so far.
     pub clocks: u64,
 }

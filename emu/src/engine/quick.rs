@@ -14,15 +14,18 @@ pub struct NotedRead {
     pub address: u32,
     /// Octets.
     pub octets: u32,
+    /// Calling context, where clocks of functions are measured; else 0.
+    pub context: u32,
 }
 
 impl NotedRead {
     /// Places of the fields, in octets, in their order.
-    pub const OFFSETS: [i32; 4] = [
+    pub const OFFSETS: [i32; 5] = [
         offset_of!(NotedRead, clocks) as i32,
         offset_of!(NotedRead, slot) as i32,
         offset_of!(NotedRead, address) as i32,
         offset_of!(NotedRead, octets) as i32,
+        offset_of!(NotedRead, context) as i32,
     ];
 }
 

@@ -5,7 +5,7 @@ use isa::{Kind, Op};
 
 use crate::code::Code;
 use crate::code::tally::Tally;
-use crate::profile::{Observer, Profile, ProfileLevel, Profiler};
+use crate::profile::{Observer, Profile, ProfileLevel, Profiler, UnitCount};
 use crate::semantics::Motion;
 
 /// Effect of an instruction on the taint: its scalar registers, a bit each.
@@ -132,7 +132,7 @@ impl<O: Observer> Observer for TaintObserver<O> {
     }
 
     #[inline]
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
         self.taint.step(self.effects[pc as usize]);
         if O::IS_ACTIVE {
             self.inner.step(pc, exit, units, next, motion);

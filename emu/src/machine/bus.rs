@@ -104,9 +104,9 @@ impl Lengths {
 
 /// A master of the bus that may go from one transfer to the next by itself.
 pub trait NextTransfer: Default {
-    /// Goes on from a transfer that has ended to the next one, and yields the clocks between them and the first burst; `None` when something else
+    /// Goes on from a transfer that ended at a clock to the next one, and yields the clocks between them and the first burst; `None` when something else
     /// is next.
-    fn next_transfer(&mut self, lengths: &Lengths) -> Option<(Clocks, Burst)>;
+    fn next_transfer(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)>;
 
     /// Goes on while it asks before `limit`, where nobody else does, so that it never waits; with `first`, the burst that it asks for from
     /// `arrival` on. Where something else than a transfer comes next, the last burst before that is left. A master may leave all bursts.
@@ -246,7 +246,9 @@ impl Bus {
             let master = &mut masters[grant.master as usize];
             master.note_wait(grant.waited);
             if grant.is_last {
-                let Some((computing, burst)) = master.next_transfer(&self.lengths) else { return Some(grant) };
+                let Some((computing, burst)) = master.next_transfer(grant.end, &self.lengths) else {
+                    return Some(grant);
+                };
                 self.requests.ask(grant.master, grant.end + computing, burst);
             }
         }
@@ -318,7 +320,7 @@ impl Bus {
             one.note_wait(waited);
             // Ask for what comes next: the rest of the transfer, or the next one after some computing
             let (computing, next) = if is_last {
-                let Some(ahead) = one.next_transfer(&lengths) else {
+                let Some(ahead) = one.next_transfer(end, &lengths) else {
                     arrivals[master] = NEVER.0;
                     break Some(grant);
                 };

@@ -8,11 +8,30 @@ use super::outcome::{Method, RunOutcome};
 use super::processor::ProcessorState;
 use super::schedule::Machine;
 use super::trace::Spans;
-use super::worker::Worker;
+use super::worker::{Worker, WorkerCounts};
+use crate::code::Code;
 use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Trap};
-use crate::profile::Profile;
+use crate::profile::{ClockKeys, ClockLog, Profile, ProgramClocks};
+
+/// A run that has ended.
+pub(crate) struct EndedRun {
+    /// Outcome of the run.
+    pub frame: RunOutcome,
+    /// Clocks of functions of replaying cores: what their numbers mean, only those who recorded know.
+    pub logs: Vec<ClockLog>,
+}
+
+/// Adds waits and transfers of a core to the profile of its program, and yields the clocks of its functions; `None` without a profile.
+pub(crate) fn add_clocks(
+    log: &ClockLog,
+    keys: &[ClockKeys],
+    code: &Code,
+    profile: &mut Option<Profile>,
+) -> Option<ProgramClocks> {
+    Some(log.fold(keys, code, profile.as_mut()?.clocks.as_mut()?))
+}
 
 impl<W: Worker> Machine<'_, W> {
     /// The trap of a processor that stopped.
@@ -49,7 +68,7 @@ impl<W: Worker> Machine<'_, W> {
     }
 
     /// The outcome of a run that has ended.
-    pub(super) fn finish(mut self) -> RunOutcome {
+    pub(super) fn finish(mut self) -> EndedRun {
         let clocks = self.processors.iter().map(|processor| processor.clock).max().unwrap_or_default();
         for processor in &mut self.processors {
             // All end at the same clock, so that busy, waiting and idle of each add up to the whole time.
@@ -66,21 +85,30 @@ impl<W: Worker> Machine<'_, W> {
         let trace = self.bus_watch.map(|watch| watch.into_trace(spans));
         let main = self.processors.pop().expect("a machine has a main processor");
         let main_code = main.code;
-        let (main_tally, main_profile) = main.worker.into_counts();
+        let WorkerCounts { tally: main_tally, profile: mut main_profile, clocks: log, keys } =
+            main.worker.into_counts();
+        if let (Some(log), Some(keys)) = (log, keys) {
+            add_clocks(&log, &[keys], main_code, &mut main_profile);
+        }
         // All cores have one program, so their tallies can be added up.
         let core_code = self.processors.first().map_or(main_code, |core| core.code);
         let mut tally = Tally::new(core_code);
         let mut profile: Option<Profile> = None;
+        let (mut core_clocks, mut logs) = (Vec::new(), Vec::new());
         for processor in self.processors {
-            let (more, observed) = processor.worker.into_counts();
+            let WorkerCounts { tally: more, profile: mut observed, clocks: log, keys } = processor.worker.into_counts();
             tally.merge(&more);
+            match (log, keys) {
+                (Some(log), Some(keys)) => core_clocks.extend(add_clocks(&log, &[keys], core_code, &mut observed)),
+                (log, _) => logs.extend(log),
+            }
             match (&mut profile, observed) {
                 (Some(profile), Some(more)) => profile.merge(&more),
                 (profile, more) => *profile = more,
             }
         }
         let asked = tally.counts(core_code)[Class::Octet] + main_tally.counts(main_code)[Class::Octet];
-        RunOutcome {
+        let frame = RunOutcome {
             method: Method::Stepped { why: "" },
             clocks,
             processors: used,
@@ -95,10 +123,12 @@ impl<W: Worker> Machine<'_, W> {
             main_profile,
             main_tally,
             profile,
+            core_clocks,
             trace,
             course: self.course,
             items: self.items,
             item_count: self.item_count,
-        }
+        };
+        EndedRun { frame, logs }
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::outcome::KindUse;
 use super::request::Request;
 use crate::code::quantity::Octets;
+use crate::profile::{SiteTable, TransferSite};
 
 /// Instructions whose ranges are remembered.
 const RECENT: usize = 32;
@@ -51,7 +52,8 @@ impl Kinds {
         match request {
             Some(Request::Transfer { address, octets, .. }) => {
                 let (start, length, kind) = self.last[pc as usize % RECENT];
-                let kind = if address.wrapping_sub(start) < length { kind as usize } else { self.find(pc, address) };
+                let is_known = address.wrapping_sub(start) < length;
+                let kind = if is_known { kind as usize } else { self.find(pc, address) };
                 self.totals[kind].octets += octets;
             }
             Some(Request::Send { octets, .. }) => self.totals[self.message].octets += octets,
@@ -60,7 +62,7 @@ impl Kinds {
     }
 
     /// The range around an address whose octets are of one kind, or of none: its first address, its length, and the kind.
-    pub fn range(&self, address: u32) -> (u32, u32, usize) {
+    pub fn range(&self, address: u32) -> (u32, u32, u32) {
         let after = self.ranges.partition_point(|(range, _)| range.start <= address);
         let (start, end, kind) = match self.ranges[..after].last() {
             Some(&(Range { start, end }, kind)) if address < end => (start, end, kind),
@@ -70,15 +72,23 @@ impl Kinds {
                 (last.map_or(0, |(range, _)| range.end), next, self.other)
             }
         };
-        (start, end - start, kind)
+        (start, end - start, kind as u32)
+    }
+
+    /// Number of the site at which an instruction makes a request of octets.
+    pub fn site(&self, sites: &mut SiteTable, context: u32, slot: u32, request: Request) -> u32 {
+        match request {
+            Request::Transfer { address, .. } => sites.at(context, slot, address, |address| self.range(address)),
+            _ => sites.number(TransferSite { context, slot, kind: self.message as u32 }),
+        }
     }
 
     /// The kind at an address.
     #[inline(never)]
     fn find(&mut self, pc: u32, address: u32) -> usize {
-        let (start, length, kind) = self.range(address);
-        self.last[pc as usize % RECENT] = (start, length, kind as u32);
-        kind
+        let range = self.range(address);
+        self.last[pc as usize % RECENT] = range;
+        range.2 as usize
     }
 
     /// Adds octets of a kind, as [`Kinds::range`] says it.

@@ -6,7 +6,7 @@ pub mod bus;
 pub mod cache;
 pub mod config;
 pub mod course;
-mod finish;
+pub(crate) mod finish;
 pub(crate) mod kinds;
 pub mod mailbox;
 pub mod one_core;
@@ -35,7 +35,7 @@ use trace::Window;
 use crate::code::trap::Trap;
 use crate::code::{Code, check_bodies};
 use crate::engine::{Answers, Choice, CoreId, Demand, EngineKind, HostSimd, Task, Wish, choose, dispatch};
-use crate::profile::ProfileLevel;
+use crate::profile::{Observer, ProfileLevel};
 use crate::semantics::{Computes, Watch};
 
 /// Setup of a run: a machine and its programs.
@@ -60,6 +60,11 @@ impl Setup<'_> {
     pub(crate) fn main_id(&self) -> CoreId {
         let cores = self.config.cores;
         CoreId { core: cores, cores, step_limit: self.config.main.step_limit }
+    }
+
+    /// Level of a profile that an observer takes.
+    pub(crate) fn level<O: Observer>(&self) -> ProfileLevel {
+        if O::IS_ACTIVE { self.options.profile } else { ProfileLevel::None }
     }
 
     /// The engine that runs the cores' program, and why not a faster one that was wanted.

@@ -5,10 +5,12 @@ use messages::{Diagnostic, Report};
 
 use super::check_buffer;
 use super::config::Config;
+use super::finish::add_clocks;
+use super::kinds::Kinds;
 use super::port::Shared;
 use super::processor::Processor;
 use super::request::Request;
-use super::worker::Executor;
+use super::worker::{Executor, Worker, WorkerCounts};
 use crate::code::octets::Memory;
 use crate::code::quantity::Clocks;
 use crate::code::registers::Registers;
@@ -119,7 +121,7 @@ fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic:
     worker.observer.begin(worker.state.pc);
     let mut processor = Processor::new(&code, core, worker);
     let mut shared = Shared::new(memory, 1);
-    let mut is_permitted = false;
+    let (kinds, mut is_permitted) = (Kinds::new(&[]), false);
     let fault = loop {
         match processor.advance(&mut shared, is_permitted).pause {
             Pause::Halt => break None,
@@ -139,22 +141,18 @@ fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic:
         if octets.0 != 0 {
             // All bursts follow each other at once: the bus has no other master.
             let start = processor.clock;
+            processor.note_ask(&kinds);
             processor.wait_until(start + one_core.config.bus.whole_length(octets));
         }
         is_permitted = true;
     };
     let Processor { mut worker, clock, used, .. } = processor;
     worker.observer.end();
-    let tally = worker.take_tally();
     let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, &code));
-    OneCoreRun {
-        engine: worker.engine(),
-        profile: worker.observer.into_profile(&code, &tally),
-        state: worker.state,
-        memory: shared.memory,
-        clocks: clock,
-        waiting: used.waiting,
-        tally,
-        trap,
+    let (engine, state) = (worker.engine(), worker.state.clone());
+    let WorkerCounts { tally, mut profile, clocks: log, keys } = worker.into_counts();
+    if let (Some(log), Some(keys)) = (log, keys) {
+        add_clocks(&log, &[keys], &code, &mut profile);
     }
+    OneCoreRun { engine, profile, state, memory: shared.memory, clocks: clock, waiting: used.waiting, tally, trap }
 }

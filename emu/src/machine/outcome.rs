@@ -10,7 +10,7 @@ use super::waits::Waits;
 use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
-use crate::profile::Profile;
+use crate::profile::{Profile, ProgramClocks};
 
 /// Clocks of one processor by use; `busy + waiting + idle` is the length of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +42,10 @@ pub struct Item {
     pub start: Clocks,
     /// Clock at which it halted.
     pub end: Clocks,
+    /// Clocks of those in which the core waited for transfers.
+    pub waiting: Clocks,
+    /// Octets that it moved, over the bus or beside it.
+    pub octets: Octets,
     /// Instructions executed.
     pub instructions: u64,
     /// Elementary operations: add, sub, mul, div and cmp.
@@ -119,6 +123,8 @@ pub struct RunOutcome {
     pub profile: Option<Profile>,
     /// Functions and regions of the main processor's program, where a profile was asked for.
     pub main_profile: Option<Profile>,
+    /// Clocks of functions and regions of each core, where they were asked for.
+    pub core_clocks: Vec<ProgramClocks>,
     /// Work items in the order of their start, where a record of them was asked for.
     pub items: Vec<Item>,
     /// Trace of the window that was asked for.

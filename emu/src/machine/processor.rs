@@ -4,6 +4,7 @@ use isa::number::Vector;
 
 use super::bus::NextTransfer;
 use super::cache::Cache;
+use super::kinds::Kinds;
 use super::outcome::ProcessorUse;
 use super::port::Shared;
 use super::request::Request;
@@ -67,12 +68,17 @@ pub struct Work {
     pub subject: Option<Vector>,
     /// The bus, a mailbox or a barrier has been used.
     pub has_acted: bool,
+    /// Waiting of the processor before it.
+    pub waiting_before: Clocks,
+    /// Octets that the processor moved before it.
+    pub octets_before: Octets,
 }
 
 impl Work {
     /// Nothing received yet.
-    pub fn new(start: Clocks) -> Work {
-        Work { start, subject: None, has_acted: false }
+    pub fn new(start: Clocks, used: &ProcessorUse) -> Work {
+        let (waiting_before, octets_before) = (used.waiting, used.octets);
+        Work { start, subject: None, has_acted: false, waiting_before, octets_before }
     }
 }
 
@@ -122,7 +128,7 @@ impl<'a, W: Worker> Processor<'a, W> {
             spans: None,
             fault: None,
             used: ProcessorUse::default(),
-            work: Work::new(Clocks(0)),
+            work: Work::new(Clocks(0), &ProcessorUse::default()),
             begins_by_receiving: false,
         }
     }
@@ -177,7 +183,15 @@ impl<'a, W: Worker> Processor<'a, W> {
         let end = end.max(self.clock);
         self.note(Doing::Waiting, end);
         self.used.waiting += end - self.clock;
+        self.worker.note_wait(end - self.clock);
         self.clock = end;
+    }
+
+    /// Notes that it asks for a transfer.
+    pub fn note_ask(&mut self, kinds: &Kinds) {
+        if let Some(request) = self.request {
+            self.worker.note_ask(request, self.asked_octets(), kinds);
+        }
     }
 
     /// Octets of the transfer that it asked for.

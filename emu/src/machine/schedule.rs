@@ -7,6 +7,7 @@ use super::arbiter::NEVER;
 use super::bus::Bus;
 use super::cache::Cache;
 use super::course::BusCourse;
+use super::finish::EndedRun;
 use super::kinds::Kinds;
 use super::outcome::{Item, RunOutcome};
 use super::port::Shared;
@@ -20,7 +21,7 @@ use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Demand, EngineRunner, Pause, choose};
-use crate::profile::{Observer, ProfileLevel};
+use crate::profile::Observer;
 use crate::semantics::Watch;
 
 /// Runs a frame by stepping, on one arithmetic and with one kind of observer.
@@ -40,15 +41,10 @@ pub fn run<T: Watch, O: Observer>(
     let core = |core: CoreId| {
         let buffer_octets = setup.config.buffer_octets;
         let runner = runner.clone();
-        Executor::<T, O>::new(&core_code, core, buffer_octets, runner, arithmetic, level::<O>(setup))
+        Executor::<T, O>::new(&core_code, core, buffer_octets, runner, arithmetic, setup.level::<O>())
     };
     let main = main_worker(setup, &main_code, arithmetic);
-    Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()
-}
-
-/// Level of a profile that an observer takes.
-fn level<O: Observer>(setup: &Setup) -> ProfileLevel {
-    if O::IS_ACTIVE { setup.options.profile } else { ProfileLevel::None }
+    Ok(Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()?.frame)
 }
 
 /// Runner of a program on a machine.
@@ -59,7 +55,7 @@ fn runner_of<'a, T: Watch, O: Observer>(
     buffer_octets: u32,
 ) -> EngineRunner<'a> {
     let demand = Demand::new(code, setup.options.wish(), arithmetic.computes(), buffer_octets);
-    choose(&Demand { profile: level::<O>(setup), ..demand })
+    choose(&Demand { profile: setup.level::<O>(), ..demand })
 }
 
 /// Worker of the main processor, which executes its program on any machine.
@@ -70,7 +66,7 @@ pub(crate) fn main_worker<'a, T: Watch, O: Observer>(
 ) -> Executor<'a, T, O> {
     let buffer_octets = setup.config.main.buffer_octets;
     let runner = runner_of::<T, O>(setup, code, arithmetic, buffer_octets);
-    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic, level::<O>(setup))
+    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic, setup.level::<O>())
 }
 
 /// All processors, what they share, and what they have done so far.
@@ -155,7 +151,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     ///
     /// # Errors
     /// A trap.
-    pub(crate) fn run(mut self) -> Result<RunOutcome, RunFailure> {
+    pub(crate) fn run(mut self) -> Result<EndedRun, RunFailure> {
         self.begin();
         while self.step()? {}
         self.check_end()?;
@@ -183,7 +179,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             processor.state = ProcessorState::Asleep;
             return;
         }
-        processor.work = Work::new(processor.clock);
+        processor.work = Work::new(processor.clock, &processor.used);
         processor.worker.restart();
         self.advance(number, false);
     }
@@ -200,13 +196,14 @@ impl<'a, W: Worker> Machine<'a, W> {
         let steps_allowed = self.steps_allowed();
         let processor = &mut self.processors[number];
         // The clock and the request before the advance: what was permitted happens then, and the advance overwrites both.
-        let (at, asked) = (processor.clock, processor.request);
+        let (at, asked, used) = (processor.clock, processor.request, processor.used);
         let advance = processor.advance(&mut self.shared, is_permitted);
         self.steps_without_main = if is_main { 0 } else { self.steps_without_main + advance.steps };
         if let Some((message, _)) = advance.taken
             && processor.work.subject.is_none()
         {
-            (processor.work.subject, processor.work.start) = (Some(message.first()), at);
+            let has_acted = processor.work.has_acted;
+            processor.work = Work { subject: Some(message.first()), has_acted, ..Work::new(at, &used) };
         }
         // Cores could play on among themselves for ever while the main processor waits. Between two of its steps each of
         // them needs at most a work item.
@@ -272,6 +269,7 @@ impl<'a, W: Worker> Machine<'a, W> {
     pub(super) fn ask_for_transfer(&mut self, number: usize) {
         let main = self.main();
         let processor = &mut self.processors[number];
+        processor.note_ask(&self.kinds);
         let is_to_main = matches!(processor.request, Some(Request::Send { to, .. }) if to as usize == main);
         if !self.setup.config.main.traffic && (number == main || is_to_main) {
             processor.act(Act::Bypass);
@@ -432,6 +430,8 @@ impl<'a, W: Worker> Machine<'a, W> {
                 core: number as u32,
                 start: processor.work.start,
                 end: processor.clock,
+                waiting: processor.used.waiting - processor.work.waiting_before,
+                octets: processor.used.octets - processor.work.octets_before,
                 instructions: steps,
                 elementary,
             });

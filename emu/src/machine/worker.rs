@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::bus::{Lengths, NextTransfer};
+use super::kinds::Kinds;
 use super::port::{CorePort, Shared};
 use super::request::Request;
 use crate::code::Code;
@@ -10,7 +11,7 @@ use crate::code::octets::Buffer;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::engine::{Choice, CoreId, EngineRunner, Pause, State, interpreter};
-use crate::profile::{Observer, Profile, ProfileLevel, Unobserved};
+use crate::profile::{ClockKeys, ClockLog, Observer, Profile, ProfileLevel, TransferMeter, Unobserved};
 use crate::semantics::{Message, Watch};
 
 /// One advance of a worker: what it did, and what it waits for now.
@@ -77,14 +78,32 @@ pub trait Worker {
     /// `written` is the part of global memory that was written so far.
     fn hand_over(&mut self, master: &mut Self::Master, clock: Clocks, written: &Range<u64>, lengths: &Lengths);
 
+    /// Notes that the processor asks for a transfer of octets by the worker's last request, where clocks of functions are measured.
+    fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds);
+
+    /// Notes a wait for what was asked for last.
+    fn note_wait(&mut self, clocks: Clocks);
+
     /// Takes the work item back when the last transfer that its master went on to has ended at a clock; `None` where it was not handed over.
     fn take_back(&mut self, master: &mut Self::Master, end: Clocks) -> Option<Played>;
 
     /// Makes a master stop after the transfer that it asks for, where what follows may depend on what was written.
     fn stop_at(master: &mut Self::Master, written: &Range<u64>);
 
-    /// Passes of its program, and what was observed of it.
-    fn into_counts(self) -> (Tally, Option<Profile>);
+    /// Everything that was counted of its program.
+    fn into_counts(self) -> WorkerCounts;
+}
+
+/// Counts of a worker.
+pub struct WorkerCounts {
+    /// Passes of its program.
+    pub tally: Tally,
+    /// Functions and regions, where they were measured.
+    pub profile: Option<Profile>,
+    /// Clocks of those, where they were measured.
+    pub clocks: Option<ClockLog>,
+    /// Meaning of the numbers in that, where the worker knows it.
+    pub keys: Option<ClockKeys>,
 }
 
 /// Master that goes on to nothing by itself.
@@ -94,7 +113,7 @@ pub struct PlainMaster {
 }
 
 impl NextTransfer for PlainMaster {
-    fn next_transfer(&mut self, _: &Lengths) -> Option<(Clocks, super::bus::Burst)> {
+    fn next_transfer(&mut self, _: Clocks, _: &Lengths) -> Option<(Clocks, super::bus::Burst)> {
         None
     }
 
@@ -115,6 +134,8 @@ pub struct Executor<'a, T, O> {
     arithmetic: &'a T,
     initial: Buffer,
     tally: Tally,
+    /// Meter of its transfers, where clocks of functions are measured.
+    meter: Option<Box<TransferMeter>>,
     /// State that the program sees.
     pub state: State,
     /// Observer of the program.
@@ -138,6 +159,7 @@ impl<'a, T: Watch, O: Observer> Executor<'a, T, O> {
             runner,
             arithmetic,
             tally: Tally::new(code),
+            meter: (level == ProfileLevel::Clocks).then(Box::default),
             state: State::new(code, initial.clone()),
             initial,
             observer: O::new(code, level),
@@ -204,15 +226,34 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
 
     fn hand_over(&mut self, _: &mut PlainMaster, _: Clocks, _: &Range<u64>, _: &Lengths) {}
 
+    fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds) {
+        if let (Some(meter), Some(profiler)) = (&mut self.meter, self.observer.profiler()) {
+            let (context, pc) = (profiler.contexts.current(), self.state.pc);
+            let site = kinds.site(&mut meter.table, context, pc, request);
+            meter.ask(site, octets, profiler.contexts.crowded_around(pc));
+        }
+    }
+
+    fn note_wait(&mut self, clocks: Clocks) {
+        if let Some(meter) = &mut self.meter {
+            meter.wait(clocks);
+        }
+    }
+
     fn take_back(&mut self, _: &mut PlainMaster, _: Clocks) -> Option<Played> {
         None
     }
 
     fn stop_at(_: &mut PlainMaster, _: &Range<u64>) {}
 
-    fn into_counts(mut self) -> (Tally, Option<Profile>) {
+    fn into_counts(mut self) -> WorkerCounts {
         let tally = self.take_tally();
-        let profile = self.observer.into_profile(self.code, &tally);
-        (tally, profile)
+        let (mut clocks, mut keys) = (None, None);
+        if let (Some(meter), Some(profiler)) = (self.meter.take(), self.observer.profiler()) {
+            let contexts = &profiler.contexts;
+            keys = Some(ClockKeys { paths: contexts.paths().cloned().collect(), sites: meter.table.all().to_vec() });
+            clocks = Some(meter.into_log(contexts));
+        }
+        WorkerCounts { profile: self.observer.into_profile(self.code, &tally), tally, clocks, keys }
     }
 }

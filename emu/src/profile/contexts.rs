@@ -9,9 +9,13 @@ use std::collections::HashMap;
 
 use isa::Counts;
 
-use super::Profile;
+use super::cells::ClockCells;
+use super::clocks::{CallPath, ClockProfile, WorkClocks};
+use super::passes::ContextPasses;
 use super::regions::RegionNesting;
+use super::{Profile, ProfileLevel, UnitCount};
 use crate::code::Code;
+use crate::code::quantity::Clocks;
 use crate::semantics::Motion;
 
 /// Most calls that are open at once; what deeper calls cost counts for what is open already.
@@ -43,11 +47,12 @@ fn has_bit(set: &[u64], region: u16) -> bool {
 /// Regions that are open around a call, and what was executed in the call itself.
 #[derive(Clone, Debug)]
 struct CallContext {
+    /// The regions in the order in which they were entered, of calls that are too deep not their own.
+    path: CallPath,
+    /// Regions of the path as a set.
     open: RegionSet,
-    /// Calls that are too deep: their own functions and regions are not open.
-    is_deep: bool,
-    /// Passes and units by exit of the program; empty before the first one.
-    passes: Vec<(u64, u64)>,
+    /// Passes by exit of the program; empty before the first one.
+    passes: Vec<ContextPasses>,
     /// The context of calls from each innermost region, the one of those outside of all regions first; 0 where that is not known.
     callees: Vec<u32>,
 }
@@ -68,10 +73,12 @@ pub struct Contexts {
     pub regions: RegionNesting,
     /// Cost of each exit, and of a unit of it.
     costs: Vec<(Counts, Counts)>,
+    /// Clocks of each exit, its units left out.
+    clocks: Vec<u32>,
     /// Most contexts.
     most: usize,
     contexts: Vec<CallContext>,
-    numbers: HashMap<(RegionSet, bool), u32>,
+    numbers: HashMap<CallPath, u32>,
     current: u32,
     /// Open calls: in the low half the context of the caller, in the high half the word to which the callee returns. The first is none.
     calls: Box<[u64]>,
@@ -80,8 +87,12 @@ pub struct Contexts {
     /// Calls deeper than [`DEEPEST`].
     deeper: u64,
     crowd: Option<Crowd>,
-    /// By region: operations in crowded contexts.
-    crowded: Vec<Counts>,
+    /// By region: operations in crowded contexts, and clocks of those.
+    crowded: Vec<(Counts, u64)>,
+    /// Passes in crowded contexts, where clocks are measured.
+    crowded_passes: Vec<ContextPasses>,
+    /// Clocks of computing by context and innermost region, where they are measured: see [`Contexts::cell`].
+    pub cells: Option<ClockCells>,
     /// By region: how often it was entered.
     entered: Vec<u64>,
 }
@@ -101,7 +112,7 @@ pub struct CallStack {
 
 impl Contexts {
     /// Nothing called yet.
-    pub fn new(code: &Code) -> Contexts {
+    pub fn new(code: &Code, level: ProfileLevel) -> Contexts {
         let regions = RegionNesting::new(code);
         let costs: Vec<_> = (0..code.passes().len()).map(|pass| code.pass_cost(pass)).collect();
         // Passes and units here, as many numbers in generated code, a context of callees for each region.
@@ -116,22 +127,24 @@ impl Contexts {
             top: 1,
             deeper: 0,
             crowd: None,
+            clocks: code.costs().iter().map(|cost| cost.clocks).collect(),
             crowded: Vec::new(),
+            crowded_passes: Vec::new(),
+            cells: (level == ProfileLevel::Clocks).then(|| ClockCells::new(regions.count() + 1)),
             entered: vec![0; regions.count()],
             regions,
             costs,
         };
         contexts.calls[0] = u64::MAX << 32;
-        let open = nothing.clone();
-        contexts.contexts.push(CallContext { open, is_deep: false, passes: Vec::new(), callees: Vec::new() });
-        contexts.number(nothing, false);
+        let path = CallPath { regions: Box::default(), is_deep: true };
+        contexts.contexts.push(CallContext { path, open: nothing, passes: Vec::new(), callees: Vec::new() });
+        contexts.number(CallPath::default());
         contexts
     }
 
     /// Number of a context; that of the crowded ones where there is no room.
-    fn number(&mut self, open: RegionSet, is_deep: bool) -> u32 {
-        let key = (open, is_deep);
-        if let Some(&number) = self.numbers.get(&key) {
+    fn number(&mut self, path: CallPath) -> u32 {
+        if let Some(&number) = self.numbers.get(&path) {
             return number;
         }
         if self.contexts.len() >= self.most {
@@ -139,16 +152,21 @@ impl Contexts {
         }
         let number = self.contexts.len() as u32;
         let callees = vec![0; self.regions.count() + 1];
-        self.contexts.push(CallContext { open: key.0.clone(), is_deep, passes: Vec::new(), callees });
-        self.numbers.insert(key, number);
+        let mut open: RegionSet = vec![0; self.regions.count().div_ceil(64)].into();
+        path.regions.iter().for_each(|&region| set_bit(&mut open, region));
+        self.contexts.push(CallContext { path: path.clone(), open, passes: Vec::new(), callees });
+        self.numbers.insert(path, number);
+        if let Some(cells) = &mut self.cells {
+            cells.add_context();
+        }
         number
     }
 
-    /// The regions that are open in a call that a slot of the current context makes.
-    fn open_in_callee(&self, caller: u32) -> RegionSet {
-        let mut open = self.contexts[self.current as usize].open.clone();
-        self.regions.around(caller).iter().for_each(|&region| set_bit(&mut open, region));
-        open
+    /// The path of a call that a slot of the current context makes.
+    fn path_of_callee(&self, caller: u32, is_deep: bool) -> CallPath {
+        let CallContext { path, open, .. } = &self.contexts[self.current as usize];
+        let entered = self.regions.around(caller).iter().filter(|&&region| !has_bit(open, region));
+        CallPath { regions: path.regions.iter().chain(entered).copied().collect(), is_deep }
     }
 
     /// The context of what a slot calls; `None` where that has none.
@@ -157,7 +175,7 @@ impl Contexts {
         if let Some(&known) = self.contexts[self.current as usize].callees.get(from).filter(|&&known| known != 0) {
             return Some(known);
         }
-        let number = (self.current != CROWDED).then(|| self.number(self.open_in_callee(caller), false))?;
+        let number = (self.current != CROWDED).then(|| self.number(self.path_of_callee(caller, false)))?;
         if number == CROWDED {
             return None;
         }
@@ -215,37 +233,42 @@ impl Contexts {
 
     /// A pass through an exit of the slot at `pc`.
     #[inline]
-    pub fn pass(&mut self, pc: u32, exit: usize, units: u32) {
+    pub fn pass(&mut self, pc: u32, exit: usize, units: UnitCount) {
+        if self.cells.is_some() {
+            self.spend(self.current, pc, u64::from(self.clocks[exit]) + units.clocks);
+        }
         match self.contexts[self.current as usize].passes.get_mut(exit) {
-            Some((count, sum)) => {
-                *count += 1;
-                *sum += u64::from(units);
-            }
+            Some(passes) => passes.add(1, units),
             None => self.pass_slowly(pc, exit, units),
         }
     }
 
     #[cold]
-    fn pass_slowly(&mut self, pc: u32, exit: usize, units: u32) {
-        let Some(crowd) = &self.crowd else { return self.add_passes(self.current, exit, 1, units.into()) };
+    fn pass_slowly(&mut self, pc: u32, exit: usize, units: UnitCount) {
+        let Some(crowd) = &self.crowd else { return self.add_passes(self.current, exit, 1, units) };
         let (cost, each) = self.costs[exit];
-        let cost = cost + each.times(units.into());
-        self.crowded.resize(self.regions.count(), Counts::ZERO);
+        let cost = cost + each.times(units.units.into());
+        let clocks = u64::from(self.clocks[exit]) + units.clocks;
+        if self.cells.is_some() {
+            self.crowded_passes.resize(self.costs.len(), ContextPasses::default());
+            self.crowded_passes[exit].add(1, units);
+        }
+        self.crowded.resize(self.regions.count(), (Counts::ZERO, 0));
         let own = if self.deeper == 0 { self.regions.around(pc) } else { &[] };
         for (region, sum) in self.crowded.iter_mut().enumerate() {
             if crowd.open[region] != 0 || own.contains(&(region as u16)) {
-                *sum += cost;
+                sum.0 += cost;
+                sum.1 += clocks;
             }
         }
     }
 
     /// Passes through an exit that were counted elsewhere, with their units.
-    pub fn add_passes(&mut self, context: u32, exit: usize, count: u64, units: u64) {
+    pub fn add_passes(&mut self, context: u32, exit: usize, count: u64, units: UnitCount) {
         let exits = self.costs.len();
         let passes = &mut self.contexts[context as usize].passes;
-        passes.resize(exits, (0, 0));
-        passes[exit].0 += count;
-        passes[exit].1 += units;
+        passes.resize(exits, ContextPasses::default());
+        passes[exit].add(count, units);
     }
 
     /// A region was entered so often.
@@ -275,7 +298,7 @@ impl Contexts {
         let callee = match is_deep {
             false => self.callee(from).unwrap_or(CROWDED),
             true if self.current == CROWDED => CROWDED,
-            true => self.number(self.open_in_callee(from), true),
+            true => self.number(self.path_of_callee(from, true)),
         };
         if callee == CROWDED {
             self.crowd_in(from);
@@ -339,15 +362,15 @@ impl Contexts {
     pub fn fold(&self, code: &Code, profile: &mut Profile) {
         for (region, (found, &calls)) in (0..).zip(profile.regions.iter_mut().zip(&self.entered)) {
             found.calls = calls;
-            found.inclusive = self.crowded.get(region).copied().unwrap_or_default();
+            found.inclusive = self.crowded.get(region).map_or(Counts::ZERO, |crowded| crowded.0);
         }
         for context in &self.contexts {
             let mut of_callers = Counts::ZERO;
-            for (exit, &(count, units)) in context.passes.iter().enumerate().filter(|(_, passes)| passes.0 != 0) {
+            for (exit, passes) in context.passes.iter().enumerate().filter(|(_, passes)| passes.count != 0) {
                 let (cost, each) = self.costs[exit];
-                let counts = cost.times(count) + each.times(units);
+                let counts = cost.times(passes.count) + each.times(passes.units);
                 of_callers += counts;
-                let own = if context.is_deep { &[][..] } else { self.regions.around(code.passes()[exit].word) };
+                let own = if context.path.is_deep { &[][..] } else { self.regions.around(code.passes()[exit].word) };
                 for &region in own.iter().filter(|&&region| !has_bit(&context.open, region)) {
                     profile.regions[usize::from(region)].inclusive += counts;
                 }
@@ -355,6 +378,65 @@ impl Contexts {
             for region in (0..self.regions.count() as u16).filter(|&region| has_bit(&context.open, region)) {
                 profile.regions[usize::from(region)].inclusive += of_callers;
             }
+        }
+    }
+
+    /// Clocks of computing of each word in each context, where they are measured.
+    pub fn fold_clocks(&self, code: &Code) -> Option<ClockProfile> {
+        self.cells.as_ref()?;
+        let mut profile = ClockProfile::new(code);
+        let crowded = std::iter::once((&self.contexts[CROWDED as usize].path, &self.crowded_passes));
+        let others = self.contexts.iter().map(|context| (&context.path, &context.passes));
+        for (path, passes) in others.chain(crowded) {
+            for (exit, passes) in passes.iter().enumerate() {
+                let busy = passes.count * u64::from(self.clocks[exit]) + passes.unit_clocks;
+                profile.add_busy(path, code.passes()[exit].word, busy);
+            }
+        }
+        profile.add_crowded(&self.crowded_work());
+        Some(profile)
+    }
+
+    /// By region: inclusive work in crowded contexts, as far as it was computing.
+    pub fn crowded_work(&self) -> Vec<WorkClocks> {
+        let work = |&(_, clocks): &(Counts, u64)| WorkClocks { busy: Clocks(clocks), ..WorkClocks::default() };
+        self.crowded.iter().map(work).collect()
+    }
+
+    /// Number of the current context.
+    pub fn current(&self) -> u32 {
+        self.current
+    }
+
+    /// Paths of the contexts, by number.
+    pub fn paths(&self) -> impl Iterator<Item = &CallPath> {
+        self.contexts.iter().map(|context| &context.path)
+    }
+
+    /// Most contexts that there may be, that of the crowded ones counted.
+    pub fn most(&self) -> usize {
+        self.most
+    }
+
+    /// All regions that are open around a slot, where the current context is that of the crowded ones; else none.
+    pub fn crowded_around(&self, slot: u32) -> Vec<u16> {
+        let Some(crowd) = &self.crowd else { return Vec::new() };
+        let own = if self.deeper == 0 { self.regions.around(slot) } else { &[] };
+        let is_open = |region: &u16| crowd.open[usize::from(*region)] != 0 || own.contains(region);
+        (0..self.regions.count() as u16).filter(is_open).collect()
+    }
+
+    /// Number of the cell of a context for the innermost region around a slot: those of a context stand together, the first one for no region.
+    fn cell(&self, context: u32, slot: u32) -> u32 {
+        let region = self.regions.innermost(slot).map_or(0, |region| u32::from(region) + 1);
+        context * (self.regions.count() as u32 + 1) + region
+    }
+
+    /// Adds clocks of computing at a slot of a context.
+    pub fn spend(&mut self, context: u32, slot: u32, clocks: u64) {
+        let cell = self.cell(context, slot);
+        if let Some(cells) = &mut self.cells {
+            cells.add(cell, clocks);
         }
     }
 }

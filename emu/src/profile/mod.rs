@@ -1,19 +1,27 @@
 //! Profiles of functions and regions: observers that are told of each instruction, and the totals that come of it.
 
+mod cells;
+mod clocks;
 mod contexts;
 mod extremes;
+mod log;
+mod passes;
 mod profiler;
 mod regions;
+mod sites;
 
 use isa::Counts;
 
+pub use clocks::{CallPath, ClockProfile, PlaceUse, ProgramClocks, RegionClocks, WorkClocks};
 #[cfg(feature = "native")]
 pub(crate) use contexts::CallStack;
 #[cfg(feature = "native")]
 pub(crate) use extremes::{CallMeter, Near};
+pub use log::{ClockKeys, ClockLog, LogPart, TransferMeter};
 pub use profiler::Profiler;
 #[cfg(feature = "native")]
 pub(crate) use regions::RegionNesting;
+pub use sites::{SiteTable, SiteUse, TransferSite};
 
 use crate::code::Code;
 use crate::code::tally::Tally;
@@ -27,8 +35,19 @@ pub enum ProfileLevel {
     None,
     /// Exclusive and inclusive totals, and calls.
     Totals,
-    /// Least and most of one call as well, for which each call is measured by itself: this takes time.
+    /// Those, and clocks of computing and waiting by calling context: this takes some time.
+    Clocks,
+    /// Exclusive and inclusive totals, and least and most of one call, for which each call is measured by itself: this takes time.
     Extremes,
+}
+
+/// Units of a pass.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnitCount {
+    /// Number of them.
+    pub units: u32,
+    /// Clocks that they take.
+    pub clocks: u64,
 }
 
 /// Someone who is told of each executed instruction.
@@ -44,7 +63,7 @@ pub trait Observer {
 
     /// The slot at `pc` ended by pass `exit` (numbered over the whole program) with `units` units, and control goes to
     /// `next`.
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion);
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion);
 
     /// The run is over.
     fn end(&mut self);
@@ -71,7 +90,7 @@ impl Observer for Unobserved {
 
     fn begin(&mut self, _: u32) {}
 
-    fn step(&mut self, _: u32, _: usize, _: u32, _: u32, _: Motion) {}
+    fn step(&mut self, _: u32, _: usize, _: UnitCount, _: u32, _: Motion) {}
 
     fn end(&mut self) {}
 
@@ -124,6 +143,8 @@ pub struct Profile {
     pub outside: Counts,
     /// Instructions in no region.
     pub outside_instructions: u64,
+    /// Clocks by call path and word, where they were asked for.
+    pub clocks: Option<ClockProfile>,
 }
 
 impl Profile {
@@ -171,6 +192,10 @@ impl Profile {
                 }
                 (extremes, more) => extremes.or(more),
             };
+        }
+        match (&mut self.clocks, &other.clocks) {
+            (Some(clocks), Some(more)) => clocks.merge(more),
+            (clocks, more) => *clocks = clocks.take().or_else(|| more.clone()),
         }
         self.outside += other.outside;
         self.outside_instructions += other.outside_instructions;

@@ -2,7 +2,7 @@
 
 use super::contexts::Contexts;
 use super::extremes::CallMeter;
-use super::{Observer, Profile, ProfileLevel};
+use super::{Observer, Profile, ProfileLevel, UnitCount};
 use crate::code::Code;
 use crate::code::tally::Tally;
 use crate::semantics::Motion;
@@ -21,7 +21,7 @@ impl Observer for Profiler {
 
     fn new(code: &Code, level: ProfileLevel) -> Profiler {
         let meter = (level == ProfileLevel::Extremes).then(|| Box::new(CallMeter::new(code)));
-        Profiler { contexts: Contexts::new(code), meter }
+        Profiler { contexts: Contexts::new(code, level), meter }
     }
 
     fn begin(&mut self, pc: u32) {
@@ -32,11 +32,11 @@ impl Observer for Profiler {
     }
 
     #[inline]
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
         self.contexts.pass(pc, exit, units);
         self.contexts.go(pc, next, motion);
         if let Some(meter) = &mut self.meter {
-            meter.pass(exit, units);
+            meter.pass(exit, units.units);
             meter.go(pc, next, motion);
         }
     }
@@ -56,6 +56,7 @@ impl Observer for Profiler {
         self.end();
         let mut profile = Profile::exclusive(code, tally);
         self.contexts.fold(code, &mut profile);
+        profile.clocks = self.contexts.fold_clocks(code);
         if let Some(meter) = &self.meter {
             for (region, extremes) in profile.regions.iter_mut().zip(meter.found()) {
                 region.extremes = *extremes;

@@ -3,7 +3,7 @@
 use crate::code::Code;
 
 /// Nesting of a program's regions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RegionNesting {
     /// The innermost region of each slot.
     innermost: Vec<Option<u16>>,
@@ -47,7 +47,13 @@ impl RegionNesting {
     /// Regions around a slot, the outermost first.
     #[inline]
     pub fn around(&self, slot: u32) -> &[u16] {
-        self.innermost(slot).map_or(&[], |region| &self.chains[usize::from(region)])
+        self.chain(self.innermost(slot))
+    }
+
+    /// Regions from the outermost to a region itself.
+    #[inline]
+    pub fn chain(&self, innermost: Option<u16>) -> &[u16] {
+        innermost.and_then(|region| self.chains.get(usize::from(region))).map_or(&[], Vec::as_slice)
     }
 
     /// Regions that are entered where control goes from one slot to another one of the same call.

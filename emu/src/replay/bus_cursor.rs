@@ -9,6 +9,7 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
 use crate::machine::worker::Played;
+use crate::profile::SiteUse;
 
 /// Recorded work item that a master of the bus goes through by itself; none at first.
 #[derive(Debug)]
@@ -25,8 +26,46 @@ pub struct BusCursor {
     start: Clocks,
     /// Clocks of computing since then.
     busy: Clocks,
+    /// Sums by site and the clock of the last request, where clocks of functions are measured.
+    meter: Option<Box<CursorMeter>>,
     /// The longest wait of the master for a grant that nobody was told of.
     longest_wait: Clocks,
+}
+
+/// A work item that a bus cursor hands back to its core.
+pub struct HandedBack {
+    /// The work item.
+    pub recording: Arc<Recording>,
+    /// Segments that are behind it.
+    pub next: usize,
+    /// Clocks since it was handed over.
+    pub played: Played,
+    /// Sums by site, where clocks of functions are measured.
+    pub sites: Option<Vec<SiteUse>>,
+}
+
+/// Sums of transfers by site while a bus cursor goes through a work item.
+#[derive(Debug, PartialEq, Eq)]
+struct CursorMeter {
+    /// By site; as many as the recording knows.
+    sites: Vec<SiteUse>,
+    /// Clock at which the transfer that is on its way was asked for.
+    asked: Clocks,
+}
+
+impl CursorMeter {
+    /// The transfer of a segment has ended, and the next one is asked for at a clock. The sums of a site are looked at once a transfer, since
+    /// nobody can foresee which one it is.
+    #[inline(always)]
+    fn end(&mut self, recording: &Recording, at: usize, end: Clocks, next: Clocks) {
+        let site = recording.clocks.as_ref().and_then(|clocks| clocks.sites.get(at));
+        if let (Some(&site), Some(segment)) = (site, recording.segments.get(at))
+            && let Some(sums) = self.sites.get_mut(site as usize)
+        {
+            sums.add(SiteUse { waiting: (end - self.asked).0, transfers: 1, octets: segment.octets().0 });
+        }
+        self.asked = next;
+    }
 }
 
 /// Clocks of computing before a transfer that reads, and its first burst; [`NEVER`] before anything else.
@@ -47,14 +86,32 @@ impl Default for BusCursor {
     fn default() -> BusCursor {
         let none = Clocks(0);
         let (computing, ahead) = (NEVER, Burst::default());
-        BusCursor { recording: None, next: 0, computing, ahead, start: none, busy: none, longest_wait: none }
+        BusCursor {
+            recording: None,
+            next: 0,
+            computing,
+            ahead,
+            start: none,
+            busy: none,
+            meter: None,
+            longest_wait: none,
+        }
     }
 }
 
 impl BusCursor {
-    /// Takes over a work item at a clock, when its core begins to ask for the last of the segments that are behind it.
-    pub fn begin(&mut self, recording: Arc<Recording>, next: usize, clock: Clocks, lengths: &Lengths) {
+    /// Takes over a work item at a clock, when its core begins to ask for the last of the segments that are behind it, with sums by site where
+    /// clocks of functions are measured.
+    pub fn begin(
+        &mut self,
+        recording: Arc<Recording>,
+        next: usize,
+        clock: Clocks,
+        lengths: &Lengths,
+        sites: Option<Vec<SiteUse>>,
+    ) {
         (self.next, self.start, self.busy) = (next, clock, Clocks(0));
+        self.meter = sites.map(|sites| Box::new(CursorMeter { sites, asked: clock }));
         self.recording = Some(recording);
         self.look(lengths);
     }
@@ -72,25 +129,31 @@ impl BusCursor {
         }
     }
 
-    /// Hands the work item back when its transfer has ended at a clock, with the segments that are behind it and the clocks since it was handed
-    /// over; `None` where its core has it.
-    pub fn end(&mut self, clock: Clocks) -> Option<(Arc<Recording>, usize, Played)> {
+    /// Hands the work item back when its transfer has ended at a clock; `None` where its core has it.
+    pub fn end(&mut self, clock: Clocks) -> Option<HandedBack> {
         let recording = self.recording.take()?;
         self.computing = NEVER;
+        let sites = self.meter.take().map(|mut meter| {
+            meter.end(&recording, self.next - 1, clock, clock);
+            meter.sites
+        });
         let played = Played { busy: self.busy, waiting: clock - self.start - self.busy };
-        Some((recording, self.next, played))
+        Some(HandedBack { recording, next: self.next, played, sites })
     }
 }
 
 impl NextTransfer for BusCursor {
     #[inline(always)]
-    fn next_transfer(&mut self, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+    fn next_transfer(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)> {
         // What comes next was worked out when the last transfer began, so that the bus's loop need not wait for it.
         let (computing, ahead) = (self.computing, self.ahead);
         if computing == NEVER {
             return None;
         }
         self.busy += computing;
+        if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
+            meter.end(recording, self.next - 1, end, end + computing);
+        }
         self.next += 1;
         self.look(lengths);
         Some((computing, ahead))
@@ -119,6 +182,9 @@ impl NextTransfer for BusCursor {
                 continue;
             }
             (alone.burst, alone.arrival) = (ahead, alone.free + computing);
+            if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
+                meter.end(recording, next - 1, alone.free, alone.arrival);
+            }
             next += 1;
             (computing, ahead) = ahead_of(segments, next, lengths);
         }
@@ -144,6 +210,7 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
+    use super::super::recording::ItemClocks;
     use super::*;
     use crate::engine::Pause;
     use crate::machine::arbiter::ArbiterKind;
@@ -164,6 +231,12 @@ mod tests {
             reads: 0..64,
             octets: Octets(0),
             sent: Vec::new(),
+            clocks: Some(ItemClocks {
+                observer: 0,
+                cells: Box::default(),
+                sites: (0..).take(segments.len()).collect(),
+                known: 8,
+            }),
             last_clocks: 0,
             last_pc: 0,
             end: Pause::Halt,
@@ -198,7 +271,7 @@ mod tests {
                         let cursor = &mut cursors[master as usize];
                         let _ = cursor.end(arrival);
                         bus.request(master, arrival, item.segments[0].octets());
-                        cursor.begin(item.clone(), 1, arrival, &bus.lengths);
+                        cursor.begin(item.clone(), 1, arrival, &bus.lengths, Some(vec![SiteUse::default(); 8]));
                         if is_stopped {
                             cursor.stop_at(&(0..1));
                         }

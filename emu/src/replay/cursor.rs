@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::bus_cursor::{BusCursor, overlap};
+use super::bus_cursor::{BusCursor, HandedBack, overlap};
 use super::feed::Feed;
 use super::recording::{Recording, Segment};
 use crate::code::Code;
@@ -13,10 +13,11 @@ use crate::code::tally::Tally;
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
 use crate::machine::bus::Lengths;
+use crate::machine::kinds::Kinds;
 use crate::machine::port::Shared;
 use crate::machine::request::{Access, Request};
-use crate::machine::worker::{Advance, Executor, Played, Progress, Worker};
-use crate::profile::{Observer, Profile};
+use crate::machine::worker::{Advance, Executor, Played, Progress, Worker, WorkerCounts};
+use crate::profile::{ClockLog, LogPart, Observer, ProfileLevel, SiteUse};
 use crate::semantics::Watch;
 
 /// A core's place in the work item that it replays.
@@ -29,12 +30,38 @@ pub struct ItemCursor<'a> {
     /// Segments that are behind it.
     next: usize,
     progress: Progress,
+    /// Sums of clocks, where those of functions are measured; the bus cursor has a part of them while it has the work item.
+    log: Option<ClockLog>,
+    /// Observer and site of the transfer that was asked for last.
+    asked: (usize, u32),
 }
 
 impl<'a> ItemCursor<'a> {
     /// A core that has replayed nothing.
-    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>) -> ItemCursor<'a> {
-        ItemCursor { code, core, feed, recording: None, next: 0, progress: Progress::default() }
+    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>, level: ProfileLevel) -> ItemCursor<'a> {
+        let log = (level == ProfileLevel::Clocks).then(ClockLog::default);
+        ItemCursor { code, core, feed, recording: None, next: 0, progress: Progress::default(), log, asked: (0, 0) }
+    }
+
+    /// Adds what the work item that begins computes, and makes room for the sums of its observer.
+    fn begin_clocks(&mut self) {
+        let clocks = self.recording.as_ref().and_then(|recording| recording.clocks.as_ref());
+        if let (Some(log), Some(clocks)) = (&mut self.log, clocks) {
+            let observer = clocks.observer as usize;
+            if log.parts.len() <= observer {
+                log.parts.resize(observer + 1, LogPart::default());
+            }
+            let part = &mut log.parts[observer];
+            part.add_cells(&clocks.cells);
+            if part.sites.len() < clocks.known as usize {
+                part.sites.resize(clocks.known as usize, SiteUse::default());
+            }
+        }
+    }
+
+    /// The sums of an observer.
+    fn part(&mut self, observer: usize) -> Option<&mut LogPart> {
+        self.log.as_mut()?.parts.get_mut(observer)
     }
 
     /// The segment that asked for what the core waits for; none where that is its message.
@@ -50,6 +77,7 @@ impl<'a> ItemCursor<'a> {
             let (_, sender) = shared.mailboxes.next(own)?;
             let message = shared.mailboxes.take(own, sender)?;
             self.recording = self.feed.borrow_mut().take(&message);
+            self.begin_clocks();
             return Some((message, sender));
         };
         match segment.request(self.core.cores) {
@@ -149,12 +177,46 @@ impl Worker for ItemCursor<'_> {
         if self.recording.as_deref().is_some_and(is_safe)
             && let Some(recording) = self.recording.take()
         {
-            master.begin(recording, self.next, clock, lengths);
+            // The master counts transfers when they end, and this one was counted when it was asked for.
+            let (observer, site) = self.asked;
+            let octets = recording.segments.get(self.next - 1).map_or(0, |segment| segment.octets().0);
+            let sites = self.part(observer).map(|part| {
+                part.site(site).take_back(octets);
+                std::mem::take(&mut part.sites)
+            });
+            master.begin(recording, self.next, clock, lengths, sites);
+        }
+    }
+
+    fn note_ask(&mut self, _: Request, octets: Octets, _: &Kinds) {
+        let clocks = self.recording.as_ref().and_then(|recording| recording.clocks.as_ref());
+        let Some(clocks) = clocks.filter(|_| self.log.is_some()) else { return };
+        let site = self.next.checked_sub(1).and_then(|at| clocks.sites.get(at));
+        if let Some(&site) = site {
+            self.asked = (clocks.observer as usize, site);
+            if let Some(part) = self.part(self.asked.0) {
+                part.site(site).add(SiteUse { waiting: 0, transfers: 1, octets: octets.0 });
+            }
+        }
+    }
+
+    fn note_wait(&mut self, Clocks(waiting): Clocks) {
+        if waiting != 0 {
+            let (observer, site) = self.asked;
+            if let Some(part) = self.part(observer) {
+                part.site(site).waiting += waiting;
+            }
         }
     }
 
     fn take_back(&mut self, master: &mut BusCursor, end: Clocks) -> Option<Played> {
-        let (recording, next, played) = master.end(end)?;
+        let HandedBack { recording, next, played, sites } = master.end(end)?;
+        let observer = recording.clocks.as_ref().map(|clocks| clocks.observer as usize);
+        if let (Some(observer), Some(sites)) = (observer, sites)
+            && let Some(part) = self.part(observer)
+        {
+            part.sites = sites;
+        }
         (self.recording, self.next) = (Some(recording), next);
         Some(played)
     }
@@ -163,8 +225,8 @@ impl Worker for ItemCursor<'_> {
         master.stop_at(written);
     }
 
-    fn into_counts(self) -> (Tally, Option<Profile>) {
-        (Tally::new(self.code), None)
+    fn into_counts(self) -> WorkerCounts {
+        WorkerCounts { tally: Tally::new(self.code), profile: None, clocks: self.log, keys: None }
     }
 }
 
@@ -231,7 +293,16 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
         master.stop_at(written);
     }
 
-    fn into_counts(self) -> (Tally, Option<Profile>) {
+    fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds) {
+        each!(self, worker => worker.note_ask(request, octets, kinds));
+    }
+
+    #[inline]
+    fn note_wait(&mut self, clocks: Clocks) {
+        each!(self, worker => worker.note_wait(clocks));
+    }
+
+    fn into_counts(self) -> WorkerCounts {
         match self {
             Replayer::Core(core) => core.into_counts(),
             Replayer::Main(main) => main.into_counts(),

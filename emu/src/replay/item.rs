@@ -8,6 +8,7 @@ use crate::code::trap::Stop;
 use crate::engine::{NotedRead, Quick, RequestTime, TimedLink};
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
+use crate::profile::SiteTable;
 use crate::semantics::{Link, Message};
 
 /// Record level: what is kept of work items beside their answers.
@@ -25,6 +26,8 @@ pub(super) struct ItemRecord {
     pub message: Option<Message>,
     pub sent: Vec<Message>,
     pub segments: Vec<Segment>,
+    /// Sites of the segments, where clocks are measured.
+    pub sites: Vec<u32>,
     pub octets: Octets,
     pub before: u64,
     /// There was no room for a segment, so that the item was recorded in vain.
@@ -37,6 +40,8 @@ pub(super) struct ItemRecorder<'s> {
     pub main: u32,
     pub budget: &'s Budget,
     pub kinds: &'s mut Kinds,
+    /// The sites, where clocks are measured.
+    pub sites: Option<&'s mut SiteTable>,
     pub record: &'s mut ItemRecord,
     pub level: RecordLevel,
     pub time: RequestTime,
@@ -64,8 +69,7 @@ impl Quick for ItemRecorder<'_> {
     }
 
     fn kind(&mut self, address: u32) -> (u32, u32, u32) {
-        let (start, length, kind) = self.kinds.range(address);
-        (start, length, kind as u32)
+        self.kinds.range(address)
     }
 
     fn add(&mut self, kind: u32, octets: u64) {
@@ -77,6 +81,11 @@ impl Quick for ItemRecorder<'_> {
         // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
         let portions = record.segments.len() / Budget::PORTION;
         record.segments.extend(reads.iter().map(Segment::of_read));
+        if let Some(sites) = &mut self.sites {
+            let range = |address| self.kinds.range(address);
+            let site = |read: &NotedRead| sites.at(read.context, read.slot, read.address, range);
+            record.sites.extend(reads.iter().map(site));
+        }
         record.octets += Octets(reads.iter().map(|read| u64::from(read.octets)).sum());
         record.before = before;
         let more = record.segments.len() / Budget::PORTION - portions;
@@ -114,6 +123,9 @@ impl ItemRecorder<'_> {
         record.octets += segment.octets();
         record.before = self.time.clocks;
         record.segments.push(segment);
+        if let Some(sites) = &mut self.sites {
+            record.sites.push(self.kinds.site(sites, self.time.context, self.time.pc, request));
+        }
         self.kinds.add(self.time.pc, Some(request));
         Ok(())
     }

@@ -27,6 +27,7 @@ use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::quantity::Octets;
 use crate::extension;
+use crate::machine::finish::{self, EndedRun};
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
 use crate::machine::{RunFailure, RunOutcome, Setup};
@@ -63,7 +64,7 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     for (setup, ending) in setups.iter().zip(endings) {
         // A machine that could not use the recordings is stepped alone; the others keep their results.
         results.push(match ending {
-            Ok(frame) => frame.map(|frame| with_counts(frame, setup, &totals)),
+            Ok(ended) => ended.map(|ended| with_counts(ended, setup, &totals)),
             Err(why) => step(setup, why, progress),
         });
     }
@@ -80,7 +81,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 }
 
 /// Outcome of one machine, or the reason for which it has to be stepped.
-type Replayed = Result<Result<RunOutcome, RunFailure>, Reason>;
+type Replayed = Result<Result<EndedRun, RunFailure>, Reason>;
 
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
 fn replay<T: Watch + Clone + Send, O: Observer + Send>(
@@ -130,12 +131,12 @@ fn on_clock<T: Watch, O: Observer>(
     arithmetic: &T,
     feed: Feed,
     progress: &mut dyn FnMut(u64),
-) -> Result<Result<RunOutcome, RunFailure>, Reason> {
+) -> Replayed {
     let timing = setup.config.timing();
     let core_code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
     let feed = RefCell::new(feed);
-    let core = |core| Replayer::Core(ItemCursor::new(&core_code, core, &feed));
+    let core = |core| Replayer::Core(ItemCursor::new(&core_code, core, &feed, setup.level::<O>()));
     let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, &main_code, arithmetic)));
     let done = Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run();
     let mut feed = feed.into_inner();
@@ -150,17 +151,20 @@ fn on_clock<T: Watch, O: Observer>(
 }
 
 /// The frame with what the cores counted, which the replay does not know.
-pub fn with_counts(frame: RunOutcome, setup: &Setup, totals: &PrerunTotals) -> RunOutcome {
+pub(crate) fn with_counts(EndedRun { frame, logs }: EndedRun, setup: &Setup, totals: &PrerunTotals) -> RunOutcome {
     let timing = setup.config.timing();
     let code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);
     let counts = totals.tally.counts(&code) + frame.main_tally.counts(&main_code);
     let mut kinds = totals.kinds.clone();
     kinds.merge(&frame.kinds);
+    let mut profile = totals.profile.clone();
+    let clocks = logs.iter().filter_map(|log| finish::add_clocks(log, &totals.keys, &code, &mut profile));
     RunOutcome {
         method: Method::Replayed,
         tally: totals.tally.clone(),
-        profile: totals.profile.clone(),
+        core_clocks: clocks.collect(),
+        profile,
         asked: Octets(counts[Class::Octet]),
         kinds: kinds.into_totals(),
         ..frame

@@ -1,7 +1,7 @@
 //! Finds out what work there will be: runs the main processor's program ahead with as many cores as it likes, which
 //! answer at once. What it hands out is recorded on all host threads.
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -17,7 +17,7 @@ use crate::code::trap::{Fault, Stop};
 use crate::engine::{CoreId, Demand, Pause, State, choose};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
-use crate::profile::{Observer, Profile, Unobserved};
+use crate::profile::{ClockKeys, Observer, Profile, Unobserved};
 use crate::semantics::{Link, Message, Watch, at_once};
 
 /// Cores that the main processor sees, and so work items in a batch. With a quarter of them two host threads
@@ -29,6 +29,8 @@ const MOST_SEGMENTS: usize = 1 << 23;
 
 /// Work items that a host thread takes at a time.
 const AT_ONCE: usize = 32;
+
+const TOO_MANY_PATHS: Reason = "functions call each other in too many ways to record their clocks";
 
 const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
 
@@ -98,10 +100,26 @@ fn record<T: Watch + Send, O: Observer + Send>(
     if budget.is_full() {
         return Err(TOO_LONG);
     }
+    if has_too_many_paths(recorders) {
+        return Err(TOO_MANY_PATHS);
+    }
     let mut found: Vec<_> = found.into_iter().flatten().collect();
     // The order of the messages, so that results do not depend on which thread was faster.
     found.sort_unstable_by_key(|(at, _)| *at);
     found.into_iter().map(|(_, recording)| recording.map(Arc::new)).collect()
+}
+
+/// True where clocks are measured and there are more calling contexts than one recorder has room for, whichever of them have seen which.
+fn has_too_many_paths<T: Watch, O: Observer>(recorders: &mut [Recorder<T, O>]) -> bool {
+    let (mut all, mut most) = (HashSet::new(), usize::MAX);
+    for recorder in recorders {
+        if let Some((paths, room)) = recorder.paths() {
+            all.extend(paths.cloned());
+            most = room;
+        }
+    }
+    // A recorder that is full has met one more than it has; to be as full as that is to have had no room soon.
+    all.len() >= most
 }
 
 /// Totals of all work items together.
@@ -112,6 +130,8 @@ pub struct PrerunTotals {
     pub kinds: Kinds,
     /// Their functions and regions.
     pub profile: Option<Profile>,
+    /// Meaning of the numbers in recordings, by recorder, where clocks were measured.
+    pub keys: Vec<ClockKeys>,
     /// Global memory, with all answers in it where all of them came.
     pub memory: Memory,
     /// End of the main processor's program.
@@ -132,6 +152,7 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), level);
     // A recorder a host thread, kept for all batches: engines and buffers are made once.
     let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
+    (0..).zip(&mut recorders).for_each(|(number, recorder)| recorder.number = number);
     let mut memory = memory.clone();
     let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
@@ -161,12 +182,13 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
         }
     };
     // Add up what all threads counted; sums do not depend on who recorded what
-    let mut totals =
-        PrerunTotals { tally: Tally::new(&core_code), kinds: Kinds::new(&setup.kinds), profile: None, memory, end };
+    let (tally, kinds, keys) = (Tally::new(&core_code), Kinds::new(&setup.kinds), Vec::new());
+    let mut totals = PrerunTotals { tally, kinds, profile: None, keys, memory, end };
     for mut recorder in recorders {
         let tally = recorder.take_tally();
         totals.tally.merge(&tally);
         totals.kinds.merge(recorder.kinds.totals());
+        totals.keys.extend(recorder.clock_keys());
         match (&mut totals.profile, recorder.observer.into_profile(&core_code, &tally)) {
             (Some(profile), Some(more)) => profile.merge(&more),
             (profile, more) => *profile = more,

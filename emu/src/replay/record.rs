@@ -2,7 +2,7 @@
 
 use super::budget::Budget;
 use super::item::{ItemRecord, ItemRecorder, RecordLevel};
-use super::recording::{Reason, Recording, Segment, reads};
+use super::recording::{ItemClocks, Reason, Recording, Segment, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -14,7 +14,7 @@ use crate::engine::{
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
-use crate::profile::{Observer, ProfileLevel};
+use crate::profile::{CallPath, ClockKeys, Observer, ProfileLevel, SiteTable};
 use crate::semantics::{Link, Message, Watch};
 
 /// The link of a work item that is recorded: it says what it asks for, then gets it at once.
@@ -132,6 +132,10 @@ pub struct Recorder<'a, T, O> {
     /// Observer of all items.
     pub observer: TaintObserver<O>,
     runner: EngineRunner<'a>,
+    /// Sites of transfers, where clocks are measured.
+    sites: Option<SiteTable>,
+    /// Number of this recorder.
+    pub number: u32,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
 }
@@ -152,6 +156,8 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         };
         Recorder {
             usual: 0,
+            number: 0,
+            sites: (profile == ProfileLevel::Clocks && level == RecordLevel::Segments).then(SiteTable::default),
             runner: choose(&demand),
             level,
             state: State::new(code, initial.clone()),
@@ -200,6 +206,20 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         }
     }
 
+    /// Paths of the calling contexts that items were in, where clocks are measured, and the most that there may be.
+    pub fn paths(&mut self) -> Option<(impl Iterator<Item = &CallPath>, usize)> {
+        self.sites.as_ref()?;
+        let contexts = &self.observer.profiler()?.contexts;
+        Some((contexts.paths(), contexts.most()))
+    }
+
+    /// Meaning of the numbers in the clocks of its recordings, where they are measured.
+    pub fn clock_keys(&mut self) -> Option<ClockKeys> {
+        let sites = self.sites.as_ref()?.all().to_vec();
+        let paths = self.observer.profiler()?.contexts.paths().cloned().collect();
+        Some(ClockKeys { paths, sites })
+    }
+
     /// The passes of all items.
     pub fn take_tally(&mut self) -> Tally {
         let kinds = &mut self.kinds;
@@ -211,8 +231,9 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
     fn run_quickly(&mut self, record: &mut ItemRecord, budget: &Budget) -> Option<Stopped> {
         let (memory, main, level) = (self.memory, self.seat.cores, self.level);
-        let time = RequestTime { pc: 0, clocks: 0 };
-        let mut link = ItemRecorder { memory, main, budget, kinds: &mut self.kinds, record, level, time };
+        let time = RequestTime { pc: 0, context: 0, clocks: 0 };
+        let (kinds, sites) = (&mut self.kinds, self.sites.as_mut());
+        let mut link = ItemRecorder { memory, main, budget, kinds, sites, record, level, time };
         let (seat, state) = (self.seat, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
         self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, observer.profiler())
@@ -253,6 +274,10 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 let segment = Segment::new(clocks, self.state.pc, request, link.sent.len());
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 record.octets += segment.octets();
+                if let (Some(sites), Some(profiler)) = (&mut self.sites, self.observer.profiler()) {
+                    let context = profiler.contexts.current();
+                    record.sites.push(self.kinds.site(sites, context, self.state.pc, request));
+                }
                 self.kinds.add(self.state.pc, Some(request));
                 record.segments.push(segment);
                 // Room is taken in portions, since all host threads share one number.
@@ -277,7 +302,8 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.observer.begin(self.state.pc);
         // Items of one scene are much alike, so the last one tells how much room this one wants.
         let segments = Vec::with_capacity(self.usual);
-        let mut record = ItemRecord { message: Some(message), segments, ..ItemRecord::default() };
+        let sites = Vec::with_capacity(if self.sites.is_some() { self.usual } else { 0 });
+        let mut record = ItemRecord { message: Some(message), segments, sites, ..ItemRecord::default() };
         let end = loop {
             let stopped = self.run_quickly(&mut record, budget);
             if record.is_without_room {
@@ -292,7 +318,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 break end;
             }
         };
-        let ItemRecord { message: rest, mut segments, octets, before, sent, .. } = record;
+        let ItemRecord { message: rest, mut segments, mut sites, octets, before, sent, .. } = record;
         if rest.is_some() {
             return Err(BEGINS);
         }
@@ -302,12 +328,18 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.usual = segments.len().min(Budget::PORTION);
         if segments.len() < segments.capacity() / 2 {
             segments.shrink_to_fit();
+            sites.shrink_to_fit();
         }
         if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
         }
+        let (observer, clocks) = (self.number, self.state.clocks);
+        let known = self.sites.as_ref().map_or(0, |sites| sites.all().len() as u32);
+        let cells = self.observer.profiler().filter(|_| self.sites.is_some());
+        let cells = cells.and_then(|profiler| Some(profiler.contexts.cells.as_mut()?.take(clocks)));
         Ok(Recording {
             message,
+            clocks: cells.map(|cells| ItemClocks { observer, cells, sites, known }),
             reads: reads(&segments),
             segments,
             octets,

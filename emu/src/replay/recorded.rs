@@ -46,7 +46,7 @@ impl Recorded {
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, RunFailure> {
         check(setup)?;
         match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory }) {
-            Ok(frame) => Ok(Ok(super::with_counts(frame?, setup, &self.totals))),
+            Ok(ended) => Ok(Ok(super::with_counts(ended?, setup, &self.totals))),
             Err(reason) => Ok(Err(reason)),
         }
     }
@@ -83,7 +83,7 @@ struct ReplayTask<'a> {
 }
 
 impl Task for ReplayTask<'_> {
-    type Result = Result<Result<RunOutcome, RunFailure>, Reason>;
+    type Result = super::Replayed;
 
     fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         // The channel holds all batches before anybody reads, so it must have no bound.

@@ -87,6 +87,19 @@ pub fn reads(segments: &[Segment]) -> Range<u64> {
     ranges.reduce(|all, range| all.start.min(range.start)..all.end.max(range.end)).unwrap_or_default()
 }
 
+/// Clocks by function of a work item, apart from its waits, under the numbers of the observer of those who recorded it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ItemClocks {
+    /// Number of that observer.
+    pub observer: u32,
+    /// Clocks of computing by cell; those that are not empty.
+    pub cells: Box<[(u32, u64)]>,
+    /// The site of each segment: 4 octets beside the 16 of that.
+    pub sites: Vec<u32>,
+    /// Number of sites that the observer knew at its end.
+    pub known: u32,
+}
+
 /// A work item from its first message to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recording {
@@ -100,6 +113,8 @@ pub struct Recording {
     pub octets: Octets,
     /// The messages that it sent to the main processor.
     pub sent: Vec<Message>,
+    /// Clocks by function and sites of transfers, where they were asked for.
+    pub clocks: Option<ItemClocks>,
     /// Clocks of computing after the last segment.
     pub last_clocks: u64,
     /// Word of the instruction at which it ended.

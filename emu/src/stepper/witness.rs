@@ -2,7 +2,7 @@
 
 use crate::code::Code;
 use crate::code::tally::Tally;
-use crate::profile::{Observer, Profile, ProfileLevel};
+use crate::profile::{Observer, Profile, ProfileLevel, UnitCount};
 use crate::semantics::Motion;
 
 /// Open calls that are kept; deeper ones are forgotten when they are made.
@@ -36,8 +36,8 @@ impl Observer for Witness {
     fn begin(&mut self, _: u32) {}
 
     #[inline]
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
-        self.exit = (exit, units);
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
+        self.exit = (exit, units.units);
         match motion {
             Motion::Jump => {}
             Motion::Call if self.calls.len() < DEEPEST => self.calls.push(OpenCall { from: pc, to: next }),

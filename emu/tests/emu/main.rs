@@ -3,6 +3,7 @@
 mod alike;
 mod builder;
 mod bus;
+mod clocks;
 mod engine;
 mod machine;
 mod meanings;

@@ -3,7 +3,7 @@
 use emu::code::Code;
 use emu::engine::{CoreId, State, interpreter};
 use emu::octets::Buffer;
-use emu::profile::{Observer, Profile, ProfileLevel};
+use emu::profile::{Observer, Profile, ProfileLevel, UnitCount};
 use emu::semantics::{Link, Message, Motion};
 use emu::tally::Tally;
 use emu::trap::Stop;
@@ -73,8 +73,8 @@ impl Observer for Naive {
         self.move_to(pc);
     }
 
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
-        let cost = self.costs[exit].0 + self.costs[exit].1.times(units.into());
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
+        let cost = self.costs[exit].0 + self.costs[exit].1.times(units.units.into());
         for region in 0..self.calls.len() {
             if self.open.iter().any(|call| call.regions.contains(&(region as u16))) {
                 self.inclusive[region] += cost;

@@ -11,17 +11,18 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::builder::{Builder, program};
+use super::clocks::check_sums;
 use super::machine::dispatch;
 
 /// Nodes from octet 400 on, triangles after them; answers lie before.
-const NODES: i64 = 400;
-const TRIANGLES: i64 = 700;
+pub const NODES: i64 = 400;
+pub const TRIANGLES: i64 = 700;
 
-fn memory() -> Memory {
+pub fn memory() -> Memory {
     Memory::new((0..2000u32).map(|at| ((at * 37) >> 3) as u8).collect())
 }
 
-fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Program) -> Setup<'a> {
+pub fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Program) -> Setup<'a> {
     let kind = |from: i64, to: i64, name: &str| (from as u32..to as u32, name.to_owned());
     let kinds = vec![kind(NODES, TRIANGLES, "nodes"), kind(TRIANGLES, 2000, "triangles")];
     Setup {
@@ -30,7 +31,7 @@ fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a Prog
         core,
         main,
         kinds,
-        options: RunOptions { profile: ProfileLevel::Totals, has_items: true, ..RunOptions::default() },
+        options: RunOptions { profile: ProfileLevel::Clocks, has_items: true, ..RunOptions::default() },
     }
 }
 
@@ -59,12 +60,13 @@ fn both(config: &Config, core: &Program, main: &Program) -> RunOutcome {
     let setup = setup(config, &isa, core, main);
     let run = emu::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     let mut stepped = emu::step(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
+    check_sums(&setup, &run);
     stepped.method = run.method;
     assert!(run == stepped, "{config:?}\n{run:#?}\n{stepped:#?}");
     run
 }
 
-fn with(arbiter: ArbiterKind, cores: u32, config: Config) -> Config {
+pub fn with(arbiter: ArbiterKind, cores: u32, config: Config) -> Config {
     let weights = vec![3, 1, 2];
     Config { cores, bus: BusConfig { arbiter, weights, slot_clocks: 90, ..config.bus }, ..config }
 }
@@ -85,6 +87,7 @@ fn every_preset_and_arbiter_on_one_to_sixteen_cores() {
             let frame = frame.unwrap_or_else(|failure| panic!("{failure}"));
             let mut stepped = emu::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
             assert_eq!(frame.method, Method::Replayed);
+            check_sums(&setup(config, &isa, &core, &main), &frame);
             stepped.method = Method::Replayed;
             assert!(frame == stepped, "{} {config:?}\n{frame:#?}\n{stepped:#?}", preset.name);
             let found = (frame.memory, frame.tally);

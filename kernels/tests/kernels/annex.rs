@@ -7,7 +7,7 @@ use emu::engine::{CoreId, Pause, State};
 use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore};
 use emu::octets::{Buffer, Memory};
-use emu::profile::{Observer, Profile, ProfileLevel};
+use emu::profile::{Observer, Profile, ProfileLevel, UnitCount};
 use emu::semantics::{Link, Message, Motion};
 use emu::tally::Tally;
 use emu::trap::Stop;
@@ -74,9 +74,9 @@ impl Observer for Trace<'_> {
 
     fn begin(&mut self, _: u32) {}
 
-    fn step(&mut self, pc: u32, exit: usize, units: u32, next: u32, motion: Motion) {
+    fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
         let (cost, each) = self.code.pass_cost(exit);
-        self.steps.push(Step { pc, next, cost: cost + each.times(units.into()), motion });
+        self.steps.push(Step { pc, next, cost: cost + each.times(units.units.into()), motion });
     }
 
     fn end(&mut self) {}

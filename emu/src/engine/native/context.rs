@@ -40,6 +40,12 @@ pub(super) struct Context {
     pub noted_end: u64,
     /// Clocks at the last transfer, counted as [`Context::sums`] counts them; below 0 for one before the sums were last emptied.
     pub before: i64,
+    /// Clocks at which the current calling context began to be counted, as [`Context::before`] counts them, where clocks are measured.
+    pub since: i64,
+    /// The cells of clocks by calling context, where clocks are measured: see `Contexts::cell`.
+    pub cells: *mut u64,
+    /// Those of the current calling context.
+    pub own_cells: *mut u64,
     /// Address of the arithmetic that functions compute with.
     pub arithmetic: *const (),
     /// The rest of the machine: see [`super::run::NativeHost`].
@@ -77,6 +83,9 @@ offsets! {
     NOTED_AT noted
     NOTED_END noted_end
     BEFORE before
+    SINCE since
+    CELLS cells
+    OWN_CELLS own_cells
     NODES nodes
     CALLS calls
     CALLS_END calls_end

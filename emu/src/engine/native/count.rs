@@ -6,7 +6,7 @@ use super::context::{ContextFrame, CounterLayout};
 use super::{AddOctets, Native, blocks, run};
 use crate::code::tally::{Losses, Tally};
 use crate::engine::plan::{Plan, Step};
-use crate::profile::Profiler;
+use crate::profile::{Profiler, UnitCount};
 
 /// Counters of a core. Those that generated code changes stand in the frame.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub(super) struct Counters {
     pub frame: ContextFrame,
     /// Units by exit.
     pub units: Vec<u64>,
+    /// Clocks of those.
+    pub unit_clocks: Vec<u64>,
     /// Losses of results by slot, where those are counted.
     pub losses: Vec<Losses>,
     /// Kinds of the data that each site has met last.
@@ -26,6 +28,7 @@ impl Counters {
         Counters {
             frame: ContextFrame::new(layout, has_contexts),
             units: vec![0; plan.exits()],
+            unit_clocks: vec![0; plan.exits()],
             losses: vec![Losses::default(); plan.slots().len()],
             kinds: vec![0; sites],
         }
@@ -104,7 +107,7 @@ impl Native<'_> {
                 let Some(pass) = plan.pass(exit) else { continue };
                 passes[pass].count += count;
                 if let Some(profiler) = &mut profiler {
-                    profiler.contexts.add_passes(context, pass, count, 0);
+                    profiler.contexts.add_passes(context, pass, count, UnitCount::default());
                 }
             }
             if let Some(profiler) = &mut profiler {
@@ -113,9 +116,11 @@ impl Native<'_> {
                 }
             }
         }
-        for (exit, units) in counters.units.iter_mut().map(std::mem::take).enumerate() {
+        for (exit, (units, clocks)) in counters.units.iter_mut().zip(&mut counters.unit_clocks).enumerate() {
+            let (units, clocks) = (std::mem::take(units), std::mem::take(clocks));
             if let Some(pass) = plan.pass(exit) {
                 passes[pass].units += units;
+                passes[pass].unit_clocks += clocks;
             }
         }
         for (losses, more) in tally.parts_mut().1.iter_mut().zip(&mut counters.losses) {

@@ -12,6 +12,8 @@ pub(super) struct Profiling {
     slots: Vec<u32>,
     /// Costs by class, where each call is measured.
     pub classes: Option<Classes>,
+    /// Clocks are measured.
+    pub has_clocks: bool,
 }
 
 impl Profiling {
@@ -27,6 +29,7 @@ impl Profiling {
             regions: RegionNesting::new(plan.code),
             slots: slots.collect(),
             classes,
+            has_clocks: level == ProfileLevel::Clocks,
         })
     }
 
@@ -50,9 +53,9 @@ impl Profiling {
         self.regions.entered(self.slots[from as usize], self.slots[to as usize])
     }
 
-    /// Two places belong to different regions, and who measures each call wants to know when control goes from one to the other.
+    /// Two places belong to different regions, and who measures each call or clocks wants to know when control goes from one to the other.
     pub fn is_border(&self, from: u32, to: u32) -> bool {
         let region = |place: u32| self.regions.innermost(self.slots[place as usize]);
-        self.classes.is_some() && region(from) != region(to)
+        (self.classes.is_some() || self.has_clocks) && region(from) != region(to)
     }
 }

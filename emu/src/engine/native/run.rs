@@ -8,6 +8,7 @@ use super::context::{Context, CounterLayout, NOTED};
 use super::count::Counters;
 use super::{NO_SITE, Native, NotedRead, Status, Stopped, TimedLink};
 use crate::code::octets::Buffer;
+use crate::code::quantity::Clocks;
 use crate::code::tally::Losses;
 use crate::code::trap::{Fault, Stop};
 use crate::engine::RequestTime;
@@ -16,7 +17,7 @@ use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
 use crate::extension::Units;
-use crate::profile::{CallMeter, CallStack, Profiler};
+use crate::profile::{CallMeter, CallStack, Profiler, UnitCount};
 use crate::semantics::{Motion, Numbers, Watch};
 
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
@@ -68,7 +69,7 @@ impl<'a> NativeHost<'a> {
     pub fn ask(&mut self, context: &mut Context, step: &Step) {
         self.hand_over(context);
         let clocks = self.totals.clocks + Cost(context.sums).clocks();
-        self.link.note(RequestTime { pc: step.slot, clocks });
+        self.link.note(RequestTime { pc: step.slot, context: context.current, clocks });
     }
 
     /// Hands over the reads that were noted.
@@ -151,8 +152,21 @@ impl<'a> NativeHost<'a> {
         }
     }
 
+    /// Gives the clocks since that was done last to the current calling context at a slot, where clocks are measured.
+    fn spend(&mut self, context: &mut Context, slot: u32) {
+        let now = Cost(context.sums).clocks() as i64;
+        let clocks = (now - context.since) as u64;
+        context.since = now;
+        if clocks != 0
+            && let Some(profiler) = &mut self.profiler
+        {
+            profiler.contexts.spend(context.current, slot, clocks);
+        }
+    }
+
     /// Follows control from one slot to another one, into another calling context.
     pub fn follow(&mut self, context: &mut Context, from: u32, to: u32, motion: Motion) {
+        self.spend(context, from);
         self.take_calls(context);
         if let Some(profiler) = &mut self.profiler {
             profiler.contexts.go(from, to, motion);
@@ -167,6 +181,7 @@ impl<'a> NativeHost<'a> {
         let callee = self.profiler.as_mut().and_then(|profiler| profiler.contexts.callee(slot)).unwrap_or(0);
         if callee != 0 {
             context.nodes = self.counters.frame.nodes(callee.max(current));
+            self.give_cells(context);
             self.counters.frame.set_callee(current, caller, callee);
         }
         callee
@@ -187,6 +202,15 @@ impl<'a> NativeHost<'a> {
             (context.calls, context.calls_end, context.current) = (top, end, current);
             context.nodes = self.counters.frame.nodes(current);
         }
+        self.give_cells(context);
+    }
+
+    /// Gives the cells of clocks to generated code, which move when there are more of them.
+    fn give_cells(&mut self, context: &mut Context) {
+        let cells = self.profiler.as_mut().and_then(|profiler| profiler.contexts.cells.as_mut());
+        (context.cells, context.own_cells) = cells.map_or((std::ptr::null_mut(), std::ptr::null_mut()), |cells| {
+            (cells.first(), cells.first_of(context.current))
+        });
     }
 
     /// Changes the count of runs that were begun at a place in the current calling context.
@@ -197,20 +221,23 @@ impl<'a> NativeHost<'a> {
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        if let Some(count) = self.counters.units.get_mut(exit) {
-            *count += u64::from(units);
-        }
         let Some(pass) = self.plan.pass(exit) else { return };
+        let is_busy = self.plan.code.costs()[pass].has_busy_units;
+        let (Clocks(clocks), elementary) = if is_busy { self.plan.code.unit_cost(pass, units) } else { (Clocks(0), 0) };
+        let counters = &mut self.counters;
+        if let (Some(count), Some(sum)) = (counters.units.get_mut(exit), counters.unit_clocks.get_mut(exit)) {
+            *count += u64::from(units);
+            *sum += clocks;
+        }
         if let Some(profiler) = &mut self.profiler {
-            profiler.contexts.add_passes(context.current, pass, 0, units.into());
+            profiler.contexts.add_passes(context.current, pass, 0, UnitCount { units, clocks });
         }
         if let Some(meter) = self.meter() {
             meter.add_units(pass, units);
         }
-        if self.plan.code.costs()[pass].has_busy_units {
-            let (clocks, elementary) = self.plan.code.unit_cost(pass, units);
+        if is_busy {
             self.totals.elementary += elementary;
-            self.add_clocks(context, clocks.0);
+            self.add_clocks(context, clocks);
         }
     }
 
@@ -228,6 +255,7 @@ impl<'a> NativeHost<'a> {
     fn add_clocks(&mut self, context: &mut Context, clocks: u64) {
         self.totals.clocks += clocks;
         context.before -= clocks as i64;
+        context.since -= clocks as i64;
         if end_of_notes(context.before) == 0 {
             context.noted_end = context.noted;
         }
@@ -320,6 +348,7 @@ impl Native<'_> {
             context.memory = memory.unwrap_or(std::ptr::null());
             context.before = before.wrapping_sub(clocks) as i64;
             (context.noted, context.noted_end) = (0, end_of_notes(context.before));
+            context.since = 0;
             context.arithmetic = std::ptr::from_ref(arithmetic).cast();
             host.give_calls(context);
             context.host = (&raw mut host).cast();
@@ -339,6 +368,8 @@ impl Native<'_> {
             if let Some(panic) = host.panic.take() {
                 resume_unwind(panic);
             }
+            // What a register leads to was told before it was left for, so no clocks are left there.
+            host.spend(context, plan.steps().get(context.place as usize).map_or(0, |step| step.slot));
             host.empty(context);
             host.add_classes(context);
             host.take_calls(context);

@@ -206,8 +206,9 @@ impl Lower<'_, '_> {
         let row = self.source.plan.code.slot_row(step.slot).expect("it is a row's");
         let octets = row.outcomes[0].cost[isa::Class::Octet];
         let (slot, octets) = (self.c32(step.slot as i32), self.c32(octets as i32));
+        let current = self.clocked_context().unwrap_or_else(|| self.c32(0));
         let at = self.b.ins().iadd(self.context, noted);
-        let fields = [clocks, slot, address, octets];
+        let fields = [clocks, slot, address, octets, current];
         for (offset, field) in NotedRead::OFFSETS.into_iter().zip(fields) {
             self.b.ins().store(aligned(), field, at, READS + offset);
         }

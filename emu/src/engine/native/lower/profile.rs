@@ -8,10 +8,14 @@ use cranelift_frontend::FunctionBuilder;
 use isa::Counts;
 
 use super::{Lower, aligned, flags};
+use crate::engine::cost::CLOCKS;
+use crate::engine::native::Profiling;
 use crate::engine::native::Status;
 use crate::engine::native::calls::{self, Callee, Follow, Went};
 use crate::engine::native::classes::{Classes, LANES, Lanes, lanes};
-use crate::engine::native::context::{CALLS, CALLS_END, CLASSES, CURRENT, CounterLayout, NODES};
+use crate::engine::native::context::{
+    CALLS, CALLS_END, CELLS, CLASSES, CURRENT, CounterLayout, NODES, OWN_CELLS, SINCE,
+};
 use crate::semantics::Motion;
 
 /// Address of the current calling context's node.
@@ -106,6 +110,7 @@ impl<'a> Lower<'a, '_> {
     /// Tells of a call or a return to a word, if anybody measures functions.
     pub fn tell_motion(&mut self, to: Value, motion: Motion) {
         if self.source.profiling.is_some() {
+            self.store_sums(0);
             let ways = self.ways(to);
             self.call_host(calls::follow as Follow as usize, ways, motion as i64);
             self.tell(to, motion);
@@ -120,9 +125,40 @@ impl<'a> Lower<'a, '_> {
         }
     }
 
+    /// The current calling context, where clocks are measured.
+    pub fn clocked_context(&mut self) -> Option<Value> {
+        self.clocked()?;
+        Some(self.b.ins().load(I32, aligned(), self.context, CURRENT))
+    }
+
+    /// Facts about functions and regions, where clocks are measured.
+    fn clocked(&self) -> Option<&'a Profiling> {
+        self.source.profiling.filter(|profiling| profiling.has_clocks)
+    }
+
+    /// Gives the clocks since that was done last to the current calling context and the regions around a place, where clocks are measured. The
+    /// sums have nothing in them that is not executed yet.
+    fn spend_clocks(&mut self, place: u32) {
+        let Some(profiling) = self.clocked() else { return };
+        let (start, bits) = CLOCKS;
+        let sums = self.b.use_var(self.sums);
+        let now = self.b.ins().ushr_imm_s(sums, i64::from(start));
+        let now = self.b.ins().band_imm_s(now, (1 << bits) - 1);
+        let since = self.b.ins().load(I64, aligned(), self.context, SINCE);
+        self.b.ins().store(aligned(), now, self.context, SINCE);
+        let clocks = self.b.ins().isub(now, since);
+        // The cells of a context stand together: one for no region, then one a region.
+        let cells = self.b.ins().load(I64, aligned(), self.context, OWN_CELLS);
+        let own = 8 * profiling.caller(place) as i32;
+        let sum = self.b.ins().load(I64, aligned(), cells, own);
+        let sum = self.b.ins().iadd(sum, clocks);
+        self.b.ins().store(aligned(), sum, cells, own);
+    }
+
     /// Tells that control goes on at a place, where that belongs to another region and anybody measures each call.
     pub fn tell_border(&mut self, from: u32, to: u32) {
         if self.source.profiling.is_some_and(|profiling| profiling.is_border(from, to)) {
+            self.spend_clocks(from);
             let slot = self.slot(to);
             self.tell(slot, Motion::Jump);
         }
@@ -137,6 +173,13 @@ impl<'a> Lower<'a, '_> {
     fn switch_to_context(&mut self, number: Value) {
         let Some(variable) = self.node else { return };
         self.b.ins().store(aligned(), number, self.context, CURRENT);
+        if let Some(profiling) = self.clocked() {
+            let number = self.b.ins().uextend(I64, number);
+            let offset = self.b.ins().imul_imm_s(number, 8 * (profiling.regions() as i64 + 1));
+            let cells = self.b.ins().load(I64, aligned(), self.context, CELLS);
+            let cells = self.b.ins().iadd(cells, offset);
+            self.b.ins().store(aligned(), cells, self.context, OWN_CELLS);
+        }
         let node = node(&mut self.b, self.context, self.source.layout, number);
         self.b.def_var(variable, node);
     }
@@ -179,6 +222,7 @@ impl<'a> Lower<'a, '_> {
 
     /// Opens a call from the current row to a calling context that [`Lower::find_callee`] has found.
     pub fn open_call(&mut self, callee: Value) {
+        self.spend_clocks(self.place);
         let slot = self.source.steps[self.place as usize].slot;
         let calls = self.b.ins().load(I64, aligned(), self.context, CALLS);
         let (current, back) = (self.b.ins().load(I32, aligned(), self.context, CURRENT), self.c32(slot as i32 + 1));
@@ -202,6 +246,7 @@ impl<'a> Lower<'a, '_> {
         self.b.ins().brif(is_newest, newest, &[], other, &[]);
 
         self.b.switch_to_block(newest);
+        self.spend_clocks(self.place);
         let calls = self.b.ins().iadd_imm_s(calls, -8);
         self.b.ins().store(aligned(), calls, self.context, CALLS);
         let caller = self.b.ins().load(I32, aligned(), calls, 0);
@@ -210,6 +255,7 @@ impl<'a> Lower<'a, '_> {
         self.b.ins().jump(on, &[]);
 
         self.b.switch_to_block(other);
+        self.store_sums(0);
         let slot = self.slot(place);
         let ways = self.ways(slot);
         self.call_host(calls::follow as Follow as usize, ways, Motion::Return as i64);

@@ -2,6 +2,9 @@
 //! scene and the cameras' rays with the rest, but neither the kd tree nor its traversal, nor any intersection, shading or rounding.
 
 mod hierarchy;
+#[cfg(test)]
+mod log_tests;
+mod ray_log;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -17,6 +20,8 @@ use crate::camera::{self, Corners, Rays};
 use crate::model::{Picture, Scene, Vec3, View};
 use crate::vector::{exponent, largest, shifted, sub};
 use hierarchy::Hierarchy;
+use ray_log::{LocalFrame, RayLog, RayWitness};
+pub use ray_log::{RayKind, ReferenceHit, ReferenceLight, ReferenceRay};
 use search::{Exhaustive, Search};
 use tie::Sample;
 pub use tie::Ties;
@@ -74,6 +79,7 @@ pub struct Reference<'a> {
     search: Box<dyn Search + 'a>,
     world: whitted::World<'a>,
     rays: Rays,
+    frame: LocalFrame,
     size: (u32, u32),
 }
 
@@ -124,7 +130,8 @@ impl<'a> Reference<'a> {
             SearchMethod::Hierarchy => Box::new(Hierarchy::new(shapes, indices)),
             SearchMethod::Exhaustive => Box::new(Exhaustive { shapes, indices }),
         };
-        Ok(Reference { search, world: whitted::World::new(scene, view, local), rays, size: view.size })
+        let frame = LocalFrame { middle, power };
+        Ok(Reference { search, world: whitted::World::new(scene, view, local), rays, frame, size: view.size })
     }
 
     /// True where the camera ray of column `c` and row `r`, row 0 on top, meets a triangle.
@@ -136,9 +143,24 @@ impl<'a> Reference<'a> {
     /// The colour of the pixel in column `c` and row `r`, row 0 on top, and the rays that it took. A camera ray on an edge is decided by
     /// `ties`; without them, as one whose direction is moved by an infinitely small amount, which all other rays are.
     pub fn pixel(&self, c: u32, r: u32, ties: Option<&dyn Ties>) -> (Vec3, RayCounts) {
+        let mut counts = RayCounts::default();
+        let colour = self.colour(c, r, ties, &mut counts);
+        (colour, counts)
+    }
+
+    /// The colour of a pixel, and the rays of its tree in the order in which they are followed: depth first, the reflected child before the
+    /// refracted one. The colour is the sum of what they bring back, each by its weight. `ties` as in [`Reference::pixel`].
+    pub fn explain(&self, c: u32, r: u32, ties: Option<&dyn Ties>) -> (Vec3, Vec<ReferenceRay>) {
+        let mut log = RayLog { frame: self.frame, rays: Vec::new() };
+        let colour = self.colour(c, r, ties, &mut log);
+        (colour, log.rays)
+    }
+
+    fn colour(&self, c: u32, r: u32, ties: Option<&dyn Ties>, witness: &mut impl RayWitness) -> Vec3 {
         let (origin, direction) = self.rays.ray(c, r);
         let sample = ties.map(|ties| Sample { pixel: [c, r], ties });
-        self.world.colour(self.search.as_ref(), triangle::ShearedRay::new(origin, direction).of(sample))
+        let ray = triangle::ShearedRay::new(origin, direction);
+        self.world.colour(self.search.as_ref(), ray.of(sample), witness)
     }
 
     /// The whole picture, rows in parallel; the same bits for any number of threads. `ties` as in [`Reference::pixel`].

@@ -170,13 +170,18 @@ impl PreparedTriangle {
         if is_on_edge { Encounter::Border { t, is_inside } } else { Encounter::Hit(t) }
     }
 
-    /// The point in which a ray meets the triangle, from the vertices and not from the distance: it lies in the triangle's plane however far
-    /// the ray has come. Only for rays that hit.
-    pub fn point(&self, ray: &ShearedRay) -> Vec3 {
+    /// Weights of the second and the third vertex in the point in which a ray meets the triangle. Only for rays that hit.
+    pub fn weights(&self, ray: &ShearedRay) -> [f64; 2] {
         let [a, b, c] = self.vertices.map(|vertex| ray.sheared(vertex).0);
         let weights = [c[0] * b[1] - c[1] * b[0], a[0] * c[1] - a[1] * c[0], b[0] * a[1] - b[1] * a[0]];
         let sum: f64 = weights.iter().sum();
-        let [a, b, c] = self.vertices;
-        [0, 1, 2].map(|k| a[k] + (weights[1] / sum) * (b[k] - a[k]) + (weights[2] / sum) * (c[k] - a[k]))
+        [weights[1] / sum, weights[2] / sum]
+    }
+
+    /// The point in which a ray meets the triangle, from the vertices and not from the distance: it lies in the triangle's plane however far
+    /// the ray has come. Only for rays that hit.
+    pub fn point(&self, ray: &ShearedRay) -> Vec3 {
+        let ([u, v], [a, b, c]) = (self.weights(ray), self.vertices);
+        [0, 1, 2].map(|k| a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]))
     }
 }

@@ -1,7 +1,7 @@
 //! Light that a ray brings back: Whitted's model as the report has it (4.1 to 4.3), with reflection, refraction, total reflection and one shadow
 //! ray a light. Which triangle a ray meets is found by [`super::search`].
 
-use super::RayCounts;
+use super::ray_log::{RayKind, RayWitness, TreePlace};
 use super::search::Search;
 use super::triangle::{PreparedTriangle, ShearedRay};
 use crate::model::{self, Light, Material, Scene, Vec3, View};
@@ -27,10 +27,7 @@ pub struct World<'a> {
 /// A ray of the ray tree that is still to be followed.
 struct PendingRay<'a> {
     ray: ShearedRay<'a>,
-    /// Product of the coefficients on the way from the eye.
-    weight: f64,
-    /// 0 for the camera's ray.
-    level: u32,
+    place: TreePlace,
     /// The ray runs inside a body; a refracted ray changes it, a reflected one does not.
     is_inside: bool,
 }
@@ -49,28 +46,32 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The light that comes back along a ray, and the rays that were sent. The ray tree is walked depth first on a stack of its own, so that
+    /// The light that comes back along a ray, of which a witness is told. The ray tree is walked depth first on a stack of its own, so that
     /// its depth is not bounded by the thread's.
-    pub fn colour(&self, search: &dyn Search, ray: ShearedRay) -> (Vec3, RayCounts) {
-        let mut counts = RayCounts { camera: 1, ..RayCounts::default() };
+    pub fn colour(&self, search: &dyn Search, ray: ShearedRay, witness: &mut impl RayWitness) -> Vec3 {
         let mut colour = [0.0; 3];
-        let mut open = vec![PendingRay { ray, weight: 1.0, level: 0, is_inside: false }];
+        let place = TreePlace { kind: RayKind::Camera, level: 0, weight: 1.0 };
+        let mut open = vec![PendingRay { ray, place, is_inside: false }];
         while let Some(branch) = open.pop() {
+            witness.ray(branch.place, &branch.ray);
             let Some(hit) = search.nearest(&branch.ray) else {
-                colour = add(colour, scale(self.background, branch.weight));
+                witness.seen(self.background);
+                colour = add(colour, scale(self.background, branch.place.weight));
                 continue;
             };
             let triangle = search.triangle(hit.index);
             let material = &self.materials[self.triangles[hit.index as usize].material as usize];
             let point = triangle.point(&branch.ray);
             let normal = facing(&triangle, branch.ray.direction);
-            let local = self.local(search, material, point, normal, &mut counts);
-            colour = add(colour, scale(local, branch.weight));
-            if branch.level < self.bounces {
-                self.branches(&branch, material, point, normal, &mut open, &mut counts);
+            witness.hit(&hit, &triangle, &branch.ray, normal);
+            let local = self.local(search, material, point, normal, witness);
+            witness.seen(local);
+            colour = add(colour, scale(local, branch.place.weight));
+            if branch.place.level < self.bounces {
+                self.branches(&branch, material, point, normal, &mut open);
             }
         }
-        (colour, counts)
+        colour
     }
 
     /// Light that a surface sends out by itself: colour (ambient + kd sum max(0, N.L) light), over the lights that nothing hides.
@@ -80,20 +81,23 @@ impl<'a> World<'a> {
         material: &Material,
         point: Vec3,
         normal: Vec3,
-        counts: &mut RayCounts,
+        witness: &mut impl RayWitness,
     ) -> Vec3 {
         let mut intensity = [self.ambient; 3];
         let origin = add(point, scale(normal, OFFSET));
-        for light in &self.lights {
+        for (number, light) in self.lights.iter().enumerate() {
             let Some(towards) = unit(sub(light.position, point)) else { continue };
             let cosine = dot(normal, towards);
             if cosine <= 0.0 {
                 continue;
             }
-            counts.shadow += 1;
+            witness.light(number, cosine);
             let way = sub(light.position, origin);
             let Some(direction) = unit(way) else { continue };
-            if !search.is_blocked(&ShearedRay::new(origin, direction), dot(way, direction)) {
+            let (ray, end) = (ShearedRay::new(origin, direction), dot(way, direction));
+            let is_blocked = search.is_blocked(&ray, end);
+            witness.shadow(search, &ray, end, is_blocked);
+            if !is_blocked {
                 intensity = add(intensity, scale(light.colour, material.intensity * cosine));
             }
         }
@@ -108,28 +112,29 @@ impl<'a> World<'a> {
         point: Vec3,
         normal: Vec3,
         open: &mut Vec<PendingRay<'_>>,
-        counts: &mut RayCounts,
     ) {
         let direction = branch.ray.direction;
         let mut reflection = material.reflection;
-        let mut child = |direction: Vec3, side: f64, weight: f64, is_inside: bool| {
+        let mut child = |kind: RayKind, direction: Vec3, weight: f64| {
             // Weights underflow to 0 on very deep paths only, which then bring nothing.
-            if let Some(direction) = unit(direction).filter(|_| branch.weight * weight > 0.0) {
-                let ray = ShearedRay::new(add(point, scale(normal, side * OFFSET)), direction);
-                open.push(PendingRay { ray, weight: branch.weight * weight, level: branch.level + 1, is_inside });
-                return 1;
+            let weight = branch.place.weight * weight;
+            if let Some(direction) = unit(direction).filter(|_| weight > 0.0) {
+                let passes = kind == RayKind::Refracted;
+                let side = if passes { -OFFSET } else { OFFSET };
+                let ray = ShearedRay::new(add(point, scale(normal, side)), direction);
+                let place = TreePlace { kind, level: branch.place.level + 1, weight };
+                open.push(PendingRay { ray, place, is_inside: branch.is_inside != passes });
             }
-            0
         };
         if material.transmission() > 0.0 {
             let eta = if branch.is_inside { material.index } else { 1.0 / material.index };
             match refracted(direction, normal, eta) {
-                Some(onwards) => counts.refracted += child(onwards, -1.0, material.transmission(), !branch.is_inside),
+                Some(onwards) => child(RayKind::Refracted, onwards, material.transmission()),
                 None => reflection += material.transmission(),
             }
         }
         if reflection > 0.0 {
-            counts.reflected += child(reflected(direction, normal), 1.0, reflection, branch.is_inside);
+            child(RayKind::Reflected, reflected(direction, normal), reflection);
         }
     }
 }

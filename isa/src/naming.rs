@@ -74,10 +74,15 @@ fn innermost<T>(said: &[T], pc: u32, of: impl Fn(&T) -> (RegisterId, &Range<u32>
 
 impl crate::Program {
     /// Format and fraction bits of what a register holds before the word at `pc` is executed; `None` where nothing is said.
-    pub fn format_of(&self, register: RegisterId, pc: u32) -> Option<(&str, u32)> {
+    pub fn format_of(&self, register: RegisterId, pc: u32) -> Option<(&str, i32)> {
         let held = innermost(&self.holds, pc, |held| (held.register, &held.words), register)?;
-        let (name, bits) = self.formats.get_key_value(held.format.as_deref()?)?;
-        Some((name, *bits))
+        self.format(held.format.as_deref()?)
+    }
+
+    /// A format by its name, with the fraction bits of its real values.
+    pub fn format(&self, name: &str) -> Option<(&str, i32)> {
+        let (name, bits) = self.formats.get_key_value(name)?;
+        Some((name, self.shown_formats.get(name).copied().unwrap_or(*bits as i32)))
     }
 
     /// Name of a register at a word: of several the one that was given last.
@@ -120,6 +125,8 @@ mod tests {
         assert_eq!([at(0), at(3)], [Some(("dir", 30)); 2]);
         assert_eq!([at(4), at(5), at(6), at(8), at(9)], [Some(("pos", 16)), Some(("pos", 16)), None, None, None]);
         assert_eq!(program.format_of(('s', 3), 0), None);
+        let moved = Program { shown_formats: [("pos".to_owned(), -270)].into(), ..program };
+        assert_eq!((moved.format_of(('s', 2), 4), moved.format("dir")), (Some(("pos", -270)), Some(("dir", 30))));
         assert_eq!(registers().count(), 72);
     }
 

@@ -49,6 +49,9 @@ pub struct Program {
     pub region_of: Vec<Option<u16>>,
     /// Number formats by name, with their fraction bits (0 to 63).
     pub formats: BTreeMap<String, u32>,
+    /// Fraction bits of formats of which [`Program::formats`] has others, because assembly text cannot write them: positions of a scene that is
+    /// 2^300 long have -270. Nothing but what people are shown goes by them, and object files do not have them.
+    pub shown_formats: BTreeMap<String, i32>,
     /// Other names of registers, with the words where they are known.
     pub register_names: Vec<NamedRegister>,
     /// Formats of what registers hold, with the words where that is said.

@@ -1,5 +1,6 @@
 //! Puts a program together: the prelude of the scene, the names of registers, one file a function; and assembles it.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use isa::{Isa, Program};
@@ -142,13 +143,20 @@ pub fn build(
     let crop = options.crop.unwrap_or(Crop { column: 0, row: 0, width: image.size.0, height: image.size.1 });
     let mut warnings = Report::default();
     let mut program = |is_main: bool| -> Result<Program, Report> {
-        let assembled = assemble(image, &features, &crop, isa, options, is_main)?;
+        let mut assembled = assemble(image, &features, &crop, isa, options, is_main)?;
         warnings.0.extend(assembled.warnings.0);
+        assembled.program.shown_formats = shown_formats(&image.formats);
         Ok(assembled.program)
     };
     // Each is assembled by itself, so functions that both contain have addresses of their own in each.
     let (cores, main) = (program(false)?, program(true)?);
     Ok(Build { cores, main, crop, warnings })
+}
+
+/// Formats of which the prelude writes others.
+fn shown_formats(formats: &Formats) -> BTreeMap<String, i32> {
+    let both = formats.entries().into_iter().zip(prelude::written_formats(formats).entries());
+    both.filter(|(own, written)| own != written).map(|((name, bits), _)| (name.to_owned(), bits)).collect()
 }
 
 /// A file says, in a line `; team: ray`, that it keeps to what the files of that profile agree on between them.

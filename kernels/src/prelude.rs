@@ -102,7 +102,7 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
 
 /// The formats as the assembler can write them: kernels use those of positions and distances only as a difference, so where the scene is very
 /// large or small (a position of 2^300 has -270 fraction bits) both are moved into the assembler's range.
-fn written_formats(formats: &Formats) -> Formats {
+pub(crate) fn written_formats(formats: &Formats) -> Formats {
     let finer = formats.t - formats.position;
     let least = (-finer).max(0);
     let most = MOST_FRACTION_BITS.min(MOST_FRACTION_BITS - finer);

@@ -104,8 +104,8 @@ pub struct ShownRegister {
     pub hexadecimal: String,
     /// Name of the number's format, or its fraction bits; `None` where no format is known.
     pub format: Option<String>,
-    /// Fraction bits of the format.
-    pub fraction_bits: Option<u32>,
+    /// Fraction bits of the format; fewer than 0 where a unit of the raw number is more than one.
+    pub fraction_bits: Option<i32>,
     /// Real value in the format: the shortest decimal that is nearest to the raw number and no other.
     pub real: Option<RealContents>,
 }
@@ -116,7 +116,7 @@ impl ShownRegister {
         register: RegisterId,
         raw: RegisterContents,
         name: Option<&str>,
-        format: Option<(&str, u32)>,
+        format: Option<(&str, i32)>,
     ) -> ShownRegister {
         let is_wide = register.0 == 'w';
         let digits = |number: i64| if is_wide { format!("{number:#018x}") } else { format!("{:#010x}", number as i32) };
@@ -211,7 +211,7 @@ mod tests {
     fn everything_that_is_printed_is_accepted_back() {
         let program = Program { formats: [("pos".to_owned(), 16)].into(), ..Program::default() };
         let registers = (0usize..72).prop_map(|at| registers().nth(at).unwrap());
-        let bits = (0u32..64).prop_map(|bits| Some((bits.to_string(), bits)));
+        let bits = (0i32..64).prop_map(|bits| Some((bits.to_string(), bits)));
         let formats = prop_oneof![Just(None), Just(Some(("pos".to_owned(), 16))), bits];
         check(2000, &(registers, any::<[i64; 3]>(), formats), |(register, numbers, format)| {
             let small = numbers.map(|number| number as i32);

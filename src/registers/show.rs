@@ -47,12 +47,12 @@ impl FromStr for ShowRequest {
 ///
 /// # Errors
 /// Another name, with one that is near, and more than 63 bits.
-pub fn format_of<'a>(program: &'a Program, name: &'a str) -> Result<(&'a str, u32), String> {
-    if let Some((name, bits)) = program.formats.get_key_value(name) {
-        return Ok((name, *bits));
+pub fn format_of<'a>(program: &'a Program, name: &'a str) -> Result<(&'a str, i32), String> {
+    if let Some(format) = program.format(name) {
+        return Ok(format);
     }
     if name.starts_with(|c: char| c.is_ascii_digit()) {
-        let bits = name.parse().ok().filter(|bits| *bits <= 63);
+        let bits = name.parse().ok().filter(|bits| (0..=63).contains(bits));
         return bits.map(|bits| (name, bits)).ok_or_else(|| format!("a format has 0 to 63 fraction bits, not {name}"));
     }
     let known = || program.formats.keys().map(String::as_str);

@@ -30,6 +30,8 @@ pub mod machine;
 pub mod manual;
 pub mod message;
 pub mod numeral;
+#[cfg(feature = "cli")]
+pub mod pixel;
 pub mod profiles;
 #[cfg(feature = "cli")]
 pub mod registers;

@@ -63,7 +63,7 @@ fn run_commands(name: &str) -> usize {
 
 #[test]
 fn the_commands_of_the_readme_run() {
-    assert_eq!(run_commands("README.md"), 10);
+    assert_eq!(run_commands("README.md"), 11);
 }
 
 #[test]

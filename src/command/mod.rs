@@ -15,6 +15,7 @@ mod diff;
 mod disassemble;
 mod expectation;
 mod explain;
+mod explain_pixel;
 mod extension;
 pub mod invocation;
 mod machine;
@@ -88,6 +89,7 @@ enum Command {
     Advise(Box<advise::AdviseArguments>),
     Trace(Box<trace::TraceArguments>),
     Debug(Box<debug::DebugArguments>),
+    ExplainPixel(Box<explain_pixel::ExplainPixelArguments>),
     Accuracy(accuracy::AccuracyArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
@@ -181,6 +183,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Advise(arguments)) => advise::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),
         Some(Command::Debug(arguments)) => debug::execute(arguments, terminal),
+        Some(Command::ExplainPixel(arguments)) => explain_pixel::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
         Some(Command::Diff(arguments)) => diff::execute(arguments, terminal),

@@ -28,6 +28,7 @@ use crate::difference::{self, DiffResult};
 use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
 use crate::message::{self, JsonMessage};
+use crate::pixel::{self, PixelExplanation};
 use crate::profiles::{self, Profiles};
 use crate::result::{self, Render, WithSettings};
 use crate::settings::Settings;
@@ -102,6 +103,7 @@ const SCHEMAS: &[Known] = &[
         make: printed::<WrittenScene, CommandSettings>,
     },
     Known { name: trace::SCHEMA, command: "lancer trace --json", make: printed::<TraceResult, Settings> },
+    Known { name: pixel::SCHEMA, command: "lancer explain-pixel --json", make: printed::<PixelExplanation, Settings> },
     Known { name: difference::SCHEMA, command: "lancer diff --json", make: schema_of::<DiffResult> },
     Known { name: message::SCHEMA, command: "--message-format json, a line each", make: schema_of::<JsonMessage> },
 ];

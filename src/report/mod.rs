@@ -1,7 +1,7 @@
 //! One page of a run: everything that is known of a drawing, as a single HTML file that needs nothing else. What is on the page is gathered
 //! here; how it looks and moves is in `page.html`.
 
-mod base64;
+pub(crate) mod base64;
 mod data;
 
 use serde::Serialize;
@@ -32,7 +32,7 @@ pub fn page(
 }
 
 /// Data as JSON that cannot end the element of HTML in which it stands.
-fn embedded(data: &impl Serialize) -> String {
+pub(crate) fn embedded(data: &impl Serialize) -> String {
     let text = serde_json::to_string(data).expect("figures and texts are JSON");
     text.replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }

@@ -14,10 +14,10 @@ use serde_json::{Value, json};
 use super::session::Session;
 
 /// The pixel of a small Cornell box that most of these tests look at.
-const PIXEL: &str = "cornell --size 12x9 --shift 0.137,0.071 --pixel 5,4";
+pub const PIXEL: &str = "cornell --size 12x9 --shift 0.137,0.071 --pixel 5,4";
 
 /// That pixel for the library.
-fn pixel() -> DebugTarget {
+pub fn pixel() -> DebugTarget {
     let scene = lancer::scene("cornell", None, Some((12, 9))).unwrap().scene;
     let mut job = Job::new(scene);
     job.view.shift = [0.137, 0.071];

@@ -48,6 +48,8 @@ const RESULTS: &[(&str, &str)] = &[
     ("scene generate triangle", "lancer-written-scene-1"),
     ("scene convert triangle t.obj --dsc", "lancer-written-scene-1"),
     ("trace triangle --size 4x4 --clocks 0..100", "lancer-trace-1"),
+    ("explain-pixel slabs 2,1 --size 4x3", "lancer-pixel-1"),
+    ("explain-pixel empty 2,1 --size 4x3 --profile report", "lancer-pixel-1"),
     ("diff m.toml m.toml", "lancer-diff-1"),
 ];
 

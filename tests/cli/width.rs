@@ -102,6 +102,7 @@ fn no_line_of_tables_is_wider_than_the_terminal() {
             "annex triangle --size 4x3",
             "annex --errata",
             "trace triangle --size 4x3 --pixel 1,1",
+            "explain-pixel cornell 4,3 --size 8x6",
             "stress --list",
             "explain",
             "explain E003",

@@ -38,6 +38,11 @@ impl Message {
         self.vectors[0]
     }
 
+    /// Vectors of the message.
+    pub fn vectors(&self) -> &[Vector] {
+        &self.vectors[..usize::from(self.length)]
+    }
+
     /// The `N` vectors that a receiver takes.
     fn open<const N: usize>(self) -> Result<[Vector; N], Fault> {
         if usize::from(self.length) != N {

@@ -23,7 +23,7 @@ Examples:
   lancer explain-pixel mirrors 80,60 --size 160x120 --profile ray --word 20
   lancer explain-pixel cornell 160,120 --json > pixel.json
   lancer explain-pixel cornell 160,120 --html pixel.html     # replays the pixel in a browser
-  lancer explain-pixel slabs 160,120 --profile report --html pixel.html --steps 400000..800000";
+  lancer explain-pixel slabs 180,140 --bounces 12 --html pixel.html --steps 400000..800000";
 
 /// Explains a pixel: its rays as a tree, what they meet, and how its colour comes about, beside double precision.
 ///

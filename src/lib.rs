@@ -22,6 +22,7 @@ pub mod energy;
 pub mod extension;
 pub mod failure;
 pub mod files;
+pub mod formats;
 pub mod input;
 pub mod job;
 pub mod load;

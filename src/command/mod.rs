@@ -17,6 +17,7 @@ mod expectation;
 mod explain;
 mod explain_pixel;
 mod extension;
+mod formats;
 pub mod invocation;
 mod machine;
 mod manual;
@@ -91,6 +92,7 @@ enum Command {
     Debug(Box<debug::DebugArguments>),
     ExplainPixel(Box<explain_pixel::ExplainPixelArguments>),
     Accuracy(accuracy::AccuracyArguments),
+    Formats(formats::FormatsArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
     Diff(diff::DiffArguments),
@@ -185,6 +187,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Debug(arguments)) => debug::execute(arguments, terminal),
         Some(Command::ExplainPixel(arguments)) => explain_pixel::execute(arguments, terminal),
         Some(Command::Accuracy(arguments)) => accuracy::execute(arguments, given, terminal),
+        Some(Command::Formats(arguments)) => formats::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
         Some(Command::Diff(arguments)) => diff::execute(arguments, terminal),
         Some(Command::Stress(arguments)) => stress::execute(arguments, given, terminal),

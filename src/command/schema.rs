@@ -27,6 +27,7 @@ use crate::cores::{self, CoresResult};
 use crate::difference::{self, DiffResult};
 use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
+use crate::formats::{self, FormatsResult};
 use crate::message::{self, JsonMessage};
 use crate::pixel::{self, PixelExplanation};
 use crate::profiles::{self, Profiles};
@@ -74,6 +75,7 @@ const SCHEMAS: &[Known] = &[
         command: "lancer accuracy --json",
         make: printed::<AccuracyResults, CommandSettings>,
     },
+    Known { name: formats::SCHEMA, command: "lancer formats --json", make: printed::<FormatsResult, CommandSettings> },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: printed::<Catalogue, CommandSettings> },
     Known {
         name: extension::SCHEMA,

@@ -40,7 +40,7 @@ pub struct Settings {
     pub effort: EffortSettings,
     /// The kd tree.
     pub tree: TreeSettings,
-    /// Structures of global memory: report or wide.
+    /// Structures of global memory: report, wide, packet or packed; null for those of the kernels.
     #[serde(with = "named::option")]
     #[schemars(with = "Option<String>")]
     pub layout: Option<Layout>,

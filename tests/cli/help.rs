@@ -1,10 +1,14 @@
-//! Help texts, messages and the examples of `docs/machine.md` and `docs/pixel.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test -p lancer help` renews them.
+//! Help texts, messages and the examples of `docs/machine.md`, `docs/pixel.md` and `docs/bits.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test -p lancer help` renews them.
 
 use super::session::Session;
 
 #[test]
 fn help_and_messages_say_what_they_said() {
-    trycmd::TestCases::new().case("tests/cmd/*.trycmd").case("docs/machine.md").case("docs/pixel.md");
+    trycmd::TestCases::new()
+        .case("tests/cmd/*.trycmd")
+        .case("docs/machine.md")
+        .case("docs/pixel.md")
+        .case("docs/bits.md");
 }
 
 /// A command and all commands below it, from what their help lists.

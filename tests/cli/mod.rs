@@ -12,6 +12,7 @@ mod debug;
 mod demo;
 mod extensions;
 mod files;
+mod formats;
 mod help;
 mod messages;
 mod numbers;

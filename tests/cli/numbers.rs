@@ -109,6 +109,27 @@ fn variants_are_measured_and_the_front_is_marked() {
     assert_eq!(session.run("accuracy no_such_scene").code, 1);
 }
 
+/// The front of word lengths, as docs/accuracy.md has its chart and its command line.
+#[test]
+fn word_length_buys_what_the_documents_say() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let document = std::fs::read_to_string(folder.join("accuracy.md")).unwrap();
+    let line = document.lines().find(|line| line.ends_with("--svg words.svg")).expect("the command line");
+    let session = Session::new();
+    let measured = session.json(line.trim().strip_prefix("lancer ").expect("it begins with the program"));
+    if std::env::var_os("LANCER_BLESS").is_some() {
+        std::fs::write(folder.join("words.svg"), session.read("words.svg")).unwrap();
+    }
+    let written = std::fs::read(folder.join("words.svg")).unwrap();
+    assert!(session.read("words.svg") == written, "docs/words.svg is stale: LANCER_BLESS=1 writes it");
+    let variants = measured["variants"].as_array().unwrap();
+    let of = |layout: &'static str| variants.iter().filter(move |one| one["layout"] == layout);
+    assert!(of("wide").all(|one| one["is_on_front"] == false));
+    assert!(of("packed").filter(|one| one["is_on_front"] == true).count() >= 5, "the front bends");
+    let clocks = |word: u64| of("packed").find(|one| one["word"] == word).unwrap()["clocks"].as_f64().unwrap();
+    assert!(clocks(16) < 0.6 * clocks(32));
+}
+
 /// Renewed by `lancer accuracy cornell --size 32x24 --svg docs/accuracy.svg`.
 #[test]
 fn the_documents_chart_and_sentence_are_what_is_measured() {

@@ -28,6 +28,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("scene info cornell", "lancer-scene-1"),
     ("scene info empty", "lancer-scene-1"),
     ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
+    ("formats triangle --size 4x3 --shifts 1 --check triangle", "lancer-formats-1"),
     ("stress --case normalising", "lancer-stress-1"),
     (
         concat!(

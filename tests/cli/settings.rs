@@ -77,7 +77,9 @@ const SAMPLES: [(&str, &str); 31] = [
 ];
 
 /// Options whose defaults differ between commands on purpose, each with the reason.
-const OWN_DEFAULTS: [(&str, &str); 4] = [
+const OWN_DEFAULTS: [(&str, &str); 6] = [
+    ("profile", "`lancer formats` draws hundreds of pictures, with the quickest of the exact sets"),
+    ("layout", "`lancer formats` asks what bits cost, which only `packed` makes them"),
     ("size", "measurements of dozens of pictures draw small ones"),
     ("cores", "`lancer cores` varies them"),
     ("profiles", "`lancer bench` times the fastest set, `lancer accuracy` compares all"),
@@ -167,6 +169,7 @@ fn a_result_given_back_is_printed_again() {
         ("annex triangle --size 8x6".to_owned(), "annex"),
         ("scene info cornell --word 20 --format dir=12".to_owned(), "scene info"),
         ("accuracy triangle --size 4x4 --words 20-22 --profiles ray --roundings RND --layouts wide --bounces 1 --cutoffs 0 --interpolate none".to_owned(), "accuracy"),
+        ("formats triangle --size 4x3 --shifts 1 --guard 0 --largest 1/255 --check triangle".to_owned(), "formats"),
         ("stress --case sqrt".to_owned(), "stress"),
     ] {
         if line.starts_with("stress") && !session.succeed("stress --list").contains("sqrt") {

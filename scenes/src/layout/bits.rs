@@ -17,6 +17,11 @@ pub const fn unsigned_bits(largest: u64) -> u32 {
 /// # Panics
 /// When the octets end before.
 pub fn put_bits(octets: &mut [u8], at: usize, bits: u32, value: i64) {
+    if at.is_multiple_of(8) && bits.is_multiple_of(8) {
+        let length = bits as usize / 8;
+        octets[at / 8..][..length].copy_from_slice(&value.to_le_bytes()[..length]);
+        return;
+    }
     // 12 bits from bit 20 on are the upper 4 of the third octet, and the fourth one: 0xabc becomes c0 and ab.
     let (mut at, mut left, mut value) = (at, bits, value as u64);
     while left > 0 {

@@ -1,0 +1,238 @@
+//! The search for the fewest bits: of each quantity in turn, in the order of what a bit costs, then of the word.
+
+use super::choice::{DemandedError, FormatChoice, integer_bits};
+use super::trial::FormatTrials;
+use crate::failure::Failure;
+
+/// Least and most bits of a word.
+pub const WORDS: (u32, u32) = (8, 32);
+
+/// Numbers of the quantities in the order of what their bits cost, as [`FormatChoice::bits`] has them: positions fill memory and so the bus;
+/// distances follow them; the others cost bits of registers.
+pub const ORDER: [usize; 6] = [0, 3, 1, 4, 5, 2];
+
+/// Longer formats that have to keep the demand beside one that does. A picture may be lucky: rays pass edges by less than the format tells apart, and
+/// with one bit more a pixel flips.
+const RUN: i32 = 3;
+
+/// Bits of a quantity on the way to its fewest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QuantitySearch {
+    /// Bits before the point and the sign, of the scene that needs most.
+    pub integer: i32,
+    /// Fraction bits of the word that the search starts from.
+    pub start: i32,
+    /// First estimate of the fraction bits, from the demand alone.
+    pub estimate: i32,
+    /// Fewest fraction bits that keep the demand, and the guard, beside the quantities before it and the others at their start.
+    pub fewest: i32,
+}
+
+/// Outcome of a search.
+#[derive(Clone, Debug)]
+pub struct FormatSearch {
+    /// Quantities, in the order of [`FormatChoice::bits`].
+    pub quantities: [QuantitySearch; 6],
+    /// The choice with the fewest bits.
+    pub found: FormatChoice,
+}
+
+/// The shortest word in which the scenes choose their formats and keep the demand, and the guard; `None` where the longest does not.
+///
+/// # Errors
+/// See [`FormatTrials::keeps`].
+pub fn uniform_word(trials: &mut FormatTrials, guess: u32, guard: i32) -> Result<Option<u32>, Failure> {
+    let (least, most) = WORDS;
+    let mut keeps = |word: i32| trials.keeps(FormatChoice::uniform(word as u32));
+    let word = safest(least as i32, most as i32, guess as i32, &mut keeps)?;
+    Ok(word.map(|word| (word + guard).min(most as i32) as u32))
+}
+
+/// The fewest bits of everything, starting from the longest word; `None` where that does not keep the demand. `guard` bits are added to what keeps it.
+///
+/// # Errors
+/// See [`FormatTrials::keeps`].
+pub fn search(
+    trials: &mut FormatTrials,
+    demand: DemandedError,
+    guard: i32,
+    progress: &mut dyn FnMut(&FormatTrials),
+) -> Result<Option<FormatSearch>, Failure> {
+    let longest = FormatChoice::uniform(WORDS.1);
+    let formats = trials.formats(&longest);
+    if formats.is_empty() || !trials.keeps(longest)? {
+        return Ok(None);
+    }
+    // Ranges: what stands before the point, of the scene that needs most; a format is one for all scenes, so it has the fraction bits of the
+    // scene that has fewest.
+    let quantity = |at: usize| {
+        let integer = formats.iter().map(|one| integer_bits(one, at)).max().unwrap_or(2);
+        let start = formats.iter().map(|one| one.entries()[at].1).min().unwrap_or(0);
+        let estimate = estimate(at, start, integer, demand);
+        QuantitySearch { integer, start, estimate, fewest: start }
+    };
+    let mut quantities = std::array::from_fn(quantity);
+    let mut choice = FormatChoice { word: WORDS.1, bits: std::array::from_fn(|at| Some(quantities[at].start)) };
+    // One quantity after the other, from its estimate on.
+    for at in ORDER {
+        let QuantitySearch { start, estimate, integer, .. } = quantities[at];
+        let least = if at == 0 || at == 3 { start - WORDS.1 as i32 + integer.max(2) } else { 0 };
+        let mut keeps = |bits: i32| {
+            let kept = trials.keeps(choice.with(at, bits));
+            progress(trials);
+            kept
+        };
+        if let Some(found) = safest(least, start, estimate, &mut keeps)? {
+            // What no picture depends on needs no guard.
+            let found = if found == least { found } else { (found + guard).min(start) };
+            quantities[at].fewest = found;
+            choice = choice.with(at, found);
+        }
+    }
+    // The word: as wide as the widest quantity, or wider where intermediates ask for it.
+    let widest = (0..6).map(|at| quantities[at].integer + quantities[at].fewest).max().unwrap_or(8);
+    let widest = widest.clamp(WORDS.0 as i32, WORDS.1 as i32);
+    let mut keeps = |word: i32| {
+        let kept = trials.keeps(FormatChoice { word: word as u32, ..choice });
+        progress(trials);
+        kept
+    };
+    if let Some(word) = safest(WORDS.0 as i32, WORDS.1 as i32, widest, &mut keeps)? {
+        choice.word = word as u32;
+    }
+    Ok(Some(FormatSearch { quantities, found: choice }))
+}
+
+/// Fraction bits with which the rounding of one quantity alone comes to about the demanded error.
+///
+/// A unit in the last place of 2^-f, rounded to nearest, has a root mean square of 2^-f / sqrt 12. Colours and weights reach the picture
+/// nearly as they are. Directions are multiplied by a few normals and ways; half a dozen roundings add two bits. Positions and distances move
+/// what is seen: a step moves an edge by a share of a pixel, which flips pixels of that share of all edges, so that the square of the error, and
+/// not the error, goes with the step.
+fn estimate(quantity: usize, start: i32, integer: i32, demand: DemandedError) -> i32 {
+    let bits = -(demand.rmse() * 12f64.sqrt()).log2();
+    let bits = match quantity {
+        0 | 3 => {
+            // Relative to the range that the quantity fills.
+            let range = start + integer - WORDS.1 as i32;
+            return ((2.0 * bits) as i32 + range).clamp(start - WORDS.1 as i32 + 2, start);
+        }
+        1 => bits + 2.0,
+        2 => 0.0,
+        _ => bits,
+    };
+    (bits.ceil() as i32).clamp(0, start)
+}
+
+/// The least number from `least` to `most` that keeps something together with the [`RUN`] numbers above it; `None` where there is none.
+///
+/// Of numbers of which 11, 12 and 14 to 20 keep, but 13 does not, 11 is a lucky one, and 14 is the answer.
+fn safest(
+    mut least: i32,
+    most: i32,
+    mut guess: i32,
+    keeps: &mut dyn FnMut(i32) -> Result<bool, Failure>,
+) -> Result<Option<i32>, Failure> {
+    loop {
+        let Some(found) = fewest(least, most, guess, keeps)? else { return Ok(None) };
+        let mut broken = None;
+        for above in found + 1..=(found + RUN).min(most) {
+            if !keeps(above)? {
+                broken = Some(above);
+                break;
+            }
+        }
+        match broken {
+            None => return Ok(Some(found)),
+            Some(broken) if broken == most => return Ok(None),
+            Some(broken) => (least, guess) = (broken + 1, broken + 1),
+        }
+    }
+}
+
+/// The least number from `least` to `most` that keeps something, if those above it do, too; `None` where `most` does not.
+///
+/// Steps away from the guess get longer until both sides are known: of a guess of 12 that keeps, 11, 9 and 5 are tried until one does not, then
+/// the numbers between are halved.
+fn fewest(
+    least: i32,
+    most: i32,
+    guess: i32,
+    keeps: &mut dyn FnMut(i32) -> Result<bool, Failure>,
+) -> Result<Option<i32>, Failure> {
+    // `bad` does not keep, `good` does.
+    let (mut bad, mut good) = (least - 1, most + 1);
+    let mut at = guess.clamp(least, most);
+    let mut step = 1;
+    let first = keeps(at)?;
+    if first {
+        good = at
+    } else {
+        bad = at
+    }
+    while bad < least && first || good > most && !first {
+        let next = if first { (at - step).max(least) } else { (at + step).min(most) };
+        if next == at {
+            break;
+        }
+        at = next;
+        step *= 2;
+        if keeps(at)? {
+            good = at
+        } else {
+            bad = at
+        }
+        if first && bad >= least || !first && good <= most {
+            break;
+        }
+    }
+    if good > most {
+        return Ok(None);
+    }
+    while good - bad > 1 && bad >= least {
+        let middle = bad + (good - bad) / 2;
+        if keeps(middle)? { good = middle } else { bad = middle }
+    }
+    Ok(Some(good))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fewest_are_found_from_any_guess() {
+        for answer in 3..=20 {
+            for guess in -2..=25 {
+                let mut tried = Vec::new();
+                let mut keeps = |bits: i32| {
+                    tried.push(bits);
+                    Ok(bits >= answer)
+                };
+                let found = fewest(3, 20, guess, &mut keeps).unwrap();
+                assert_eq!(found, Some(answer), "from {guess}: {tried:?}");
+                assert!(tried.len() <= 10 && tried.iter().all(|bits| (3..=20).contains(bits)), "{guess}: {tried:?}");
+            }
+        }
+        assert_eq!(fewest(3, 20, 9, &mut |_| Ok(false)).unwrap(), None);
+    }
+
+    #[test]
+    fn a_lucky_number_is_none() {
+        let mut keeps = |bits: i32| Ok(![13, 10].contains(&bits) && bits > 8);
+        assert_eq!(safest(3, 20, 11, &mut keeps).unwrap(), Some(14));
+        assert_eq!(safest(3, 20, 9, &mut keeps).unwrap(), Some(14));
+        assert_eq!(safest(3, 20, 20, &mut |bits| Ok(bits != 20)).unwrap(), None);
+        assert_eq!(safest(3, 20, 5, &mut |bits| Ok(bits >= 19)).unwrap(), Some(19));
+    }
+
+    #[test]
+    fn a_tighter_demand_takes_more_bits() {
+        for quantity in [0, 1, 3, 4, 5] {
+            let bits = [40.0, 60.0, 80.0].map(|psnr| estimate(quantity, 27, 5, DemandedError::Psnr(psnr)));
+            assert!(bits.windows(2).all(|pair| pair[0] < pair[1]), "{quantity}: {bits:?}");
+        }
+        // 60 dB are 0.001: steps of 2^-8.2 have that error.
+        assert_eq!(estimate(5, 29, 3, DemandedError::Psnr(60.0)), 9);
+    }
+}

@@ -51,10 +51,10 @@ pub struct Job {
     pub view: View,
     /// Structures of global memory; `None` for those that the set of kernels is made for.
     pub layout: Option<Layout>,
-    /// Levels of the kd tree below its root.
-    pub kd_depth: Depth,
-    /// Which triangles a node of the kd tree holds.
-    pub kd_method: BuildMethod,
+    /// Levels of the kd tree below its root; `None` for those of the set of kernels.
+    pub kd_depth: Option<Depth>,
+    /// Way to build the kd tree; `None` for that of the set of kernels.
+    pub kd_method: Option<BuildMethod>,
     /// Fraction bits that the scene does not choose.
     pub formats: Overrides,
     /// The instructions that there are.
@@ -85,15 +85,14 @@ impl Job {
     /// A scene with the defaults of everything else.
     pub fn new(scene: Scene) -> Job {
         let view = View::new(scene.size);
-        let MemoryOptions { kd_depth, kd_method, formats, .. } = MemoryOptions::default();
         Job {
             source: SceneSource { name: scene.name.clone(), mesh: None },
             scene,
             view,
             layout: None,
-            kd_depth,
-            kd_method,
-            formats,
+            kd_depth: None,
+            kd_method: None,
+            formats: Overrides::default(),
             isa: Isa::base(),
             extensions: Vec::new(),
             kernels: KernelOptions::default(),
@@ -113,8 +112,8 @@ impl Job {
         MemoryOptions {
             word: self.machine.arithmetic.word,
             layout: self.layout(),
-            kd_depth: self.kd_depth,
-            kd_method: self.kd_method,
+            kd_depth: self.kd_depth(),
+            kd_method: self.kd_method(),
             formats: self.formats,
         }
     }
@@ -122,6 +121,16 @@ impl Job {
     /// Structures of global memory.
     pub fn layout(&self) -> Layout {
         self.layout.unwrap_or(self.kernels.profile.layout())
+    }
+
+    /// Levels of the kd tree below its root.
+    pub fn kd_depth(&self) -> Depth {
+        self.kd_depth.unwrap_or(self.kernels.profile.kd_depth())
+    }
+
+    /// Way to build the kd tree.
+    pub fn kd_method(&self) -> BuildMethod {
+        self.kd_method.unwrap_or(self.kernels.profile.kd_method())
     }
 
     /// The part of the picture that is drawn: all of it unless the user chose one.

@@ -12,6 +12,7 @@ use crate::drawing::{self, Comparison, Drawing};
 use crate::failure::Failure;
 use crate::job::{Detail, Job, result_name};
 use crate::result::{ByClass, FormatTable, image_hash};
+use crate::settings::TreeSettings;
 
 /// Version of [`Profiles`].
 pub const SCHEMA: &str = "lancer-profiles-1";
@@ -95,6 +96,7 @@ pub struct Ratio {
 pub fn measure(
     scenes: &[Scene],
     size: (u32, u32),
+    tree: &TreeSettings,
     machine: &(String, Config),
     done: &dyn Fn(),
 ) -> Result<Profiles, Failure> {
@@ -111,6 +113,7 @@ pub fn measure(
         let first = result.pictures.len();
         for &profile in KernelSet::ALL {
             let mut job = job(scene, size, profile);
+            tree.choose(&mut job);
             (job.machine_name, job.machine) = machine.clone();
             result.pictures.push(ProfileResult::new(&job, &drawing::draw(&job, Comparison::Reference, &mut |_| {})?));
             done();

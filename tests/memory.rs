@@ -22,7 +22,7 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     ALLOCATOR.reset_peak_usage();
     let mut job = Job::new(generate::scene("terrain", &options).expect("the terrain has any number of triangles"));
     job.kernels.profile = KernelSet::Ray;
-    job.kd_depth = Depth::Auto;
+    job.kd_depth = Some(Depth::Auto);
     let drawing =
         drawing::draw(&job, Comparison::Reference, &mut |_| {}).unwrap_or_else(|failure| panic!("{failure:?}"));
     let image = drawing.frame.memory.size();

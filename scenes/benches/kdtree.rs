@@ -23,6 +23,7 @@ fn trees(criterion: &mut Criterion) {
             ("16 levels, by box", Depth::Levels(16), BuildMethod::Report),
             ("automatic, by box", Depth::Auto, BuildMethod::Report),
             ("automatic, by part", Depth::Auto, BuildMethod::Exact),
+            ("automatic, by bins", Depth::Auto, BuildMethod::Binned),
         ];
         for (name, depth, method) in ways {
             group.bench_with_input(BenchmarkId::new(name, count), &triangles, |bencher, triangles| {

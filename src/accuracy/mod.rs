@@ -25,6 +25,7 @@ use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
 use crate::result::{ByClass, Render};
+use crate::settings::TreeSettings;
 #[cfg(feature = "cli")]
 pub use chart::{CostAxis, figure};
 pub use front::rank;
@@ -186,6 +187,7 @@ pub fn measure(
     view: &View,
     reference: &Reference,
     variant: &Variant,
+    tree: &TreeSettings,
     has_times: bool,
 ) -> Result<MeasuredVariant, Failure> {
     // Draw the variant.
@@ -195,6 +197,7 @@ pub fn measure(
     job.kernels.weight_cutoff = variant.cutoff;
     job.kernels.interpolate = variant.interpolate;
     job.layout = Some(variant.layout);
+    tree.choose(&mut job);
     job.machine.arithmetic.word = variant.word;
     job.machine.arithmetic.quantization = variant.rounding;
     job.detail = Detail::Totals;

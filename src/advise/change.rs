@@ -93,8 +93,8 @@ impl PictureOption {
         match self {
             PictureOption::Layout(layout) => job.layout = Some(layout),
             PictureOption::Profile(set) => job.kernels.profile = set,
-            PictureOption::KdDepth(depth) => job.kd_depth = depth,
-            PictureOption::KdBuild(method) => job.kd_method = method,
+            PictureOption::KdDepth(depth) => job.kd_depth = Some(depth),
+            PictureOption::KdBuild(method) => job.kd_method = Some(method),
         }
     }
 }
@@ -361,7 +361,7 @@ fn pictures(job: &Job, triangles: usize) -> Vec<Change> {
         found.push(Change::of_option(ChangedPart::Kernels, words, PictureOption::Profile(set)));
     }
     // Depths that come to the same tree are one.
-    let mut tried = vec![job.kd_depth.levels(triangles)];
+    let mut tried = vec![job.kd_depth().levels(triangles)];
     for depth in [Depth::Auto, Depth::Levels(8), Depth::Levels(12), Depth::Levels(16), Depth::Levels(20)] {
         let levels = depth.levels(triangles);
         if tried.contains(&levels) {
@@ -371,7 +371,7 @@ fn pictures(job: &Job, triangles: usize) -> Vec<Change> {
         let words = format!("kd tree of {levels} levels");
         found.push(Change::of_option(ChangedPart::TreeDepth, words, PictureOption::KdDepth(depth)));
     }
-    for method in BuildMethod::ALL.into_iter().filter(|&method| method != job.kd_method) {
+    for method in BuildMethod::ALL.into_iter().filter(|&method| method != job.kd_method()) {
         let words = format!("kd tree built {}", method.name());
         found.push(Change::of_option(ChangedPart::TreeMethod, words, PictureOption::KdBuild(method)));
     }

@@ -10,8 +10,7 @@ use super::{EffortArguments, KernelArguments, MachineArguments, NumberArguments,
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::settings::{
-    EffortSettings, FileSettings, FormatSettings, KernelSettings, ResultSettings, SceneSettings, Settings,
-    TreeSettings, ViewSettings,
+    EffortSettings, FileSettings, FormatSettings, KernelSettings, ResultSettings, SceneSettings, Settings, ViewSettings,
 };
 
 /// The options that decide a picture.
@@ -79,7 +78,7 @@ impl JobArguments {
                 skips: effort.skips(),
                 interpolate: effort.interpolate,
             },
-            tree: TreeSettings { depth: effort.tree.kd_depth, build: effort.tree.kd_build },
+            tree: effort.tree.settings(),
             layout: machine.layout,
             formats: FormatSettings::from(&overrides::collect(&numbers.formats)),
             machine: machine.keys.chosen(&numbers.arithmetic)?,

@@ -4,15 +4,26 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use scenes::kdtree::{BuildMethod, DEEPEST, Depth};
 
+use crate::settings::TreeSettings;
+
 /// Options of the kd tree.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct TreeArguments {
-    /// Levels of the kd tree below its root, 0 to 40; `auto` for 8 + 1.3 log2 of the number of triangles.
-    #[arg(long, value_name = "N", value_parser = depth, default_value = "16")]
-    pub kd_depth: Depth,
-    /// Which triangles a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node.
-    #[arg(long, value_name = "METHOD", value_parser = method(), default_value = BuildMethod::default().name())]
-    pub kd_build: BuildMethod,
+    /// Levels of the kd tree below its root, 0 to 40; `auto` for 8 + 1.3 log2 of the number of triangles [default: auto; 16 with the report's
+    /// kernels, or layout where there are none].
+    #[arg(long, value_name = "N", value_parser = depth)]
+    pub kd_depth: Option<Depth>,
+    /// Which triangles a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node, `binned` as well, with planes
+    /// found sooner and a bound on the references [default: binned; report with the report's kernels, or layout where there are none].
+    #[arg(long, value_name = "METHOD", value_parser = method())]
+    pub kd_build: Option<BuildMethod>,
+}
+
+impl TreeArguments {
+    /// The settings that they stand for.
+    pub fn settings(&self) -> TreeSettings {
+        TreeSettings { depth: self.kd_depth, build: self.kd_build }
+    }
 }
 
 fn depth(text: &str) -> Result<Depth, String> {

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::invocation::{CommandSettings, scene_hashes};
 use crate::accuracy::{self, Choices, CostAxis, MeasuredVariant};
-use crate::arguments::{self, ChartArguments, SettingsArguments, Size};
+use crate::arguments::{self, ChartArguments, SettingsArguments, Size, TreeArguments};
 use crate::failure::{Exit, Failure};
 use crate::numeral::{numbers, short};
 use crate::result::WithSettings;
@@ -68,6 +68,8 @@ pub struct AccuracyArguments {
     /// Differences of a component up to which the corners around a pixel agree, so that it is interpolated, in [0, 1]; or `none`.
     #[arg(long, value_name = "D,..", value_delimiter = ',', value_parser = difference, default_value = "none,0.01")]
     interpolate: Vec<CornerAgreement>,
+    #[command(flatten)]
+    tree: TreeArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Cost that charts set errors against: clocks of the machine, or the host's time, which is then measured.
@@ -181,7 +183,7 @@ pub(super) fn execute(
         let reference = Reference::new(&loaded.scene, &view, SearchMethod::Hierarchy)?;
         let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
         for variant in &variants {
-            match accuracy::measure(&loaded.scene, &view, &reference, variant, has_times) {
+            match accuracy::measure(&loaded.scene, &view, &reference, variant, &arguments.tree.settings(), has_times) {
                 Ok(one) => measured.push(one),
                 // A word that the scene does not fit, or in which a ray is stuck, is a result, not a mistake.
                 Err(Failure::Message { report, exit: Exit::Input | Exit::Trap }) => refused.push(Refused {

@@ -7,7 +7,7 @@ use super::render;
 use crate::annex::result::Annexes;
 use crate::annex::scene::{OnScene, job};
 use crate::annex::text::{self, Style};
-use crate::arguments::{self, SettingsArguments, Size};
+use crate::arguments::{self, SettingsArguments, Size, TreeArguments};
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::result::WithSettings;
@@ -38,6 +38,8 @@ pub struct AnnexArguments {
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
     size: Size,
     #[command(flatten)]
+    tree: TreeArguments,
+    #[command(flatten)]
     settings: SettingsArguments,
     /// Prints everything as JSON.
     #[arg(long, conflicts_with_all = ["csv", "markdown"])]
@@ -65,7 +67,8 @@ pub(super) fn execute(
         let loaded = input::scene(name, None, Some(arguments.size))?;
         terminal.show(&loaded.warnings);
         read.push(loaded.scene.clone());
-        let job = job(loaded.scene, arguments.size);
+        let mut job = job(loaded.scene, arguments.size);
+        arguments.tree.settings().choose(&mut job);
         let drawing = render::draw(&job, Comparison::None, terminal)?;
         scenes.push(OnScene::new(&job, &drawing));
     }

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::diff;
 use super::invocation::{CommandSettings, scene_hashes};
-use crate::arguments::{self, ChartArguments, SettingsArguments, Size};
+use crate::arguments::{self, ChartArguments, SettingsArguments, Size, TreeArguments};
 use crate::benchmark::parts::{self, PictureParts};
 use crate::benchmark::{self, BenchResult, Runner};
 use crate::failure::{Exit, Failure};
@@ -68,6 +68,8 @@ pub struct BenchArguments {
     /// Host threads.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "1")]
     threads: u32,
+    #[command(flatten)]
+    tree: TreeArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Prints the results as JSON.
@@ -187,6 +189,7 @@ pub(super) fn execute(
             let mut job = Job::new(loaded.scene.clone());
             job.view.size = arguments.size;
             job.kernels.profile = profile;
+            arguments.tree.settings().choose(&mut job);
             let rounds = u64::from(arguments.runs) * (Runner::ALL.len() as u64 + 1);
             let bar = terminal.progress(&job.scene.name, rounds);
             measured.extend(benchmark::measure(&job, arguments.runs, || bar.inc(1))?);

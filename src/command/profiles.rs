@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::invocation::{CommandSettings, scene_hashes};
-use crate::arguments::{self, ArithmeticArguments, MachineKeyArguments, Size};
+use crate::arguments::{self, ArithmeticArguments, MachineKeyArguments, Size, TreeArguments};
 use crate::failure::{Exit, Failure};
 use crate::numeral::short;
 use crate::profiles::{self, Profiles, Ratio};
@@ -35,6 +35,8 @@ pub struct ProfilesArguments {
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
     size: Size,
     #[command(flatten)]
+    tree: TreeArguments,
+    #[command(flatten)]
     machine: MachineKeyArguments,
     #[command(flatten)]
     arithmetic: ArithmeticArguments,
@@ -57,8 +59,13 @@ pub(super) fn execute(
         scenes.push(loaded.scene);
     }
     let bar = terminal.progress("pictures", (scenes.len() * kernels::KernelSet::ALL.len()) as u64);
-    let profiles =
-        profiles::measure(&scenes, arguments.size, &(machine.name.clone(), machine.config.clone()), &|| bar.inc(1));
+    let profiles = profiles::measure(
+        &scenes,
+        arguments.size,
+        &arguments.tree.settings(),
+        &(machine.name.clone(), machine.config.clone()),
+        &|| bar.inc(1),
+    );
     bar.finish_and_clear();
     let profiles = profiles?;
     let settings = given.clone().with_machine(&machine).with_scenes(&scene_hashes(&arguments.scenes, &scenes));

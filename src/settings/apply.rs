@@ -136,7 +136,7 @@ fn read(key: &str, value: Value) -> Result<Value, Report> {
     let Some(example) = KEYS.get(key) else { return Ok(structured(text).unwrap_or(value)) };
     match example {
         // Numbers that may also be words keep the word.
-        Value::Number(_) if is_law(key) || key == "tree.depth" => Ok(number(text).unwrap_or(value)),
+        Value::Number(_) if is_law(key) => Ok(number(text).unwrap_or(value)),
         Value::Number(_) => match number(text) {
             Some(number) => Ok(number),
             None => refuse("a number"),
@@ -146,6 +146,7 @@ fn read(key: &str, value: Value) -> Result<Value, Report> {
             "false" | "no" | "0" => Ok(false.into()),
             _ => refuse("true or false"),
         },
+        Value::Null if key == "tree.depth" && text != "null" => Ok(number(text).unwrap_or(value)),
         Value::Null if ["", "null", "none", "auto"].contains(&text.as_str()) => Ok(Value::Null),
         // A key that may be null holds a number, a list of numbers or a word.
         Value::Null if key == "scene.mesh" || key.ends_with(".hash") => Ok(value),
@@ -255,7 +256,7 @@ mod tests {
         assert_eq!((settings.view.fov, settings.view.eye), (Some(30.0), Some([1.0, 2.0, 3.0])));
         assert_eq!((settings.kernels.profile, settings.effort.bounces), (KernelSet::Ray, 2));
         assert_ne!(settings.effort.skips, Skips::ALL);
-        assert_eq!((settings.effort.interpolate, settings.tree.depth), (Some(0.01), Depth::Auto));
+        assert_eq!((settings.effort.interpolate, settings.tree.depth), (Some(0.01), Some(Depth::Auto)));
         assert_eq!((settings.formats.dir, settings.machine.name.as_str()), (Some(-3), "wide32"));
         let machine = &settings.machine.config;
         assert_eq!((machine.cores, machine.step_limit, machine.main.traffic), (8, 1_000_000, false));

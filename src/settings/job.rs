@@ -29,6 +29,13 @@ pub const LONGEST: u32 = 16_384;
 /// Most levels of reflected and refracted rays.
 pub const MOST_BOUNCES: u32 = 30;
 
+impl TreeSettings {
+    /// Puts the choices into a job.
+    pub fn choose(&self, job: &mut Job) {
+        (job.kd_depth, job.kd_method) = (self.depth, self.build);
+    }
+}
+
 impl Settings {
     /// Settings that give a job again, with everything that it depends on.
     pub fn of(job: &Job) -> Settings {
@@ -38,8 +45,8 @@ impl Settings {
             source,
             view,
             layout: _,
-            kd_depth,
-            kd_method,
+            kd_depth: _,
+            kd_method: _,
             formats,
             isa: _,
             extensions,
@@ -95,7 +102,7 @@ impl Settings {
                 skips: *skips,
                 interpolate: *interpolate,
             },
-            tree: TreeSettings { depth: *kd_depth, build: *kd_method },
+            tree: TreeSettings { depth: Some(job.kd_depth()), build: Some(job.kd_method()) },
             layout: Some(job.layout()),
             formats: FormatSettings::from(formats),
             machine: MachineSettings { name: machine_name.clone(), config: machine.clone() },
@@ -143,7 +150,8 @@ impl Settings {
         let (shift, ambient, background, bounces) = (view.shift, view.ambient, view.background, effort.bounces);
         job.view = View { size, camera, shift, ambient, background, bounces };
         // Put it into memory and on the machine.
-        (job.layout, job.kd_depth, job.kd_method) = (*layout, tree.depth, tree.build);
+        job.layout = *layout;
+        tree.choose(&mut job);
         job.formats = formats.overrides();
         (job.machine_name, job.machine) = (machine.name.clone(), machine.config.clone());
         (job.engine, job.error, job.flags) = (*engine, results.error, results.flags);

@@ -166,14 +166,14 @@ pub struct EffortSettings {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TreeSettings {
-    /// Levels below the root, or `auto`.
+    /// Levels below the root, or `auto`; results have those of the kernels where none were chosen.
     #[serde(with = "named::depth")]
     #[schemars(schema_with = "levels")]
-    pub depth: Depth,
-    /// Which triangles a node holds: report or exact.
-    #[serde(with = "named")]
+    pub depth: Option<Depth>,
+    /// Way to build it: report, exact or binned; results have that of the kernels where none was chosen.
+    #[serde(with = "named::option")]
     #[schemars(with = "String")]
-    pub build: BuildMethod,
+    pub build: Option<BuildMethod>,
 }
 
 fn levels(_: &mut schemars::SchemaGenerator) -> schemars::Schema {

@@ -126,23 +126,23 @@ pub mod option {
     }
 }
 
-/// Levels of the kd tree: a number, or `auto`.
+/// Levels of the kd tree: a number, `auto`, or null for those of the kernels.
 pub mod depth {
     use serde::{Deserializer, Serializer};
 
-    use super::{Depth, NamedChoice};
+    use super::{Depth, option};
 
-    /// Writes the number, or `auto`.
-    pub fn serialize<S: Serializer>(depth: &Depth, serializer: S) -> Result<S::Ok, S::Error> {
+    /// Writes the number, `auto`, or null.
+    pub fn serialize<S: Serializer>(depth: &Option<Depth>, serializer: S) -> Result<S::Ok, S::Error> {
         match depth {
-            Depth::Levels(levels) => serializer.serialize_u32(*levels),
-            Depth::Auto => serializer.serialize_str(&depth.name()),
+            Some(Depth::Levels(levels)) => serializer.serialize_u32(*levels),
+            _ => option::serialize(depth, serializer),
         }
     }
 
-    /// Reads a number, or `auto`.
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Depth, D::Error> {
-        super::deserialize(deserializer)
+    /// Reads a number, `auto`, or null.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Depth>, D::Error> {
+        option::deserialize(deserializer)
     }
 }
 

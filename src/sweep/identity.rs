@@ -81,6 +81,7 @@ mod tests {
             ("kernels.replaced", _) => serde_json::json!({ "triangle": { "file": "a.s", "hash": "1" } }),
             ("effort.skips", _) => serde_json::json!(["unlit"]),
             ("tree.build", _) => "exact".into(),
+            ("tree.depth", _) => 3.into(),
             ("layout", _) => "report".into(),
             ("engine", _) => "checked".into(),
             ("machine.arithmetic.quantization", _) => "TRN".into(),

@@ -53,7 +53,7 @@ fn advised(job: &Job, machine: &str, toml: &[String], options: &[String]) -> Job
         match option.split_once(' ').unwrap() {
             ("--profile", set) => job.kernels.profile = set.parse().map_err(|_| set.to_owned()).unwrap(),
             ("--layout", layout) => job.layout = Layout::ALL.into_iter().find(|one| one.name() == layout),
-            ("--kd-depth", levels) => job.kd_depth = scenes::kdtree::Depth::Levels(levels.parse().unwrap()),
+            ("--kd-depth", levels) => job.kd_depth = Some(scenes::kdtree::Depth::Levels(levels.parse().unwrap())),
             (option, value) => panic!("{option} {value}"),
         }
     }
@@ -116,7 +116,9 @@ fn keys_and_options_of_advice_can_be_pasted() {
         }
         session.write("m.toml", &(words(&advice["toml"]).join("\n") + "\n"));
         let options = words(&advice["options"]).join(" ");
-        let run = session.json(&format!("render {scene} --no-error --machine m.toml {options}"));
+        // An arbiter with equal weights is said to be round-robin.
+        let run = session.run(&format!("render {scene} --no-error --machine m.toml {options} --json"));
+        let run: Value = serde_json::from_str(&run.out).expect("--json prints JSON");
         assert_eq!(run["clocks"], advice["predicted"]["clocks"], "{advice}");
         parts.push(part);
     }

@@ -125,7 +125,7 @@ fn no_measurement_is_below_the_time_without_waiting() {
             let [time, bound] = ["pixel_seconds", "bound_pixel_seconds"].map(|key| figure(&point[key]));
             assert!(bound <= time * (1.0 + 1e-12), "{} {} {point}", machine["machine"], machine["arbiter"]);
             // Below it by little where there is little waiting: one core waits for nobody but the main processor.
-            assert!(point["cores"] != 1 || machine["arbiter"] == "tdma" || bound >= 0.9 * time, "{machine}");
+            assert!(point["cores"] != 1 || machine["arbiter"] == "tdma" || bound >= 0.85 * time, "{machine}");
         }
     }
 }

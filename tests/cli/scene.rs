@@ -55,7 +55,7 @@ fn facts_of_a_scene_have_their_types() {
     assert_eq!((&report["memory"]["layout"], &report["formats"]["word"]), (&"report".into(), &24.into()));
     assert_eq!(report["tree"]["depth"], 3);
     let text = session.succeed("scene info cornell");
-    assert!(text.contains("676 triangles") && text.contains("kd tree: 959 nodes"), "{text}");
+    assert!(text.contains("676 triangles") && text.contains("kd tree: 1,385 nodes"), "{text}");
     assert!(session.json("scene info empty")["bounds"].is_null());
 }
 

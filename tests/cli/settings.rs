@@ -264,8 +264,8 @@ fn random_settings(lot: &mut SplitMix64) -> Settings {
     for &skip in Skip::ALL {
         effort.skips = if lot.below(4) == 0 { effort.skips.without(skip) } else { effort.skips };
     }
-    settings.tree.depth = one(lot, &[Depth::Auto, Depth::Levels(0), Depth::Levels(7), Depth::default()]);
-    settings.tree.build = one(lot, &BuildMethod::ALL);
+    settings.tree.depth = Some(one(lot, &[Depth::Auto, Depth::Levels(0), Depth::Levels(7), Depth::default()]));
+    settings.tree.build = Some(one(lot, &BuildMethod::ALL));
     settings.formats.dir = one(lot, &[None, None, Some(14)]);
     settings.formats.colour = one(lot, &[None, None, None, Some(9)]);
     settings.machine = MachineSettings::find(one(lot, PRESETS).name).unwrap();

@@ -10,6 +10,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use messages::Diagnostic;
+use scenes::kdtree::{BuildMethod, Depth};
 use scenes::layout::Layout;
 
 use crate::function::{Function, KernelFile, unknown};
@@ -29,6 +30,8 @@ pub(crate) struct SetAnswers {
     pub name: &'static str,
     /// Layout of memory that goes with it unless the user chooses another.
     pub layout: Layout,
+    /// Levels and building of the kd tree that goes with it unless the user chooses others.
+    pub tree: (Depth, BuildMethod),
     /// Set that serves the functions for which this one has no file; `None` when it has all of them.
     pub base: Option<KernelSet>,
     /// Files of the functions that it serves by themselves, with the registers that `registers.inc` gives them.
@@ -130,6 +133,22 @@ impl KernelSet {
             Layout::Packed => self.answers().refuses_packed,
             Layout::Report | Layout::Wide | Layout::Packet => None,
         }
+    }
+
+    /// The first set that is made for a layout.
+    pub fn of_layout(layout: Layout) -> KernelSet {
+        let mut sets = KernelSet::ALL.iter().copied();
+        sets.find(|set| set.layout() == layout).unwrap_or(KernelSet::Vector)
+    }
+
+    /// Levels of the kd tree that goes with the set unless the user chooses others.
+    pub const fn kd_depth(self) -> Depth {
+        self.answers().tree.0
+    }
+
+    /// Way to build the kd tree that goes with the set unless the user chooses another.
+    pub const fn kd_method(self) -> BuildMethod {
+        self.answers().tree.1
     }
 
     /// Exactness of the set's decisions.

@@ -1,5 +1,6 @@
 //! The kernels in the rows that meet a whole packet and walk down several levels, else as those of `ray`.
 
+use scenes::kdtree::{BuildMethod, Depth};
 use scenes::layout::Layout;
 
 use super::{Decisions, Formulas, SetAnswers, Team, file};
@@ -12,6 +13,7 @@ use crate::skip::Skip;
 pub(super) static SET: SetAnswers = SetAnswers {
     name: "packet",
     layout: Layout::Packet,
+    tree: (Depth::Auto, BuildMethod::Binned),
     base: Some(super::KernelSet::Ray),
     files: &[],
     teams: &[Team {

@@ -1,5 +1,6 @@
 //! The kernels in the rows of the ray unit, with the files of `vector` for what is not about rays.
 
+use scenes::kdtree::{BuildMethod, Depth};
 use scenes::layout::Layout;
 
 use super::{Decisions, Formulas, SetAnswers, Team, file};
@@ -11,6 +12,7 @@ use crate::skip::Skip;
 pub(super) static SET: SetAnswers = SetAnswers {
     name: "ray",
     layout: Layout::Wide,
+    tree: (Depth::Auto, BuildMethod::Binned),
     base: Some(super::KernelSet::Vector),
     files: &[(Function::Triangle, file!("ray/triangle.s")), (Function::ExitFace, file!("ray/exit_face.s"))],
     teams: &[

@@ -1,5 +1,6 @@
 //! The kernels as the report prints them: every triangle of a packet is tested, whole, and each search starts at the root.
 
+use scenes::kdtree::{BuildMethod, DEPTH, Depth};
 use scenes::layout::Layout;
 
 use super::{Decisions, Formulas, SetAnswers, file};
@@ -11,6 +12,7 @@ use crate::skip::Skip;
 pub(super) static SET: SetAnswers = SetAnswers {
     name: "report",
     layout: Layout::Report,
+    tree: (Depth::Levels(DEPTH), BuildMethod::Report),
     base: Some(super::KernelSet::Vector),
     files: &[
         (Function::Pixel, file!("report/pixel.s")),

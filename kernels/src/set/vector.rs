@@ -1,5 +1,6 @@
 //! The kernels in vector and wide rows: exact products, one rounding at the end.
 
+use scenes::kdtree::{BuildMethod, Depth};
 use scenes::layout::Layout;
 
 use super::{Decisions, Formulas, SetAnswers, file};
@@ -11,6 +12,7 @@ use crate::skip::Skip;
 pub(super) static SET: SetAnswers = SetAnswers {
     name: "vector",
     layout: Layout::Wide,
+    tree: (Depth::Auto, BuildMethod::Binned),
     base: None,
     files: &[
         (Function::Pixel, file!("vector/pixel.s")),

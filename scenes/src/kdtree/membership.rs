@@ -37,8 +37,10 @@ pub(super) struct ByPart<'a, T: ?Sized> {
 /// The part of a triangle that lies in a node.
 #[derive(Clone, Copy)]
 pub(super) struct Part {
-    index: u32,
-    bounds: Bounds,
+    /// Number of the triangle.
+    pub(super) index: u32,
+    /// The part's box.
+    pub(super) bounds: Bounds,
 }
 
 impl<T: Triangles + ?Sized> ByPart<'_, T> {

@@ -287,8 +287,36 @@ fn parts_make_a_better_tree_than_boxes() {
         let tree = build(&triangles, root(&triangles), Depth::Levels(12), method).unwrap();
         tree.statistics().expected_cost
     };
-    let (boxes, parts) = (cost(BuildMethod::Report), cost(BuildMethod::Exact));
+    let [boxes, parts, binned] = [BuildMethod::Report, BuildMethod::Exact, BuildMethod::Binned].map(cost);
+    assert!(binned < 1.05 * parts, "{binned} by bins, {parts} by all bounds");
     assert!(parts < 0.95 * boxes, "{parts} by parts, {boxes} by boxes");
+    assert!(binned < 1.05 * parts, "{binned} by bins, {parts} by all bounds");
+}
+
+/// A round cap as drawing programs export it: `n` thin triangles around a point of the rim.
+fn cap(n: u32) -> Vec<[[i32; 3]; 3]> {
+    let corner = |k: u32| {
+        let angle = std::f64::consts::TAU * f64::from(k) / f64::from(n);
+        [(1e9 * angle.cos()) as i32, (1e9 * angle.sin()) as i32, 0]
+    };
+    (1..n - 1).map(|k| [corner(0), corner(k), corner(k + 1)]).collect()
+}
+
+#[test]
+fn a_cap_of_thin_triangles_takes_room_in_proportion() {
+    let statistics = |n, method| {
+        let triangles = cap(n);
+        build(&triangles, root(&triangles), Depth::Auto, method).unwrap().statistics()
+    };
+    for n in [300, 1_000, 3_000, 30_000] {
+        let found = statistics(n, BuildMethod::Binned);
+        assert!(found.references <= binned::MOST_COPIES * n as usize, "{n}: {found:?}");
+        if n <= 1_000 {
+            let [boxes, parts] = [BuildMethod::Report, BuildMethod::Exact].map(|method| statistics(n, method));
+            assert!(found.expected_cost < 0.3 * boxes.expected_cost, "{n}: {found:?}, by boxes {boxes:?}");
+            assert!(found.expected_cost < 1.5 * parts.expected_cost, "{n}: {found:?}, by parts {parts:?}");
+        }
+    }
 }
 
 /// A point of the triangle, by barycentric weights in 64ths, rounded down; it is off by less than a unit.
@@ -308,8 +336,9 @@ proptest! {
         scale in 0u32..23,
     ) {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| x << scale))).collect();
-        let tree = build(&triangles, root(&triangles), Depth::Levels(10), BuildMethod::Exact).unwrap();
-        for node in tree.nodes() {
+        let trees = [BuildMethod::Exact, BuildMethod::Binned]
+            .map(|method| build(&triangles, root(&triangles), Depth::Levels(10), method).unwrap());
+        for node in trees.iter().flat_map(|tree| tree.nodes()) {
             let Content::Leaf { triangles: packet } = node.content else { continue };
             prop_assert!(packet.is_sorted());
             for (index, triangle) in (0..).zip(&triangles) {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use kernels::KernelSet;
 use scenes::image::MemoryOptions;
 use scenes::info::{SceneInfo, StructureInfo};
 use scenes::layout::Layout;
@@ -66,11 +67,12 @@ pub(super) fn execute(
 ) -> Result<Exit, Failure> {
     let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
     terminal.show(&loaded.warnings);
+    let kernels = KernelSet::of_layout(arguments.layout);
     let options = MemoryOptions {
         word: arguments.word,
         layout: arguments.layout,
-        kd_depth: arguments.tree.kd_depth,
-        kd_method: arguments.tree.kd_build,
+        kd_depth: arguments.tree.kd_depth.unwrap_or(kernels.kd_depth()),
+        kd_method: arguments.tree.kd_build.unwrap_or(kernels.kd_method()),
         formats: overrides::collect(&arguments.formats),
     };
     let facts = SceneInfo::new(&loaded.scene, &options)?;

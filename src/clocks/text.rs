@@ -19,7 +19,7 @@ pub fn functions(result: &Render) -> String {
         return String::new();
     }
     format!(
-        "Clocks by function: computing and waiting for its own transfers; inclusive ones with all that it calls\n\
+        "Clocks by function: computing, and waiting for its own transfers; incl. with all that it calls\n\
          {cores}\nMain processor\n{main}"
     )
 }
@@ -37,8 +37,7 @@ fn function_table([functions, regions]: [&[RegionCounts]; 2]) -> String {
     }
     let all: u64 = found.iter().map(|(_, _, own, _)| own.all()).sum();
     found.sort_by_key(|(_, _, own, _)| std::cmp::Reverse(own.all()));
-    let head =
-        ["function", "own", "of all", "busy", "waiting", "waits for", "transfers", "incl. busy", "incl. waiting"];
+    let head = ["function", "own", "of all", "busy", "waiting", "waits for", "transfers", "incl.", "incl. waiting"];
     let rows = found.into_iter().map(|(region, prefix, own, inclusive)| {
         vec![
             format!("{prefix}{}", region.name),

@@ -233,7 +233,7 @@ mod tests {
             sent: Vec::new(),
             clocks: Some(ItemClocks {
                 observer: 0,
-                cells: Box::default(),
+                cells: Vec::new(),
                 sites: (0..).take(segments.len()).collect(),
                 known: 8,
             }),

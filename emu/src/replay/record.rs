@@ -134,6 +134,8 @@ pub struct Recorder<'a, T, O> {
     runner: EngineRunner<'a>,
     /// Sites of transfers, where clocks are measured.
     sites: Option<SiteTable>,
+    /// Room for the sites of an item, which is kept for the next one.
+    own_sites: Vec<u32>,
     /// Number of this recorder.
     pub number: u32,
     /// Segments of the last item, and so about those of the next one.
@@ -157,6 +159,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         Recorder {
             usual: 0,
             number: 0,
+            own_sites: Vec::new(),
             sites: (profile == ProfileLevel::Clocks && level == RecordLevel::Segments).then(SiteTable::default),
             runner: choose(&demand),
             level,
@@ -302,7 +305,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.observer.begin(self.state.pc);
         // Items of one scene are much alike, so the last one tells how much room this one wants.
         let segments = Vec::with_capacity(self.usual);
-        let sites = Vec::with_capacity(if self.sites.is_some() { self.usual } else { 0 });
+        let sites = std::mem::take(&mut self.own_sites);
         let mut record = ItemRecord { message: Some(message), segments, sites, ..ItemRecord::default() };
         let end = loop {
             let stopped = self.run_quickly(&mut record, budget);
@@ -318,7 +321,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 break end;
             }
         };
-        let ItemRecord { message: rest, mut segments, mut sites, octets, before, sent, .. } = record;
+        let ItemRecord { message: rest, mut segments, sites, octets, before, sent, .. } = record;
         if rest.is_some() {
             return Err(BEGINS);
         }
@@ -328,7 +331,6 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.usual = segments.len().min(Budget::PORTION);
         if segments.len() < segments.capacity() / 2 {
             segments.shrink_to_fit();
-            sites.shrink_to_fit();
         }
         if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
@@ -337,9 +339,12 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         let known = self.sites.as_ref().map_or(0, |sites| sites.all().len() as u32);
         let cells = self.observer.profiler().filter(|_| self.sites.is_some());
         let cells = cells.and_then(|profiler| Some(profiler.contexts.cells.as_mut()?.take(clocks)));
+        let clocks = cells.map(|cells| ItemClocks { observer, cells, sites: sites.as_slice().into(), known });
+        self.own_sites = sites;
+        self.own_sites.clear();
         Ok(Recording {
             message,
-            clocks: cells.map(|cells| ItemClocks { observer, cells, sites, known }),
+            clocks,
             reads: reads(&segments),
             segments,
             octets,

@@ -93,9 +93,9 @@ pub struct ItemClocks {
     /// Number of that observer.
     pub observer: u32,
     /// Clocks of computing by cell; those that are not empty.
-    pub cells: Box<[(u32, u64)]>,
+    pub cells: Vec<(u32, u64)>,
     /// The site of each segment: 4 octets beside the 16 of that.
-    pub sites: Vec<u32>,
+    pub sites: Box<[u32]>,
     /// Number of sites that the observer knew at its end.
     pub known: u32,
 }

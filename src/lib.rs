@@ -40,6 +40,7 @@ pub mod registers;
 pub mod report;
 pub mod result;
 pub mod settings;
+pub mod shadow;
 pub mod skips;
 pub mod stress;
 #[cfg(feature = "cli")]

@@ -25,6 +25,7 @@ Examples:
   lancer debug first.s --reg s5=1.5:pos         # commands are read from the terminal; help lists them
   lancer debug first.s --commands script.txt
   lancer debug cornell --pixel 160,120 --profile ray
+  lancer debug first.s --shadow                 # the command shadow shows the exact number beside each register
   lancer debug --dap                            # for an editor: the Debug Adapter Protocol on stdin and stdout
   lancer debug first.s --dap --port 4711        # the same for one client at 127.0.0.1:4711
 
@@ -75,6 +76,9 @@ struct TargetArguments {
     /// Octets of the global memory of a program; files that reach beyond make it longer.
     #[arg(long, value_name = "OCTETS", value_parser = memory_size, default_value = "65536", help_heading = "Programs")]
     memory_size: u32,
+    /// Keeps beside each number the real one that exact arithmetic would have given: see the commands shadow and died.
+    #[arg(long)]
+    shadow: bool,
     /// Instructions that may be taken [default: the machine's, 100,000,000].
     #[arg(long, value_name = "N", value_parser = arguments::positive)]
     max_steps: Option<u64>,
@@ -117,6 +121,7 @@ fn target(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure>
         Some(_) => pixel(arguments)?,
         None => program(arguments)?,
     };
+    target.0.has_shadow = arguments.shadow;
     if let Some(steps) = arguments.max_steps {
         target.0.step_limit = steps;
     }

@@ -16,6 +16,7 @@ use crate::files::picture::PictureFormat;
 use crate::files::{self, map};
 use crate::job::{Detail, Job, result_name};
 use crate::result::{Host, Render, loss_table};
+use crate::shadow::{self, ShadowResult, shadow_text};
 use crate::terminal::Terminal;
 use crate::{clocks, machine, summary};
 
@@ -30,6 +31,7 @@ Examples:
   lancer render cornell --size 80x60 -o - | magick - -scale 400% big.png
   lancer render cornell --size 80x60 -q --min-psnr 60 --max-clocks 100,000,000
   lancer render cornell --size 80x60 --energy --word 20
+  lancer render cornell --size 80x60 --pixel 40,30 --shadow   # where precision died
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped, 4 an expectation is not
 met, 5 step limit.";
@@ -62,6 +64,9 @@ pub struct RenderArguments {
     /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
     #[arg(long, help_heading = "Results")]
     flags: bool,
+    /// Compares the picture with exact arithmetic on the same inputs: errors by line and function, and where precision died.
+    #[arg(long, help_heading = "Results")]
+    shadow: bool,
     /// Adds energy and area: a range over published tables, by operation, function and core, with the source of every figure.
     #[arg(long, help_heading = "Results")]
     energy: bool,
@@ -140,6 +145,7 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let energies = arguments.energy_map.as_ref().map(|_| energy::pixels(&job)).transpose()?;
     let mut result = Render::new(&job, &drawing);
     result.energy = arguments.energy.then(|| EnergyResult::of(&job, &drawing, Some(result.rays.all())));
+    result.shadow = arguments.shadow.then(|| compare(&job, terminal)).transpose()?;
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
     let [output, heat, error, sidecar, energy_map, folded, flame] = targets;
     let mut files = maps(&drawing, heat.map(|heat| (heat, arguments.heat_of)), error);
@@ -176,6 +182,15 @@ pub(super) fn draw(job: &Job, comparison: Comparison, terminal: &Terminal) -> Re
     let drawing = drawing::draw(job, comparison, &mut |done| bar.set_position(done));
     bar.finish_and_clear();
     drawing
+}
+
+/// Runs the picture with shadows, with a bar that shows how far that is.
+fn compare(job: &Job, terminal: &Terminal) -> Result<ShadowResult, Failure> {
+    let crop = job.crop();
+    let bar = terminal.progress("shadows", u64::from(crop.width) * u64::from(crop.height));
+    let result = shadow::picture(job, &|| bar.inc(1));
+    bar.finish_and_clear();
+    result
 }
 
 /// The maps that are asked for, as the octets of their files.
@@ -266,6 +281,7 @@ fn full(job: &Job, result: &Render, drawing: &Drawing, energies: Option<&[u64]>)
 /// Tables that options add to either.
 fn asked(result: &Render) -> Vec<String> {
     let mut parts: Vec<String> = result.flags.as_deref().map(loss_table).into_iter().collect();
+    parts.extend(result.shadow.as_ref().map(shadow_text));
     if let Some(host) = &result.host {
         parts.push(format!(
             "host: load {:.2} s, build {:.2} s, run {:.2} s, reference {:.2} s (beside the run)\n",

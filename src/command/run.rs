@@ -21,11 +21,12 @@ use crate::failure::{Exit, Failure};
 use crate::files::program::{LoadedFile, ProgramFile};
 use crate::registers::{RegisterList, ShowList, ShowRequest};
 use crate::result::WithSettings;
+use crate::shadow::ShadowResult;
 use crate::terminal::Terminal;
 use crate::trace::instruction::TraceClocks;
 use crate::trace::output::{TraceForm, is_standard, write_instructions};
 use crate::trace::window::{TraceWindow, TraceWindows};
-use crate::{files, result, settings};
+use crate::{files, result, settings, shadow};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -38,6 +39,7 @@ Examples:
   lancer run first.s --trace -                  # instruction by instruction
   lancer run first.s --trace first.jsonl --window function=square --window steps=0..1000
   lancer run first.s --flags                    # what lost bits or did not fit, line by line
+  lancer run first.s --shadow                   # what exact arithmetic would have given, and where precision died
   lancer run first.o                            # as lancer assemble -o first.o has written it
 
 Registers hold raw integers: s0 to s31 one word, v0 to v31 three components, w0 to w7 64 bits. A number with a
@@ -76,6 +78,10 @@ pub struct RunArguments {
     /// Counts, instruction by instruction, results that lost bits below the last place or did not fit.
     #[arg(long)]
     flags: bool,
+    /// Compares the results with exact arithmetic on the same inputs: errors by line and function, and where precision died.
+    /// The registers of --show count as the results, else all that are no integers and what was written to global memory.
+    #[arg(long)]
+    shadow: bool,
     /// File for the trace of instructions, a line each with what it read and wrote; .jsonl: as JSON. - is standard
     /// output, which then has nothing else, and JSON lines with --json.
     #[arg(long, value_name = "FILE|-")]
@@ -120,18 +126,19 @@ pub(super) fn execute(
             .shown(&program, &registers, program.entry)
             .map_err(|message| Failure::usage(Diagnostic::error(message)))?;
     }
+    let lone = || Lone {
+        config,
+        isa: &isa,
+        program: &program,
+        registers: registers.clone(),
+        memory: Memory::new(memory.clone()),
+        message: None,
+        step_limit: arguments.max_steps.unwrap_or(config.step_limit),
+    };
     if let Some(path) = &arguments.trace {
-        let lone = Lone {
-            config,
-            isa: &isa,
-            program: &program,
-            registers: registers.clone(),
-            memory: Memory::new(memory.clone()),
-            message: None,
-            step_limit: arguments.max_steps.unwrap_or(config.step_limit),
-        };
-        trace(arguments, path, lone, terminal)?;
+        trace(arguments, path, lone(), terminal)?;
     }
+    let shadowed = arguments.shadow.then(&lone);
     let one_core = OneCore {
         registers,
         step_limit: arguments.max_steps.unwrap_or(config.step_limit),
@@ -144,7 +151,12 @@ pub(super) fn execute(
     let file = arguments.file.display().to_string();
     let code = Code::new(&program, &isa, config.timing());
     let flags = arguments.flags.then(|| result::losses(&code, &run.tally));
-    let shown = RunResult::new(file, machine.name.clone(), &program, &run, flags, &arguments.dumps, &shown)?;
+    let shadow = match shadowed {
+        Some(lone) => Some(compared(lone, &shown)?),
+        None => None,
+    };
+    let mut shown = RunResult::new(file, machine.name.clone(), &program, &run, flags, &arguments.dumps, &shown)?;
+    shown.shadow = shadow;
     // A trace on standard output has it for itself.
     match arguments.json {
         _ if arguments.trace.as_deref().is_some_and(is_standard) => {}
@@ -166,6 +178,17 @@ pub(super) fn execute(
             Err(Failure::Message { report, exit })
         }
     }
+}
+
+/// Runs the program with a shadow; `shown` are the registers that count as its results, where there are any.
+fn compared(lone: Lone, shown: &[ShowRequest]) -> Result<ShadowResult, Failure> {
+    let program = lone.program;
+    let mut stepper = Stepper::new(lone)?.with_shadow(None);
+    stepper.run_to(u64::MAX);
+    let pc = stepper.code.word(stepper.state().pc);
+    let chosen: Vec<_> = shown.iter().filter_map(|request| request.register(program, pc)).collect();
+    let shadow = stepper.shadow().expect("it has one");
+    Ok(shadow::program(&stepper, shadow, None, &chosen))
 }
 
 /// Writes the trace of a program.

@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::numeral::{count, grouped};
 use crate::registers::{self, RegisterValues, ShowRequest, ShownRegister};
 use crate::result::{ByClass, Loss, RegionCounts, hexadecimal, loss_table, octet_rows, regions};
+use crate::shadow::{ShadowResult, shadow_text};
 use crate::summary;
 use crate::table::{row, table};
 
@@ -58,6 +59,9 @@ pub struct RunResult {
     /// Instructions of whose results some lost bits or did not fit; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flags: Option<Vec<Loss>>,
+    /// The results beside exact arithmetic on the same inputs; left out unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadow: Option<ShadowResult>,
     /// Octets that were asked for.
     pub dumps: Vec<DumpedOctets>,
     /// The trap that stopped it before its `halt`.
@@ -144,6 +148,7 @@ impl RunResult {
             functions: regions(run.profile.as_ref(), &KINDS, true),
             regions: regions(run.profile.as_ref(), &KINDS, false),
             flags,
+            shadow: None,
             dumps: dumps.iter().filter_map(|&dump| dumped(run, dump)).collect::<Result<_, _>>()?,
             trap,
         })
@@ -168,6 +173,7 @@ impl RunResult {
             parts.push(summary::function_table(&[(&self.functions, ""), (&self.regions, "  ")]));
         }
         parts.extend(self.flags.as_deref().map(loss_table));
+        parts.extend(self.shadow.as_ref().map(shadow_text));
         for dump in &self.dumps {
             parts.push(format!("{}\n{}", dump.space, octet_rows(&dump.raw, dump.address)));
         }

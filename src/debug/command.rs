@@ -27,6 +27,8 @@ pub(super) enum CommandAction {
     Calls,
     Registers,
     Print,
+    Shadow,
+    Died,
     Set,
     Memory,
     Buffer,
@@ -83,6 +85,8 @@ commands! {
     "calls" ["bt"] "" Calls "Shows the open calls, the innermost first.";
     "registers" ["r"] "[all]" Registers "Shows the registers that are not zero, or all.";
     "print" ["p"] "REGISTER[:FORMAT],.." Print "Shows registers, by name, raw and as real numbers.";
+    "shadow" ["sh"] "[REGISTER,..]" Shadow "Shows beside each register the number that exact arithmetic would have given; with --shadow.";
+    "died" [] "[REGISTER,..]" Died "Ranks the source lines of which the errors of registers consist; with --shadow.";
     "set" [] "REGISTER=VALUE,.." Set "Changes registers; the program then goes on from there, and comes through it again.";
     "memory" ["m"] "ADDRESS [N | STRUCTURE]" Memory "Shows octets of global memory, or a record field by field; (near) is the address that a register holds.";
     "buffer" ["u"] "ADDRESS [N | STRUCTURE]" Buffer "Shows octets of the local buffer in the same way.";

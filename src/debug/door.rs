@@ -11,7 +11,7 @@ use super::memory::{self, Space};
 use super::motion::{back_next, back_out, back_step, line_next, line_step, out};
 use super::session::{Lossy, Session, StopReason};
 use super::stop::{self, Event, Watched};
-use super::{disassembly, place, trial};
+use super::{disassembly, place, shadow, trial};
 use crate::arguments::numbered;
 use crate::numeral::{count, grouped};
 use crate::registers::{self, RegisterContents, RegisterList, ShowList, ShownRegister, register_of, rows};
@@ -133,6 +133,8 @@ impl<'a> Door<'a> {
             CommandAction::Calls => Ok(self.calls()),
             CommandAction::Registers => self.registers(rest),
             CommandAction::Print => self.print(rest),
+            CommandAction::Shadow => shadow::text(&self.session, rest),
+            CommandAction::Died => shadow::died(&self.session, rest),
             CommandAction::Set => self.set(rest),
             CommandAction::Memory => self.memory(Space::Global, rest),
             CommandAction::Buffer => self.memory(Space::Buffer, rest),

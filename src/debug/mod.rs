@@ -10,6 +10,7 @@ mod memory;
 mod motion;
 mod place;
 mod session;
+mod shadow;
 mod stop;
 mod target;
 mod trial;

@@ -151,7 +151,7 @@ impl<'a> Session<'a> {
 
     /// Changes the state by hand: what comes after is another future, and what was before stays.
     pub fn change(&mut self, change: impl FnOnce(&mut emu::registers::Registers)) {
-        change(&mut self.stepper.state_mut().registers);
+        self.stepper.change_registers(change);
         let position = self.position();
         // States behind this one would be those of the old future.
         self.checkpoints.split_off(&position);

@@ -3,6 +3,7 @@
 use emu::machine::{Config, RunOptions};
 use emu::octets::Memory;
 use emu::registers::Registers;
+use emu::shadow::ShadowLetter;
 use emu::stepper::{Lone, Stepper};
 use isa::{Isa, Program};
 use messages::Report;
@@ -31,6 +32,10 @@ pub struct DebugTarget {
     pub clocks: TraceClocks,
     /// The message that begins a work item.
     message: Option<emu::semantics::Message>,
+    /// Numbers have shadows.
+    pub has_shadow: bool,
+    /// The main processor's program, and the shadows of the message that it sent.
+    pub sender: Option<(Program, ShadowLetter)>,
 }
 
 impl DebugTarget {
@@ -46,6 +51,8 @@ impl DebugTarget {
             memory: Memory::new(Vec::new()),
             clocks: TraceClocks::Own,
             message: None,
+            has_shadow: false,
+            sender: None,
         }
     }
 
@@ -54,10 +61,10 @@ impl DebugTarget {
     /// # Errors
     /// A main processor that hands out nothing.
     pub fn pixel(name: String, load: Load, config: Config) -> Result<DebugTarget, Failure> {
-        let (message, memory) = {
+        let (message, memory, letter) = {
             let setup = load.setup(&config, RunOptions::default());
-            let lone = Lone::first_item(&setup, load.memory.clone())?;
-            (lone.message, lone.memory)
+            let (lone, letter) = Lone::first_item_with_shadows(&setup, load.memory.clone())?;
+            (lone.message, lone.memory, letter)
         };
         let step_limit = config.step_limit;
         Ok(DebugTarget {
@@ -70,6 +77,8 @@ impl DebugTarget {
             step_limit,
             clocks: TraceClocks::None,
             message,
+            has_shadow: false,
+            sender: Some((load.build.main, letter)),
         })
     }
 
@@ -78,7 +87,7 @@ impl DebugTarget {
     /// # Errors
     /// A machine out of its ranges, or initial data that do not fit the buffer.
     pub fn stepper(&self) -> Result<Stepper<'_>, Report> {
-        Stepper::new(Lone {
+        let stepper = Stepper::new(Lone {
             config: &self.config,
             isa: &self.isa,
             program: &self.program,
@@ -86,6 +95,8 @@ impl DebugTarget {
             memory: self.memory.clone(),
             message: self.message,
             step_limit: self.step_limit,
-        })
+        })?;
+        let letter = self.sender.as_ref().map(|(_, letter)| letter);
+        Ok(if self.has_shadow { stepper.with_shadow(letter) } else { stepper })
     }
 }

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use emu::registers::Registers;
 use isa::Program;
+use isa::naming::RegisterId;
 use messages::did_you_mean;
 
 use super::setting::register_of;
@@ -64,6 +65,11 @@ pub fn format_of<'a>(program: &'a Program, name: &'a str) -> Result<(&'a str, i3
 }
 
 impl ShowRequest {
+    /// The register that is meant at the word at `pc`, if there is one.
+    pub fn register(&self, program: &Program, pc: u32) -> Option<RegisterId> {
+        register_of(program, &self.register, pc).ok()
+    }
+
     /// The register as it is before the word at `pc`, in the format that was asked for, else in that which the program says it holds.
     ///
     /// # Errors

@@ -30,6 +30,7 @@ use crate::drawing::Drawing;
 use crate::energy::EnergyResult;
 use crate::job::{Job, result_name};
 use crate::settings::{Settings, VERSION};
+use crate::shadow::ShadowResult;
 pub use hash::{image_hash, run_hash};
 pub use hexadecimal::{hexadecimal, octet_rows};
 #[cfg(feature = "cli")]
@@ -151,6 +152,9 @@ pub struct Render {
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flags: Option<Vec<Loss>>,
+    /// The picture beside exact arithmetic on the same inputs; left out unless it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shadow: Option<ShadowResult>,
     /// Energy and area; left out unless it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<EnergyResult>,
@@ -381,6 +385,7 @@ impl Render {
             moved_kinds: moved::moved_kinds(job, frame),
             formats: (&drawing.image.formats).into(),
             flags: drawing.flags.clone(),
+            shadow: None,
             energy: None,
             error: drawing.error,
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),

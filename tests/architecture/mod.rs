@@ -188,8 +188,19 @@ fn sources_stay_short() {
 }
 
 /// Wings of the emulator, each of which uses only itself and those before it.
-const WINGS: [&str; 10] =
-    ["code", "semantics", "extension", "profile", "engine", "machine", "replay", "run", "stepper", "conformance"];
+const WINGS: [&str; 11] = [
+    "code",
+    "semantics",
+    "extension",
+    "profile",
+    "engine",
+    "machine",
+    "replay",
+    "run",
+    "shadow",
+    "stepper",
+    "conformance",
+];
 
 /// A source without its comments.
 fn without_comments(text: &str) -> String {

@@ -24,6 +24,7 @@ mod scene;
 mod schema;
 pub mod session;
 mod settings;
+mod shadow;
 mod standard;
 mod streams;
 mod sweep;

@@ -61,6 +61,9 @@ pub fn run<T: Watch, O: Observer>(
         next = slot.next;
         let mut motion = Motion::Jump;
         let mut after = After::Goes;
+        if O::SEES_VALUES {
+            observer.before(pc, slot, registers, buffer);
+        }
 
         /// Writes what a meaning handed back and yields how it ended.
         macro_rules! finish {
@@ -190,6 +193,9 @@ pub fn run<T: Watch, O: Observer>(
             pass.unit_clocks += unit_clocks;
             clocks += unit_clocks;
             elementary += more_elementary;
+        }
+        if O::SEES_VALUES {
+            observer.after(pc, code, registers);
         }
         if O::IS_ACTIVE {
             // What ends here goes nowhere: the word after a `halt` may belong to another function.

@@ -23,8 +23,10 @@ pub use profiler::Profiler;
 pub(crate) use regions::RegionNesting;
 pub use sites::{SiteTable, SiteUse, TransferSite};
 
-use crate::code::Code;
+use crate::code::octets::Buffer;
+use crate::code::registers::Registers;
 use crate::code::tally::Tally;
+use crate::code::{Code, Slot};
 use crate::semantics::Motion;
 
 /// Level of detail that is asked of a profile.
@@ -55,11 +57,20 @@ pub trait Observer {
     /// Engines have to tell.
     const IS_ACTIVE: bool;
 
+    /// The interpreter shows it the values before and after each instruction.
+    const SEES_VALUES: bool = false;
+
     /// For a program.
     fn new(code: &Code, level: ProfileLevel) -> Self;
 
     /// A run begins at a word.
     fn begin(&mut self, pc: u32);
+
+    /// The instruction in the slot at `pc` is about to be tried: on these registers and this buffer.
+    fn before(&mut self, _pc: u32, _slot: &Slot, _registers: &Registers, _buffer: &Buffer) {}
+
+    /// The instruction in the slot at `pc` has been executed, and these are the registers behind it.
+    fn after(&mut self, _pc: u32, _code: &Code, _registers: &Registers) {}
 
     /// The slot at `pc` ended by pass `exit` (numbered over the whole program) with `units` units, and control goes to
     /// `next`.

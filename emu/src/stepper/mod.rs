@@ -4,6 +4,8 @@
 mod link;
 mod witness;
 
+use std::sync::Arc;
+
 use isa::{Counts, Isa, Program};
 use messages::{Diagnostic, Report};
 
@@ -18,9 +20,11 @@ use crate::code::trap::{Fault, Trap};
 use crate::code::{Code, check_bodies};
 use crate::engine::{CoreId, Pause, State, interpreter};
 use crate::machine::{Config, Setup, check_buffer};
+use crate::profile::Observer;
 use crate::semantics::{Message, Watching};
+use crate::shadow::{Shadow, ShadowLetter, ShadowProgram, ShadowSites};
 use link::{FirstMessage, LoneLink, TimedLone};
-use witness::Witness;
+use witness::{ShadowWitness, Witness};
 
 /// Program, machine and beginning of a lone core.
 pub struct Lone<'a> {
@@ -46,6 +50,24 @@ impl<'a> Lone<'a> {
     /// # Errors
     /// A machine out of its ranges, and a main processor that hands out nothing.
     pub fn first_item(setup: &Setup<'a>, memory: Memory) -> Result<Lone<'a>, Report> {
+        Lone::first_item_by(setup, memory, &mut crate::profile::Unobserved)
+    }
+
+    /// The first work item, and the shadows of the message that begins it.
+    ///
+    /// # Errors
+    /// As [`Lone::first_item`].
+    pub fn first_item_with_shadows(setup: &Setup<'a>, memory: Memory) -> Result<(Lone<'a>, ShadowLetter), Report> {
+        let config = setup.config;
+        let code = Code::new(setup.main, setup.isa, config.timing());
+        let sites = ShadowSites::new(setup.core).sites.len() as u32;
+        let program = Arc::new(ShadowProgram::new(&code, config.arithmetic.modes(), sites));
+        let mut shadow = Shadow::new(program.clone(), config.cores);
+        let lone = Lone::first_item_by(setup, memory, &mut shadow)?;
+        Ok((lone, shadow.into_letter()))
+    }
+
+    fn first_item_by<O: Observer>(setup: &Setup<'a>, memory: Memory, observer: &mut O) -> Result<Lone<'a>, Report> {
         let config = setup.config;
         config.check()?;
         check_buffer("the main processor", setup.main, config.main.buffer_octets)?;
@@ -55,8 +77,7 @@ impl<'a> Lone<'a> {
         let mut link = FirstMessage { memory: &mut memory, main: config.cores, message: None };
         let seat = CoreId { core: config.cores, cores: config.cores, step_limit: config.main.step_limit };
         let (arithmetic, mut tally) = (arithmetic(config), Tally::new(&code));
-        let mut nobody = crate::profile::Unobserved;
-        let pause = interpreter::run(&code, seat, &mut state, &arithmetic, &mut link, &mut tally, &mut nobody);
+        let pause = interpreter::run(&code, seat, &mut state, &arithmetic, &mut link, &mut tally, observer);
         let Some(message) = link.message else {
             return Err(match pause {
                 Pause::Fault(fault) => Trap::new(fault, config.cores, state.pc, &code).diagnostic().into(),
@@ -89,6 +110,7 @@ pub struct Checkpoint {
     state: State,
     link: LoneLink,
     witness: Witness,
+    shadow: Option<Box<Shadow>>,
     end: Option<LoneEnd>,
 }
 
@@ -129,6 +151,7 @@ pub struct Stepper<'a> {
     link: LoneLink,
     tally: Tally,
     witness: Witness,
+    shadow: Option<Box<Shadow>>,
     end: Option<LoneEnd>,
 }
 
@@ -156,8 +179,24 @@ impl<'a> Stepper<'a> {
             state,
             link: LoneLink::new(memory, 0, largest, message),
             witness: Witness::default(),
+            shadow: None,
             end: None,
         })
+    }
+
+    /// Gives a core before its first instruction a shadow, with those of the message that waits for it.
+    #[must_use]
+    pub fn with_shadow(mut self, letter: Option<&ShadowLetter>) -> Stepper<'a> {
+        let program = Arc::new(ShadowProgram::new(&self.code, self.config.arithmetic.modes(), 0));
+        let mut shadow = Shadow::new(program, self.seat.core);
+        shadow.inbox.extend(letter.map(|letter| letter.vectors.clone()));
+        self.shadow = Some(Box::new(shadow));
+        self
+    }
+
+    /// The shadow of the core, where it has one.
+    pub fn shadow(&self) -> Option<&Shadow> {
+        self.shadow.as_deref()
     }
 
     /// Registers, buffer, program counter and instructions of the core.
@@ -165,9 +204,13 @@ impl<'a> Stepper<'a> {
         &self.state
     }
 
-    /// The state, to change it: the core's past is then another one.
-    pub fn state_mut(&mut self) -> &mut State {
-        &mut self.state
+    /// Changes registers: the core's past is then another one, and shadows of what has changed begin anew.
+    pub fn change_registers(&mut self, change: impl FnOnce(&mut Registers)) {
+        let before = self.state.registers.clone();
+        change(&mut self.state.registers);
+        if let Some(shadow) = &mut self.shadow {
+            shadow.forget_changed(&before, &self.state.registers);
+        }
     }
 
     /// Global memory as the core sees it.
@@ -220,14 +263,16 @@ impl<'a> Stepper<'a> {
 
     /// The state, to come back to it.
     pub fn checkpoint(&self) -> Checkpoint {
-        let Stepper { state, link, witness, end, .. } = self;
-        Checkpoint { state: state.clone(), link: link.clone(), witness: witness.clone(), end: *end }
+        let Stepper { state, link, witness, shadow, end, .. } = self;
+        let (witness, shadow) = (witness.clone(), shadow.clone());
+        Checkpoint { state: state.clone(), link: link.clone(), witness, shadow, end: *end }
     }
 
     /// Back, or on, to a state.
     pub fn restore(&mut self, checkpoint: &Checkpoint) {
-        let Checkpoint { state, link, witness, end } = checkpoint.clone();
+        let Checkpoint { state, link, witness, shadow, end } = checkpoint.clone();
         (self.state, self.link, self.witness, self.end) = (state, link, witness, end);
+        self.shadow = shadow;
     }
 
     /// Runs until so many instructions have been executed in all, or the program ends.
@@ -245,7 +290,15 @@ impl<'a> Stepper<'a> {
         let seat = CoreId { step_limit: limit, ..self.seat };
         let mut link = TimedLone { link: &mut self.link, bus: &self.config.bus };
         let Stepper { code, state, arithmetic, tally, witness, .. } = self;
-        let pause = interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, witness);
+        let pause = match self.shadow.take() {
+            None => interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, witness),
+            Some(shadow) => {
+                let mut both = ShadowWitness { witness: std::mem::take(witness), shadow };
+                let pause = interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, &mut both);
+                (*witness, self.shadow) = (both.witness, Some(both.shadow));
+                pause
+            }
+        };
         self.end = match pause {
             Pause::Halt => Some(LoneEnd::Halt),
             Pause::Wait => Some(LoneEnd::Fault(Fault::Deadlock)),

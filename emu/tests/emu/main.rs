@@ -14,6 +14,7 @@ mod profile;
 mod ray;
 mod replay;
 mod saturation;
+mod shadow;
 mod stepper;
 mod totals;
 mod traps;

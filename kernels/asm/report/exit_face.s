@@ -29,7 +29,7 @@ beside_\@:
 .func exit_face
     .holds exit_t, t
     .holds exit_point, pos
-    .holds v6, pos
+    .holds v6, dir
     .holds v8, pos
     .holds s15, t
     li    exit_t, MISSED

@@ -25,6 +25,7 @@ shade_light:
 1:
   .endif
     sw    s12, SHADE_COSINE(s0)
+    .holds s12
     dot_product v6, v26, dir + pos - t
     .holds s12, t
     mov   near_t, s12

@@ -54,12 +54,14 @@
     over_determinant INVERSE - bary
     .holds s12, bary
     vput  v13, s12, x                   ; u = (1 / det) P . T
+    .holds s12
     dot_product v11, direction, dir
     shift_with z
     shift_with y
     over_determinant INVERSE - bary
     .holds s12, bary
     vput  v13, s12, y                   ; v = (1 / det) Q . D
+    .holds s12
     dot_product v11, v8, WORD
     shift_with z
     over_determinant INVERSE - WORD - t + pos

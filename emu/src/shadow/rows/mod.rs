@@ -1,0 +1,241 @@
+//! Exact formulas of the instructions: one trait a room, stamped from the table, so that an instruction without a formula does not compile.
+//! A formula takes numbers with their shadows and says what real numbers are written. Registers, rounding and statistics are not its business.
+
+mod control;
+mod decisions;
+mod integer;
+mod local;
+mod packet;
+mod ray;
+mod scalar;
+mod vector;
+mod walk;
+mod wide;
+
+use isa::number::Modes;
+
+use super::memory::ShadowMemory;
+use super::number::{ShadowNumber, Term};
+use crate::code::octets::Buffer;
+
+/// A register's number that a formula reads.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowInput<'a> {
+    /// The machine's number.
+    pub raw: i64,
+    /// Its shadow; `None` of an integer, which counts as exact where it meets numbers.
+    pub shadow: Option<&'a ShadowNumber>,
+}
+
+/// Real number that an instruction writes.
+#[derive(Clone, Debug)]
+pub enum RealResult {
+    /// None: an integer, an address or a pattern of bits.
+    Integer,
+    /// The number that was read, moved.
+    Moved(ShadowNumber),
+    /// A number by a formula.
+    Computed(Term),
+    /// A number by a formula whose shift brings it into a format: where both are known they have to agree.
+    Fitted(Term),
+}
+
+/// Effect of an instruction on memory and messages, once it has happened.
+#[derive(Clone, Debug, Default)]
+pub enum ShadowEffect {
+    /// None.
+    #[default]
+    Nothing,
+    /// Numbers of so many octets each go to the buffer.
+    Buffer(u32, u32, Vec<Option<ShadowNumber>>),
+    /// Numbers of 32 bits go to global memory.
+    Global(u32, Vec<Option<ShadowNumber>>),
+    /// Octets of the buffer from an address on become integers.
+    Forget(u32, u32),
+    /// Octets are copied from global memory to the buffer: to, from, how many.
+    Load(u32, u32, u32),
+    /// Octets are copied from the buffer to global memory: to, from, how many.
+    Store(u32, u32, u32),
+    /// A word of global memory becomes an integer.
+    Add(u32),
+    /// A message leaves for a processor.
+    Send(i64, Vec<[Option<ShadowNumber>; 3]>),
+    /// A message arrives in vectors from this number on.
+    Receive(u8),
+    /// The notes of a walk overwrite the buffer behind an address; the register of the last one says up to where.
+    Notes(u32, u8),
+}
+
+/// Surroundings in which a formula is evaluated.
+pub struct Formulas<'a> {
+    /// The local buffer, before the instruction.
+    pub buffer: &'a Buffer,
+    /// Shadows of the buffer.
+    pub local: &'a ShadowMemory,
+    /// Shadows of global memory.
+    pub global: &'a ShadowMemory,
+    /// Word length and modes of the machine.
+    pub modes: Modes,
+    /// Decisions on numbers with shadows.
+    pub decisions: u32,
+    /// Those that the shadow would have taken otherwise.
+    pub turned: u32,
+    /// Effect of the instruction.
+    pub effect: ShadowEffect,
+    /// The register to which a walk writes the place of its last note.
+    pub note_register: u8,
+    /// The first register that a message goes to.
+    pub message_register: u8,
+}
+
+impl<'a> ShadowInput<'a> {
+    /// The number in a formula.
+    pub fn term(&self) -> Term {
+        Term::new(self.raw, self.shadow)
+    }
+
+    /// The shadow differs from the machine's number.
+    pub fn deviates(&self) -> bool {
+        self.shadow.is_some_and(|shadow| shadow.deviation.is_some())
+    }
+
+    /// The number as it is, moved elsewhere.
+    pub fn moved(&self) -> RealResult {
+        self.shadow.map_or(RealResult::Integer, |shadow| RealResult::Moved(shadow.clone()))
+    }
+}
+
+impl Formulas<'_> {
+    /// Notes a decision on numbers, of which one at least has a shadow that is another number.
+    fn decide(&mut self, machine: bool, shadow: impl FnOnce() -> bool) {
+        self.decisions += 1;
+        self.turned += u32::from(machine != shadow());
+    }
+
+    /// Notes a comparison. Of integers it is none.
+    fn compare(&mut self, a: &ShadowInput, b: &ShadowInput, claim: impl Fn(std::cmp::Ordering) -> bool) {
+        if a.shadow.is_none() && b.shadow.is_none() {
+            return;
+        }
+        let machine = claim(a.raw.cmp(&b.raw));
+        if !a.deviates() && !b.deviates() {
+            return self.decide(machine, || machine);
+        }
+        self.decide(machine, || claim(a.term().real().partial_cmp(b.term().real()).expect("reals are ordered")));
+    }
+}
+
+/// The type of an operand that a formula reads.
+macro_rules! input {
+    (S) => {
+        ShadowInput
+    };
+    (W) => {
+        ShadowInput
+    };
+    (A) => {
+        u32
+    };
+    (V) => {
+        [ShadowInput; 3]
+    };
+    (V2) => {
+        [[ShadowInput; 3]; 2]
+    };
+    (V3) => {
+        [[ShadowInput; 3]; 3]
+    };
+    (V5) => {
+        [[ShadowInput; 3]; 5]
+    };
+    (W3) => {
+        [ShadowInput; 3]
+    };
+    ($immediate:ident) => {
+        i32
+    };
+}
+
+/// The type of what a formula writes.
+macro_rules! output {
+    (S) => {
+        RealResult
+    };
+    (W) => {
+        RealResult
+    };
+    (V) => {
+        [RealResult; 3]
+    };
+    (V2) => {
+        [[RealResult; 3]; 2]
+    };
+    (V3) => {
+        [[RealResult; 3]; 3]
+    };
+    (V5) => {
+        [[RealResult; 3]; 5]
+    };
+    (W3) => {
+        [RealResult; 3]
+    };
+}
+
+/// One formula of a room's trait.
+macro_rules! formula {
+    ({ $name:ident [$(#[doc = $doc:expr])*] } [$(($letter:ident $kind:ident))*] [$(($written:ident $to:ident))*]) => {
+        $(#[doc = $doc])*
+        fn $name(&mut self, $($letter: input!($kind)),*) -> ($(output!($to),)*);
+    };
+}
+
+macro_rules! formulas {
+    ($($style:ident $room:ident $trait:ident $room_doc:literal {
+        $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
+    })*) => {
+        $(
+            #[doc = $room_doc]
+            pub trait $trait {
+                $(crate::semantics::split_operands! { formula { $name [$(#[doc = $doc])*] } [] [] ($($operands)*) })*
+            }
+        )*
+    };
+}
+
+isa::instructions!(formulas);
+
+/// Results of a vector.
+fn each(of: impl FnMut(usize) -> RealResult) -> [RealResult; 3] {
+    std::array::from_fn(of)
+}
+
+/// The exact sum of three products.
+fn dot(a: &[Term; 3], b: &[Term; 3]) -> Term {
+    a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
+}
+
+/// A component of the exact cross product.
+fn cross_component(a: &[Term; 3], b: &[Term; 3], k: usize) -> Term {
+    let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+    a[next].times(&b[last]).minus(&a[last].times(&b[next]))
+}
+
+/// The exact cross product.
+fn cross(a: &[Term; 3], b: &[Term; 3]) -> [Term; 3] {
+    std::array::from_fn(|k| cross_component(a, b, k))
+}
+
+/// The difference of two vectors.
+fn difference(a: &[Term; 3], b: &[Term; 3]) -> [Term; 3] {
+    std::array::from_fn(|k| a[k].minus(&b[k]))
+}
+
+/// The components of a vector in a formula.
+fn terms(a: &[ShadowInput; 3]) -> [Term; 3] {
+    std::array::from_fn(|k| a[k].term())
+}
+
+/// The quotient, times 2^shift; a division by 0 begins anew at the machine's number.
+fn quotient(a: &Term, b: &Term, shift: i32) -> RealResult {
+    a.over(b).map_or(RealResult::Integer, |quotient| RealResult::Fitted(quotient.scaled(shift)))
+}

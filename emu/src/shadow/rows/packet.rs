@@ -1,0 +1,156 @@
+//! Exact formulas of the packet unit: the distance of the triangle that the machine chose, and whether the shadow would have chosen another.
+
+use std::cmp::Ordering;
+
+use isa::number::ray::{PACKET_WORDS, PacketHit, PacketWords};
+
+use super::decisions::{RealRay, deviates, meeting, reals, surely_misses};
+use super::ray::{hit, machine_ray};
+use super::{Formulas, PacketRoom, RealResult, ShadowInput, each};
+use crate::shadow::long_real::LongReal;
+use RealResult::Integer;
+
+/// A packet in the buffer.
+struct BufferedPacket<'a> {
+    octets: &'a [u8],
+    count: usize,
+}
+
+impl BufferedPacket<'_> {
+    fn word(&self, kind: usize, triangle: usize) -> i64 {
+        let at = 4 * (kind * self.count + triangle);
+        self.octets[at..].first_chunk().map_or(0, |&octets| i32::from_le_bytes(octets).into())
+    }
+
+    fn vertices(&self, triangle: usize) -> [[i64; 3]; 3] {
+        [1, 4, 7].map(|kind| [0, 1, 2].map(|axis| self.word(kind + axis, triangle)))
+    }
+}
+
+/// A hit of the shadow.
+struct RealHit {
+    t: LongReal,
+    triangle: usize,
+}
+
+/// Search of a packet.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum PacketSearch {
+    Nearest,
+    Any,
+}
+
+impl Formulas<'_> {
+    fn packet(&self, address: u32, triangles: i64) -> Option<BufferedPacket<'_>> {
+        let octets = self.buffer.octets().get(address as usize..)?;
+        let count = triangles as u32 as usize;
+        (count.checked_mul(4 * PACKET_WORDS)? <= octets.len()).then_some(BufferedPacket { octets, count })
+    }
+
+    /// The result of a search: the machine's triangle, with the shadow of its distance.
+    fn searched(
+        &mut self,
+        search: PacketSearch,
+        x: [ShadowInput; 3],
+        a: [[ShadowInput; 3]; 2],
+        (address, triangles, i): (u32, i64, i32),
+    ) -> [RealResult; 3] {
+        let unchanged = [x[0].moved(), x[1].moved(), x[2].moved()];
+        let Some(packet) = self.packet(address, triangles) else { return unchanged };
+        let Some(words) = PacketWords::at_start(packet.octets, packet.count) else { return unchanged };
+        // Find the machine's choice; rounding plays no part in which of several it is, but for equal distances.
+        let (ray, modes) = (machine_ray(&a), self.modes);
+        let known = PacketHit { t: x[0].raw as i32, name: x[1].raw as u32 };
+        let chosen = match search {
+            PacketSearch::Nearest => Some(words.nearest(&modes, &ray, i as u32, known)).filter(|hit| *hit != known),
+            PacketSearch::Any => words.any(&modes, &ray, i as u32, known.t).map(|(_, hit)| hit),
+        };
+        let chosen = chosen.and_then(|hit| {
+            let named = (0..packet.count).filter(|&at| packet.word(0, at) as u32 == hit.name);
+            let alone = |at: usize| {
+                let raw = packet.vertices(at).map(|vertex| vertex.map(|component| component as i32));
+                let met = isa::number::ray::triangle(&ray, &raw);
+                met.end == isa::number::ray::TriangleEnd::Hit
+                    && isa::number::ray::ratio(&modes, met.t, met.determinant, i as u32) == hit.t
+            };
+            named.into_iter().find(|&at| alone(at))
+        });
+        let has_shadow = deviates(&a) || x[0].deviates();
+        let is_same = !has_shadow || self.real_choice(search, &packet, &x[0], &a, i, chosen) == chosen;
+        let result = match chosen {
+            None => unchanged,
+            Some(at) => {
+                let vertices = packet.vertices(at).map(|vertex| vertex.map(|raw| ShadowInput { raw, shadow: None }));
+                let [t, ..] = hit(&a, &vertices, i, self.modes.word);
+                let mut result = each(|_| Integer);
+                (result[0], result[2]) = (t, x[2].moved());
+                result
+            }
+        };
+        self.decide(true, || is_same);
+        result
+    }
+
+    /// The shadow's choice: of two at one distance the machine's.
+    fn real_choice(
+        &self,
+        search: PacketSearch,
+        packet: &BufferedPacket,
+        limit: &ShadowInput,
+        a: &[[ShadowInput; 3]; 2],
+        i: i32,
+        chosen: Option<usize>,
+    ) -> Option<usize> {
+        let ray = RealRay::new(a);
+        let doubles = [reals(&a[0]), reals(&a[1])].map(|vector| vector.map(|component| component.to_f64()));
+        let mut best = limit.term().real().scaled(-i);
+        let mut found: Option<RealHit> = None;
+        for triangle in 0..packet.count {
+            let vertices = packet.vertices(triangle);
+            if surely_misses(&doubles, &vertices.map(|vertex| vertex.map(|component| component as f64))) {
+                continue;
+            }
+            let Some(t) = meeting(&ray, &vertices.map(|vertex| vertex.map(|raw| LongReal::whole(raw.into())))) else {
+                continue;
+            };
+            let is_nearer = match t.partial_cmp(&best) {
+                Some(Ordering::Less) => true,
+                Some(Ordering::Equal) => chosen == Some(triangle),
+                _ => false,
+            };
+            if is_nearer {
+                best = t;
+                found = Some(RealHit { t, triangle });
+                // Any hit ends a search for one; which of them is all the same.
+                if search == PacketSearch::Any {
+                    return if chosen.is_some() { chosen } else { Some(triangle) };
+                }
+            }
+        }
+        found.filter(|hit| hit.t.partial_cmp(&best) == Some(Ordering::Equal)).map(|hit| hit.triangle)
+    }
+}
+
+impl PacketRoom for Formulas<'_> {
+    fn rnear(
+        &mut self,
+        x: [ShadowInput; 3],
+        a: [[ShadowInput; 3]; 2],
+        b: u32,
+        c: ShadowInput,
+        i: i32,
+    ) -> ([RealResult; 3],) {
+        (self.searched(PacketSearch::Nearest, x, a, (b, c.raw, i)),)
+    }
+
+    fn rany(
+        &mut self,
+        x: [ShadowInput; 3],
+        a: [[ShadowInput; 3]; 2],
+        b: u32,
+        c: ShadowInput,
+        i: i32,
+    ) -> ([RealResult; 3],) {
+        (self.searched(PacketSearch::Any, x, a, (b, c.raw, i)),)
+    }
+}

@@ -32,7 +32,13 @@ fn a_planted_loss_is_named_first_at_its_line() {
         ("vector", "vector", "shade", "vscale v25, v25, s13, weight", "s13, weight"),
         ("vector", "vector", "surface", "vscale v9, direction, near_t, t + dir - pos", "t + dir - pos"),
         ("ray", "vector", "normal", "vdot  cosine, v6, direction, dir", "direction, dir"),
-        ("packet", "vector", "contribution", "vscale local_colour, local_colour, weight_now, weight", "weight_now, weight"),
+        (
+            "packet",
+            "vector",
+            "contribution",
+            "vscale local_colour, local_colour, weight_now, weight",
+            "weight_now, weight",
+        ),
         ("report", "report", "shade", "mul   s13, s13, s14, weight", "s14, weight"),
     ];
     for (profile, set, kernel, line, shift) in cases {
@@ -56,7 +62,7 @@ fn a_planted_loss_is_named_first_at_its_line() {
 fn no_kernel_has_a_shift_that_contradicts_its_formats() {
     let session = Session::new();
     for profile in ["report", "vector", "ray", "packet"] {
-        for options in ["", "--word 16", "--camera perspective --eye 0,0,4 --word 24", "--interpolate 0.02"] {
+        for options in ["", "--word 16", "--camera perspective --eye 0,0,4 --word 24", "--interpolate=0.02"] {
             let result = session.json(&format!("{PICTURE} --profile {profile} {options}"));
             let lines = result["shadow"]["lines"].as_array().unwrap();
             let gaps: Vec<&Value> = lines.iter().filter(|line| !line["format_gap"].is_null()).collect();

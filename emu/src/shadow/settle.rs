@@ -36,8 +36,12 @@ pub fn settle(term: Term, is_fitted: bool, place: ResultPlace) -> (ShadowNumber,
     let raw = LongReal::whole(place.raw.into());
     let rounded = raw.minus(&term.machine).to_f64();
     let is_saturated = rounded.abs() >= 1.0;
+    // Zero is the same number in every format.
+    let is_number = !term.machine.is_zero() || !term.real().is_zero();
     let gap = match (term.scale, place.declared) {
-        (Some(computed), Some(declared)) if is_fitted && computed != declared => Some(FormatGap { computed, declared }),
+        (Some(computed), Some(declared)) if is_fitted && is_number && computed != declared => {
+            Some(FormatGap { computed, declared })
+        }
         _ => None,
     };
     let scale = place.declared.or(term.scale);

@@ -108,7 +108,7 @@ pub struct FinalNumber<'a> {
     pub scale: Option<i32>,
     /// The machine's number.
     pub raw: i64,
-    /// Its shadow.
+    /// Shadow of the number.
     pub shadow: Option<&'a ShadowNumber>,
 }
 

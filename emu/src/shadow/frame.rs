@@ -33,14 +33,14 @@ pub struct ShadowFrame {
     pub main_ledger: ShadowLedger,
 }
 
-/// What a processor is waiting for.
+/// Phase of a processor between its turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FrameState {
     /// Nothing: it can run, or try again.
     Ready,
     /// The others, at a barrier.
     Barrier,
-    /// It has halted.
+    /// Nothing is left to do: the program has halted.
     Rests,
 }
 
@@ -174,7 +174,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
             has_acted: false,
         }
     };
-    let mut frame = Frame {
+    let mut frame = FrameRun {
         setup,
         arithmetic,
         processors: (0..=cores).map(begin).collect(),
@@ -214,7 +214,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
         return Err(Trap::new(Fault::Deadlock, number, pc, code).into());
     }
     let main_ledger = std::mem::take(&mut frame.processors[cores as usize].shadow.ledger);
-    let Frame { memory, numbers, ledger, .. } = frame;
+    let FrameRun { memory, numbers, ledger, .. } = frame;
     Ok(ShadowFrame { memory, numbers, core, main, ledger, main_ledger })
 }
 
@@ -225,7 +225,7 @@ enum Advanced {
     Halted,
 }
 
-struct Frame<'a> {
+struct FrameRun<'a> {
     setup: &'a Setup<'a>,
     arithmetic: Watching,
     processors: Vec<FrameCore>,
@@ -237,7 +237,7 @@ struct Frame<'a> {
     released: Vec<bool>,
 }
 
-impl Frame<'_> {
+impl FrameRun<'_> {
     /// Runs a processor until it waits or halts.
     fn advance(&mut self, number: usize, code: &Code) -> Result<Advanced, RunFailure> {
         let (config, main) = (self.setup.config, self.processors.len() - 1);

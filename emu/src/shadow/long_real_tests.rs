@@ -34,13 +34,13 @@ fn is_near(a: &Rational, b: &Rational, bound: f64) -> bool {
 }
 
 /// An operation and where its operands come from.
-type Step = (u8, usize, usize, i32);
+type TriedStep = (u8, usize, usize, i32);
 
 #[test]
 fn every_number_lies_within_its_bound_of_the_exact_one() {
     let starts = prop::collection::vec(any::<i64>().prop_flat_map(|n| (0u32..63).prop_map(move |by| n >> by)), 3);
     let steps = prop::collection::vec((0u8..6, 0usize..16, 0usize..16, -40i32..40), 1..12);
-    check(1500, &(starts, steps), |(starts, steps): (Vec<i64>, Vec<Step>)| {
+    check(1500, &(starts, steps), |(starts, steps): (Vec<i64>, Vec<TriedStep>)| {
         let mut numbers: Vec<LongReal> = starts.iter().map(|&n| LongReal::whole(n.into())).collect();
         let mut rationals: Vec<Rational> = starts.iter().map(|&n| Rational(n.into(), 1.into())).collect();
         for (operation, a, b, by) in steps {

@@ -25,7 +25,7 @@ pub struct ShadowNumber {
 
 /// A number in a formula: the formula's exact value on the machine's numbers, and on their shadows.
 #[derive(Clone, Debug)]
-pub struct Term {
+pub struct FormulaTerm {
     /// Value on the machine's numbers, before anything is rounded.
     pub machine: LongReal,
     /// Value on the shadows, where it is another one.
@@ -36,18 +36,18 @@ pub struct Term {
     pub largest: Option<i32>,
 }
 
-impl Term {
+impl FormulaTerm {
     /// A number that is known exactly, such as one of the program's constants.
-    pub fn whole(raw: i64) -> Term {
-        Term { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None }
+    pub fn whole(raw: i64) -> FormulaTerm {
+        FormulaTerm { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None }
     }
 
     /// The machine's number with its shadow; a number without one begins anew at the machine's.
-    pub fn new(raw: i64, shadow: Option<&ShadowNumber>) -> Term {
-        Term {
+    pub fn new(raw: i64, shadow: Option<&ShadowNumber>) -> FormulaTerm {
+        FormulaTerm {
             deviation: shadow.and_then(|shadow| shadow.deviation.clone()),
             scale: shadow.and_then(|shadow| shadow.scale),
-            ..Term::whole(raw)
+            ..FormulaTerm::whole(raw)
         }
     }
 
@@ -60,21 +60,21 @@ impl Term {
         self.deviation.as_ref().map_or(ErrorParts::NONE, |deviation| deviation.parts.times(factor))
     }
 
-    fn with(self, deviates: bool, compute: impl FnOnce() -> Deviation) -> Term {
-        Term { deviation: deviates.then(|| Arc::new(compute())), ..self }
+    fn with(self, deviates: bool, compute: impl FnOnce() -> Deviation) -> FormulaTerm {
+        FormulaTerm { deviation: deviates.then(|| Arc::new(compute())), ..self }
     }
 
-    fn deviates(&self, other: &Term) -> bool {
+    fn deviates(&self, other: &FormulaTerm) -> bool {
         self.deviation.is_some() || other.deviation.is_some()
     }
 
-    fn summed(&self, other: &Term, sign: f64) -> Term {
+    fn summed(&self, other: &FormulaTerm, sign: f64) -> FormulaTerm {
         let add = |a: &LongReal, b: &LongReal| if sign < 0.0 { a.minus(b) } else { a.plus(b) };
-        let exponent = |term: &Term| {
+        let exponent = |term: &FormulaTerm| {
             let own = (!term.real().is_zero()).then(|| term.real().exponent());
             own.max(term.largest)
         };
-        let sum = Term {
+        let sum = FormulaTerm {
             machine: add(&self.machine, &other.machine),
             deviation: None,
             // Numbers of two formats have no sum that has one; a number without a known format takes that of the other one where it is 0.
@@ -87,8 +87,9 @@ impl Term {
         })
     }
 
-    fn scale_beside_zero(&self, other: &Term) -> Option<i32> {
-        let is_nothing = |term: &Term| term.scale.is_none() && term.machine.is_zero() && term.deviation.is_none();
+    fn scale_beside_zero(&self, other: &FormulaTerm) -> Option<i32> {
+        let is_nothing =
+            |term: &FormulaTerm| term.scale.is_none() && term.machine.is_zero() && term.deviation.is_none();
         match (is_nothing(self), is_nothing(other)) {
             (true, _) => other.scale,
             (_, true) => self.scale,
@@ -97,24 +98,24 @@ impl Term {
     }
 
     /// The sum.
-    pub fn plus(&self, other: &Term) -> Term {
+    pub fn plus(&self, other: &FormulaTerm) -> FormulaTerm {
         self.summed(other, 1.0)
     }
 
     /// The difference.
-    pub fn minus(&self, other: &Term) -> Term {
+    pub fn minus(&self, other: &FormulaTerm) -> FormulaTerm {
         self.summed(other, -1.0)
     }
 
     /// The number with the other sign.
-    pub fn negated(&self) -> Term {
-        let negated = Term { machine: self.machine.negated(), ..self.clone() };
+    pub fn negated(&self) -> FormulaTerm {
+        let negated = FormulaTerm { machine: self.machine.negated(), ..self.clone() };
         negated.with(self.deviation.is_some(), || Deviation { real: self.real().negated(), parts: self.parts(-1.0) })
     }
 
     /// The number times 2^by: the raw number grows, and the number that it stands for in its format stays.
-    pub fn scaled(&self, by: i32) -> Term {
-        let scaled = Term {
+    pub fn scaled(&self, by: i32) -> FormulaTerm {
+        let scaled = FormulaTerm {
             machine: self.machine.scaled(by),
             scale: self.scale.map(|scale| scale + by),
             largest: self.largest.map(|largest| largest + by),
@@ -127,8 +128,8 @@ impl Term {
     }
 
     /// The product. The parts come from `a b - a' b' = (a - a') b' + a (b - b')`.
-    pub fn times(&self, other: &Term) -> Term {
-        let product = Term {
+    pub fn times(&self, other: &FormulaTerm) -> FormulaTerm {
+        let product = FormulaTerm {
             machine: self.machine.times(&other.machine),
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a + b),
@@ -142,8 +143,8 @@ impl Term {
 
     /// The quotient; `None` where the machine or the shadow divides by 0. The parts come from
     /// `a / b - a' / b' = ((a - a') - (a' / b') (b - b')) / b`.
-    pub fn over(&self, other: &Term) -> Option<Term> {
-        let quotient = Term {
+    pub fn over(&self, other: &FormulaTerm) -> Option<FormulaTerm> {
+        let quotient = FormulaTerm {
             machine: self.machine.over(&other.machine)?,
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a - b),
@@ -155,22 +156,22 @@ impl Term {
         let real = self.real().over(other.real())?;
         let by = 1.0 / other.machine.to_f64();
         let parts = self.parts(by).plus(&other.parts(-real.to_f64() * by));
-        Some(Term { deviation: Some(Arc::new(Deviation { real, parts })), ..quotient })
+        Some(FormulaTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..quotient })
     }
 
     /// The square root; `None` where the machine's number or the shadow is negative. The parts come from
     /// `r - r' = (a - a') / (r + r')`.
-    pub fn root(&self) -> Option<Term> {
+    pub fn root(&self) -> Option<FormulaTerm> {
         let machine = self.machine.root()?;
         // Half of an odd number of fraction bits is no number of bits.
         let scale = self.scale.filter(|scale| scale % 2 == 0).map(|scale| scale / 2);
-        let root = Term { machine, deviation: None, scale, largest: None };
+        let root = FormulaTerm { machine, deviation: None, scale, largest: None };
         if self.deviation.is_none() {
             return Some(root);
         }
         let real = self.real().root()?;
         let sum = root.machine.to_f64() + real.to_f64();
         let parts = if sum == 0.0 { ErrorParts::NONE } else { self.parts(1.0 / sum) };
-        Some(Term { deviation: Some(Arc::new(Deviation { real, parts })), ..root })
+        Some(FormulaTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..root })
     }
 }

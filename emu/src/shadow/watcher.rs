@@ -11,8 +11,8 @@ use super::ledger::{ShadowLedger, ShadowSites};
 use super::memory::ShadowMemory;
 use super::number::ShadowNumber;
 use super::rows::{
-    BusRoom, ControlRoom, Formulas, IntegerRoom, LocalRoom, PacketRoom, RayRoom, RealResult, ScalarRoom, ShadowEffect,
-    ShadowInput, VectorRoom, WalkRoom, WideRoom,
+    BusRoom, ControlRoom, IntegerRoom, LocalRoom, PacketRoom, RayRoom, RealFormulas, RealResult, ScalarRoom,
+    ShadowEffect, ShadowInput, VectorRoom, WalkRoom, WideRoom,
 };
 use super::settle::{ResultPlace, moved, settle};
 use crate::code::octets::Buffer;
@@ -200,7 +200,7 @@ impl Shadow {
         let mut expected = std::mem::take(&mut self.expected);
         expected.clear();
         let declared = self.program.declared.get(pc as usize).copied().unwrap_or_default();
-        let mut formulas = Formulas {
+        let mut formulas = RealFormulas {
             buffer,
             local: &self.buffer,
             global: &self.global,
@@ -356,7 +356,7 @@ impl Shadow {
         }
     }
 
-    /// What an instruction in Rust has written begins anew.
+    /// Results of an instruction in Rust begin anew.
     fn forget_written(&mut self, slot: &Slot, code: &Code) {
         let Some(op) = slot.op else { return };
         for operand in code.isa.definition(op).operands.iter().filter(|operand| b"dexy".contains(&operand.letter)) {

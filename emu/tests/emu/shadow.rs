@@ -98,7 +98,7 @@ impl Model {
         self.numbers.get(&(file, number, k)).cloned().unwrap_or_else(|| Exact::whole(raw()))
     }
 
-    /// What the instruction makes of exact numbers; `before` are the machine's registers, which decide.
+    /// Exact numbers that the instruction writes; `before` are the machine's registers, which decide.
     fn execute(&mut self, (op, operands): &Straight, before: &Registers) -> Vec<((char, u8, usize), Option<Exact>)> {
         let number = |at: usize| operands[at] as u8;
         let s = |at: usize| self.get(before, 's', number(at), 0);

@@ -1,11 +1,11 @@
 //! Decisions of branches on numbers, which the shadow may have taken otherwise. Unsigned comparisons are on integers.
 
-use super::{ControlRoom, Formulas, RealResult, ShadowInput};
+use super::{ControlRoom, RealFormulas, RealResult, ShadowInput};
 use RealResult::Integer;
 
 const ZERO: ShadowInput<'static> = ShadowInput { raw: 0, shadow: None };
 
-impl ControlRoom for Formulas<'_> {
+impl ControlRoom for RealFormulas<'_> {
     fn beq(&mut self, a: ShadowInput, b: ShadowInput, _: i32) {
         self.compare(&a, &b, |order| order.is_eq());
     }

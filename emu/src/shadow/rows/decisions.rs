@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use isa::number::ray::Plane;
 
-use super::{Formulas, ShadowInput};
+use super::{RealFormulas, ShadowInput};
 use crate::shadow::long_real::LongReal;
 
 /// Number of the axis that stands for time.
@@ -150,7 +150,7 @@ pub(super) fn surely_misses(ray: &[[f64; 3]; 2], vertices: &[[f64; 3]; 3]) -> bo
         || t < -MARGIN * a * b * s
 }
 
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     /// Notes the choice of the largest component.
     pub(super) fn decide_major(&mut self, a: &[ShadowInput; 3]) {
         if a.iter().all(|component| component.shadow.is_none()) {

@@ -1,7 +1,7 @@
-//! Formulas of the integer instructions: what they write is an integer, which has no shadow. A copy keeps it, and so does logic that changes
+//! RealFormulas of the integer instructions: what they write is an integer, which has no shadow. A copy keeps it, and so does logic that changes
 //! no bit of a number: that is how programs select one of two numbers by masks.
 
-use super::{Formulas, IntegerRoom, RealResult, ShadowInput};
+use super::{IntegerRoom, RealFormulas, RealResult, ShadowInput};
 use RealResult::Integer;
 
 /// The number among two of which a pattern has all bits, if there is one.
@@ -15,7 +15,7 @@ fn kept_of(pattern: i64, a: ShadowInput) -> RealResult {
     kept(pattern, a, a)
 }
 
-impl IntegerRoom for Formulas<'_> {
+impl IntegerRoom for RealFormulas<'_> {
     fn iadd(&mut self, _: ShadowInput, _: ShadowInput) -> (RealResult,) {
         (Integer,)
     }

@@ -1,7 +1,7 @@
 //! Numbers through memory and messages: a number keeps its shadow in the buffer, in global memory and on its way to another core. Octets
 //! and halves of words are integers.
 
-use super::{BusRoom, Formulas, LocalRoom, RealResult, ShadowEffect, ShadowInput, each};
+use super::{BusRoom, LocalRoom, RealFormulas, RealResult, ShadowEffect, ShadowInput, each};
 use crate::shadow::memory::ShadowMemory;
 use RealResult::Integer;
 
@@ -21,7 +21,7 @@ fn numbers(memory: &ShadowMemory, address: u32) -> [RealResult; 3] {
     each(|k| number(memory, address.wrapping_add(WORD * k as u32), WORD))
 }
 
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     fn to_buffer(&mut self, address: u32, octets: u32, numbers: &[ShadowInput]) {
         self.effect =
             ShadowEffect::Buffer(address, octets, numbers.iter().map(|number| number.shadow.cloned()).collect());
@@ -37,7 +37,7 @@ impl Formulas<'_> {
     }
 }
 
-impl LocalRoom for Formulas<'_> {
+impl LocalRoom for RealFormulas<'_> {
     fn lbu(&mut self, _: u32, _: i32) -> (RealResult,) {
         (Integer,)
     }
@@ -100,7 +100,7 @@ impl LocalRoom for Formulas<'_> {
     }
 }
 
-impl BusRoom for Formulas<'_> {
+impl BusRoom for RealFormulas<'_> {
     fn load(&mut self, a: u32, b: u32, c: ShadowInput) {
         self.effect = ShadowEffect::Load(a, b, c.raw as u32);
     }

@@ -15,7 +15,7 @@ mod wide;
 use isa::number::Modes;
 
 use super::memory::ShadowMemory;
-use super::number::{ShadowNumber, Term};
+use super::number::{FormulaTerm, ShadowNumber};
 use crate::code::octets::Buffer;
 
 /// A register's number that a formula reads.
@@ -23,7 +23,7 @@ use crate::code::octets::Buffer;
 pub struct ShadowInput<'a> {
     /// The machine's number.
     pub raw: i64,
-    /// Its shadow; `None` of an integer, which counts as exact where it meets numbers.
+    /// Shadow of the number; `None` of an integer, which counts as exact where it meets numbers.
     pub shadow: Option<&'a ShadowNumber>,
 }
 
@@ -35,9 +35,9 @@ pub enum RealResult {
     /// The number that was read, moved.
     Moved(ShadowNumber),
     /// A number by a formula.
-    Computed(Term),
+    Computed(FormulaTerm),
     /// A number by a formula whose shift brings it into a format: where both are known they have to agree.
-    Fitted(Term),
+    Fitted(FormulaTerm),
 }
 
 /// Effect of an instruction on memory and messages, once it has happened.
@@ -67,7 +67,7 @@ pub enum ShadowEffect {
 }
 
 /// Surroundings in which a formula is evaluated.
-pub struct Formulas<'a> {
+pub struct RealFormulas<'a> {
     /// The local buffer, before the instruction.
     pub buffer: &'a Buffer,
     /// Shadows of the buffer.
@@ -90,8 +90,8 @@ pub struct Formulas<'a> {
 
 impl<'a> ShadowInput<'a> {
     /// The number in a formula.
-    pub fn term(&self) -> Term {
-        Term::new(self.raw, self.shadow)
+    pub fn term(&self) -> FormulaTerm {
+        FormulaTerm::new(self.raw, self.shadow)
     }
 
     /// The shadow differs from the machine's number.
@@ -105,7 +105,7 @@ impl<'a> ShadowInput<'a> {
     }
 }
 
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     /// Notes a decision on numbers, of which one at least has a shadow that is another number.
     fn decide(&mut self, machine: bool, shadow: impl FnOnce() -> bool) {
         self.decisions += 1;
@@ -210,32 +210,32 @@ fn each(of: impl FnMut(usize) -> RealResult) -> [RealResult; 3] {
 }
 
 /// The exact sum of three products.
-fn dot(a: &[Term; 3], b: &[Term; 3]) -> Term {
+fn dot(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> FormulaTerm {
     a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
 }
 
 /// A component of the exact cross product.
-fn cross_component(a: &[Term; 3], b: &[Term; 3], k: usize) -> Term {
+fn cross_component(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3], k: usize) -> FormulaTerm {
     let (next, last) = ((k + 1) % 3, (k + 2) % 3);
     a[next].times(&b[last]).minus(&a[last].times(&b[next]))
 }
 
 /// The exact cross product.
-fn cross(a: &[Term; 3], b: &[Term; 3]) -> [Term; 3] {
+fn cross(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> [FormulaTerm; 3] {
     std::array::from_fn(|k| cross_component(a, b, k))
 }
 
 /// The difference of two vectors.
-fn difference(a: &[Term; 3], b: &[Term; 3]) -> [Term; 3] {
+fn difference(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> [FormulaTerm; 3] {
     std::array::from_fn(|k| a[k].minus(&b[k]))
 }
 
 /// The components of a vector in a formula.
-fn terms(a: &[ShadowInput; 3]) -> [Term; 3] {
+fn terms(a: &[ShadowInput; 3]) -> [FormulaTerm; 3] {
     std::array::from_fn(|k| a[k].term())
 }
 
 /// The quotient, times 2^shift; a division by 0 begins anew at the machine's number.
-fn quotient(a: &Term, b: &Term, shift: i32) -> RealResult {
+fn quotient(a: &FormulaTerm, b: &FormulaTerm, shift: i32) -> RealResult {
     a.over(b).map_or(RealResult::Integer, |quotient| RealResult::Fitted(quotient.scaled(shift)))
 }

@@ -6,7 +6,7 @@ use isa::number::ray::{PACKET_WORDS, PacketHit, PacketWords};
 
 use super::decisions::{RealRay, deviates, meeting, reals, surely_misses};
 use super::ray::{hit, machine_ray};
-use super::{Formulas, PacketRoom, RealResult, ShadowInput, each};
+use super::{PacketRoom, RealFormulas, RealResult, ShadowInput, each};
 use crate::shadow::long_real::LongReal;
 use RealResult::Integer;
 
@@ -40,7 +40,7 @@ enum PacketSearch {
     Any,
 }
 
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     fn packet(&self, address: u32, triangles: i64) -> Option<BufferedPacket<'_>> {
         let octets = self.buffer.octets().get(address as usize..)?;
         let count = triangles as u32 as usize;
@@ -131,7 +131,7 @@ impl Formulas<'_> {
     }
 }
 
-impl PacketRoom for Formulas<'_> {
+impl PacketRoom for RealFormulas<'_> {
     fn rnear(
         &mut self,
         x: [ShadowInput; 3],

@@ -5,7 +5,7 @@ use isa::number::ray::{
 };
 
 use super::decisions::{RealCrossing, RealRay, deviates, meeting, raws, reals};
-use super::{Formulas, RayRoom, RealResult, ShadowInput, cross, difference, dot, each, quotient, terms};
+use super::{RayRoom, RealFormulas, RealResult, ShadowInput, cross, difference, dot, each, quotient, terms};
 use RealResult::Integer;
 
 /// The ray of the machine's numbers.
@@ -73,7 +73,7 @@ pub(super) fn real_step(ray: &RealRay, split: Plane, entry: &RealCrossing, exit:
     (end, matches!(end, SplitEnd::Near | SplitEnd::Both) == is_backwards)
 }
 
-impl RayRoom for Formulas<'_> {
+impl RayRoom for RealFormulas<'_> {
     fn rtri(&mut self, a: [[ShadowInput; 3]; 2], b: [[ShadowInput; 3]; 3], i: i32) -> (RealResult, [RealResult; 3]) {
         let is_hit = triangle(&machine_ray(&a), &[raws(&b[0]), raws(&b[1]), raws(&b[2])]).end == TriangleEnd::Hit;
         let has_shadow = deviates(&a) || deviates(&b);

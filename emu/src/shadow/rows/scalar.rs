@@ -1,9 +1,9 @@
 //! Exact formulas of the numeric instructions on scalars.
 
-use super::{Formulas, RealResult, ScalarRoom, ShadowInput, quotient};
+use super::{RealFormulas, RealResult, ScalarRoom, ShadowInput, quotient};
 use RealResult::{Computed, Fitted};
 
-impl ScalarRoom for Formulas<'_> {
+impl ScalarRoom for RealFormulas<'_> {
     fn add(&mut self, a: ShadowInput, b: ShadowInput) -> (RealResult,) {
         (Computed(a.term().plus(&b.term())),)
     }
@@ -50,7 +50,7 @@ impl ScalarRoom for Formulas<'_> {
 }
 
 /// Choices that scalars and components of vectors share. They are the machine's; the shadow goes along.
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     /// The magnitude by the sign that the machine sees.
     pub(super) fn magnitude(&mut self, a: &ShadowInput) -> RealResult {
         let zero = ShadowInput { raw: 0, shadow: None };

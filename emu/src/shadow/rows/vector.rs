@@ -2,10 +2,10 @@
 
 use isa::number::normalizing_shift;
 
-use super::{Formulas, RealResult, ShadowInput, VectorRoom, cross_component, dot, each, quotient, terms};
+use super::{RealFormulas, RealResult, ShadowInput, VectorRoom, cross_component, dot, each, quotient, terms};
 use RealResult::{Computed, Fitted, Integer};
 
-impl VectorRoom for Formulas<'_> {
+impl VectorRoom for RealFormulas<'_> {
     fn vadd(&mut self, a: [ShadowInput; 3], b: [ShadowInput; 3]) -> ([RealResult; 3],) {
         (each(|k| Computed(a[k].term().plus(&b[k].term()))),)
     }

@@ -4,7 +4,7 @@ use isa::number::ray::{Children, Descent, Plane, SplitEnd};
 
 use super::decisions::{RealRay, deviates};
 use super::ray::{machine_ray, real_step};
-use super::{Formulas, RealResult, ShadowEffect, ShadowInput, WalkRoom};
+use super::{RealFormulas, RealResult, ShadowEffect, ShadowInput, WalkRoom};
 use RealResult::Integer;
 
 /// Octets of a node.
@@ -13,7 +13,7 @@ const NODE: u32 = 8;
 /// Octets of a note in front of which a walk writes.
 const NOTE: u32 = 12;
 
-impl Formulas<'_> {
+impl RealFormulas<'_> {
     fn pattern(&self, address: u32) -> Option<i64> {
         self.buffer.get(address).ok().map(i64::from_le_bytes)
     }
@@ -54,7 +54,7 @@ impl Formulas<'_> {
     }
 }
 
-impl WalkRoom for Formulas<'_> {
+impl WalkRoom for RealFormulas<'_> {
     fn rwalk(
         &mut self,
         x: ShadowInput,

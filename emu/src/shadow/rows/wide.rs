@@ -1,9 +1,9 @@
 //! Exact formulas of the instructions on wide accumulators. Rows on patterns of bits write integers.
 
-use super::{Formulas, RealResult, ShadowInput, WideRoom, cross, dot, quotient, terms};
+use super::{RealFormulas, RealResult, ShadowInput, WideRoom, cross, dot, quotient, terms};
 use RealResult::{Computed, Fitted, Integer};
 
-impl WideRoom for Formulas<'_> {
+impl WideRoom for RealFormulas<'_> {
     fn wmul(&mut self, a: ShadowInput, b: ShadowInput) -> (RealResult,) {
         (Computed(a.term().times(&b.term())),)
     }

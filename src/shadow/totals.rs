@@ -112,9 +112,14 @@ pub struct FinalNumber<'a> {
     pub shadow: Option<&'a ShadowNumber>,
 }
 
+/// A number as JSON has it, which knows none that is infinite.
+fn finite(number: f64) -> f64 {
+    number.clamp(f64::MIN, f64::MAX)
+}
+
 /// Error of a machine's number in its units.
 pub(super) fn error_of(raw: i64, deviation: &Deviation) -> f64 {
-    LongReal::whole(raw.into()).minus(&deviation.real).to_f64()
+    finite(LongReal::whole(raw.into()).minus(&deviation.real).to_f64())
 }
 
 /// Significant bits of a number that an error leaves.
@@ -149,7 +154,7 @@ impl ShadowTotals {
         let error = error_of(number.raw, deviation);
         self.different += 1;
         self.largest = self.largest.max(error.abs());
-        self.squares += error * error;
+        self.squares = finite(self.squares + error * error);
         let parts: &ErrorParts = &deviation.parts;
         let sum = parts.iter().map(|(_, amount)| amount.abs()).sum::<f64>() + parts.rest().abs();
         let weight = match weight {
@@ -175,8 +180,8 @@ impl ShadowTotals {
         if !is_among {
             return;
         }
-        let real = |value: f64| number.scale.map(|scale| value * f64::from(-scale).exp2());
-        let exact = deviation.real.to_f64();
+        let real = |value: f64| number.scale.map(|scale| finite(value * f64::from(-scale).exp2()));
+        let exact = finite(deviation.real.to_f64());
         let output = ShadowOutput {
             name: name(),
             raw: number.raw,
@@ -209,7 +214,7 @@ impl ShadowTotals {
         self.compared += other.compared;
         self.different += other.different;
         self.largest = self.largest.max(other.largest);
-        self.squares += other.squares;
+        self.squares = finite(self.squares + other.squares);
         self.worst.extend(other.worst);
         // Stable, so that of equal errors those of the first piece stay first.
         self.worst.sort_by(|(a, _), (b, _)| b.error_ulps.abs().total_cmp(&a.error_ulps.abs()));

@@ -66,10 +66,11 @@ pub struct LargestError {
 
 impl LargestError {
     fn note(&mut self, ulps: f64, scale: Option<i32>) {
-        let ulps = ulps.abs();
+        // Results are JSON numbers, which are never infinite.
+        let ulps = ulps.abs().min(f64::MAX);
         self.ulps = self.ulps.max(ulps);
         if let Some(scale) = scale {
-            self.value = self.value.max(ulps * f64::from(-scale).exp2());
+            self.value = self.value.max((ulps * f64::from(-scale).exp2()).min(f64::MAX));
         }
     }
 

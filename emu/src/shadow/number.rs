@@ -25,7 +25,7 @@ pub struct ShadowNumber {
 
 /// A number in a formula: the formula's exact value on the machine's numbers, and on their shadows.
 #[derive(Clone, Debug)]
-pub struct FormulaTerm {
+pub struct ShadowTerm {
     /// Value on the machine's numbers, before anything is rounded.
     pub machine: LongReal,
     /// Value on the shadows, where it is another one.
@@ -36,18 +36,18 @@ pub struct FormulaTerm {
     pub largest: Option<i32>,
 }
 
-impl FormulaTerm {
+impl ShadowTerm {
     /// A number that is known exactly, such as one of the program's constants.
-    pub fn whole(raw: i64) -> FormulaTerm {
-        FormulaTerm { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None }
+    pub fn whole(raw: i64) -> ShadowTerm {
+        ShadowTerm { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None }
     }
 
     /// The machine's number with its shadow; a number without one begins anew at the machine's.
-    pub fn new(raw: i64, shadow: Option<&ShadowNumber>) -> FormulaTerm {
-        FormulaTerm {
+    pub fn new(raw: i64, shadow: Option<&ShadowNumber>) -> ShadowTerm {
+        ShadowTerm {
             deviation: shadow.and_then(|shadow| shadow.deviation.clone()),
             scale: shadow.and_then(|shadow| shadow.scale),
-            ..FormulaTerm::whole(raw)
+            ..ShadowTerm::whole(raw)
         }
     }
 
@@ -60,21 +60,21 @@ impl FormulaTerm {
         self.deviation.as_ref().map_or(ErrorParts::NONE, |deviation| deviation.parts.times(factor))
     }
 
-    fn with(self, deviates: bool, compute: impl FnOnce() -> Deviation) -> FormulaTerm {
-        FormulaTerm { deviation: deviates.then(|| Arc::new(compute())), ..self }
+    fn with(self, deviates: bool, compute: impl FnOnce() -> Deviation) -> ShadowTerm {
+        ShadowTerm { deviation: deviates.then(|| Arc::new(compute())), ..self }
     }
 
-    fn deviates(&self, other: &FormulaTerm) -> bool {
+    fn deviates(&self, other: &ShadowTerm) -> bool {
         self.deviation.is_some() || other.deviation.is_some()
     }
 
-    fn summed(&self, other: &FormulaTerm, sign: f64) -> FormulaTerm {
+    fn summed(&self, other: &ShadowTerm, sign: f64) -> ShadowTerm {
         let add = |a: &LongReal, b: &LongReal| if sign < 0.0 { a.minus(b) } else { a.plus(b) };
-        let exponent = |term: &FormulaTerm| {
+        let exponent = |term: &ShadowTerm| {
             let own = (!term.real().is_zero()).then(|| term.real().exponent());
             own.max(term.largest)
         };
-        let sum = FormulaTerm {
+        let sum = ShadowTerm {
             machine: add(&self.machine, &other.machine),
             deviation: None,
             // Numbers of two formats have no sum that has one; a number without a known format takes that of the other one where it is 0.
@@ -87,9 +87,8 @@ impl FormulaTerm {
         })
     }
 
-    fn scale_beside_zero(&self, other: &FormulaTerm) -> Option<i32> {
-        let is_nothing =
-            |term: &FormulaTerm| term.scale.is_none() && term.machine.is_zero() && term.deviation.is_none();
+    fn scale_beside_zero(&self, other: &ShadowTerm) -> Option<i32> {
+        let is_nothing = |term: &ShadowTerm| term.scale.is_none() && term.machine.is_zero() && term.deviation.is_none();
         match (is_nothing(self), is_nothing(other)) {
             (true, _) => other.scale,
             (_, true) => self.scale,
@@ -98,24 +97,24 @@ impl FormulaTerm {
     }
 
     /// The sum.
-    pub fn plus(&self, other: &FormulaTerm) -> FormulaTerm {
+    pub fn plus(&self, other: &ShadowTerm) -> ShadowTerm {
         self.summed(other, 1.0)
     }
 
     /// The difference.
-    pub fn minus(&self, other: &FormulaTerm) -> FormulaTerm {
+    pub fn minus(&self, other: &ShadowTerm) -> ShadowTerm {
         self.summed(other, -1.0)
     }
 
     /// The number with the other sign.
-    pub fn negated(&self) -> FormulaTerm {
-        let negated = FormulaTerm { machine: self.machine.negated(), ..self.clone() };
+    pub fn negated(&self) -> ShadowTerm {
+        let negated = ShadowTerm { machine: self.machine.negated(), ..self.clone() };
         negated.with(self.deviation.is_some(), || Deviation { real: self.real().negated(), parts: self.parts(-1.0) })
     }
 
     /// The number times 2^by: the raw number grows, and the number that it stands for in its format stays.
-    pub fn scaled(&self, by: i32) -> FormulaTerm {
-        let scaled = FormulaTerm {
+    pub fn scaled(&self, by: i32) -> ShadowTerm {
+        let scaled = ShadowTerm {
             machine: self.machine.scaled(by),
             scale: self.scale.map(|scale| scale + by),
             largest: self.largest.map(|largest| largest + by),
@@ -128,8 +127,8 @@ impl FormulaTerm {
     }
 
     /// The product. The parts come from `a b - a' b' = (a - a') b' + a (b - b')`.
-    pub fn times(&self, other: &FormulaTerm) -> FormulaTerm {
-        let product = FormulaTerm {
+    pub fn times(&self, other: &ShadowTerm) -> ShadowTerm {
+        let product = ShadowTerm {
             machine: self.machine.times(&other.machine),
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a + b),
@@ -143,8 +142,8 @@ impl FormulaTerm {
 
     /// The quotient; `None` where the machine or the shadow divides by 0. The parts come from
     /// `a / b - a' / b' = ((a - a') - (a' / b') (b - b')) / b`.
-    pub fn over(&self, other: &FormulaTerm) -> Option<FormulaTerm> {
-        let quotient = FormulaTerm {
+    pub fn over(&self, other: &ShadowTerm) -> Option<ShadowTerm> {
+        let quotient = ShadowTerm {
             machine: self.machine.over(&other.machine)?,
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a - b),
@@ -156,22 +155,22 @@ impl FormulaTerm {
         let real = self.real().over(other.real())?;
         let by = 1.0 / other.machine.to_f64();
         let parts = self.parts(by).plus(&other.parts(-real.to_f64() * by));
-        Some(FormulaTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..quotient })
+        Some(ShadowTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..quotient })
     }
 
     /// The square root; `None` where the machine's number or the shadow is negative. The parts come from
     /// `r - r' = (a - a') / (r + r')`.
-    pub fn root(&self) -> Option<FormulaTerm> {
+    pub fn root(&self) -> Option<ShadowTerm> {
         let machine = self.machine.root()?;
         // Half of an odd number of fraction bits is no number of bits.
         let scale = self.scale.filter(|scale| scale % 2 == 0).map(|scale| scale / 2);
-        let root = FormulaTerm { machine, deviation: None, scale, largest: None };
+        let root = ShadowTerm { machine, deviation: None, scale, largest: None };
         if self.deviation.is_none() {
             return Some(root);
         }
         let real = self.real().root()?;
         let sum = root.machine.to_f64() + real.to_f64();
         let parts = if sum == 0.0 { ErrorParts::NONE } else { self.parts(1.0 / sum) };
-        Some(FormulaTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..root })
+        Some(ShadowTerm { deviation: Some(Arc::new(Deviation { real, parts })), ..root })
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::ledger::{FEW_GOOD_BITS, FormatGap, SettledResult};
 use super::long_real::LongReal;
-use super::number::{Deviation, FormulaTerm, ShadowNumber};
+use super::number::{Deviation, ShadowNumber, ShadowTerm};
 use super::parts::ErrorParts;
 
 /// Place of a result.
@@ -32,7 +32,7 @@ fn good_bits(real: &LongReal, error: f64) -> f64 {
 /// Settles a computed result. Where its shift has to bring it into a format (`is_fitted`) and the declared one is another, the real number is the
 /// one in the declared format, and the line has brought the difference in: a shift that is one too large halves the number that everybody else
 /// takes the register for.
-pub fn settle(term: FormulaTerm, is_fitted: bool, place: ResultPlace) -> (ShadowNumber, SettledResult) {
+pub fn settle(term: ShadowTerm, is_fitted: bool, place: ResultPlace) -> (ShadowNumber, SettledResult) {
     let raw = LongReal::whole(place.raw.into());
     let rounded = raw.minus(&term.machine).to_f64();
     let is_saturated = rounded.abs() >= 1.0;

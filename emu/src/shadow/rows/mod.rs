@@ -15,7 +15,7 @@ mod wide;
 use isa::number::Modes;
 
 use super::memory::ShadowMemory;
-use super::number::{FormulaTerm, ShadowNumber};
+use super::number::{ShadowNumber, ShadowTerm};
 use crate::code::octets::Buffer;
 
 /// A register's number that a formula reads.
@@ -35,9 +35,9 @@ pub enum RealResult {
     /// The number that was read, moved.
     Moved(ShadowNumber),
     /// A number by a formula.
-    Computed(FormulaTerm),
+    Computed(ShadowTerm),
     /// A number by a formula whose shift brings it into a format: where both are known they have to agree.
-    Fitted(FormulaTerm),
+    Fitted(ShadowTerm),
 }
 
 /// Effect of an instruction on memory and messages, once it has happened.
@@ -90,8 +90,8 @@ pub struct RealFormulas<'a> {
 
 impl<'a> ShadowInput<'a> {
     /// The number in a formula.
-    pub fn term(&self) -> FormulaTerm {
-        FormulaTerm::new(self.raw, self.shadow)
+    pub fn term(&self) -> ShadowTerm {
+        ShadowTerm::new(self.raw, self.shadow)
     }
 
     /// The shadow differs from the machine's number.
@@ -210,32 +210,32 @@ fn each(of: impl FnMut(usize) -> RealResult) -> [RealResult; 3] {
 }
 
 /// The exact sum of three products.
-fn dot(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> FormulaTerm {
+fn dot(a: &[ShadowTerm; 3], b: &[ShadowTerm; 3]) -> ShadowTerm {
     a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]))
 }
 
 /// A component of the exact cross product.
-fn cross_component(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3], k: usize) -> FormulaTerm {
+fn cross_component(a: &[ShadowTerm; 3], b: &[ShadowTerm; 3], k: usize) -> ShadowTerm {
     let (next, last) = ((k + 1) % 3, (k + 2) % 3);
     a[next].times(&b[last]).minus(&a[last].times(&b[next]))
 }
 
 /// The exact cross product.
-fn cross(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> [FormulaTerm; 3] {
+fn cross(a: &[ShadowTerm; 3], b: &[ShadowTerm; 3]) -> [ShadowTerm; 3] {
     std::array::from_fn(|k| cross_component(a, b, k))
 }
 
 /// The difference of two vectors.
-fn difference(a: &[FormulaTerm; 3], b: &[FormulaTerm; 3]) -> [FormulaTerm; 3] {
+fn difference(a: &[ShadowTerm; 3], b: &[ShadowTerm; 3]) -> [ShadowTerm; 3] {
     std::array::from_fn(|k| a[k].minus(&b[k]))
 }
 
 /// The components of a vector in a formula.
-fn terms(a: &[ShadowInput; 3]) -> [FormulaTerm; 3] {
+fn terms(a: &[ShadowInput; 3]) -> [ShadowTerm; 3] {
     std::array::from_fn(|k| a[k].term())
 }
 
 /// The quotient, times 2^shift; a division by 0 begins anew at the machine's number.
-fn quotient(a: &FormulaTerm, b: &FormulaTerm, shift: i32) -> RealResult {
+fn quotient(a: &ShadowTerm, b: &ShadowTerm, shift: i32) -> RealResult {
     a.over(b).map_or(RealResult::Integer, |quotient| RealResult::Fitted(quotient.scaled(shift)))
 }

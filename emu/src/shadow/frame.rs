@@ -109,6 +109,11 @@ impl Link for FrameLink<'_> {
         self.acts(result)
     }
 
+    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
+        let result = AtOnce(self.memory).read_octets(address, octets);
+        self.acts(result)
+    }
+
     fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
         let result = AtOnce(self.memory).write(address, words);
         self.acts(result)

@@ -31,6 +31,11 @@ impl RealFormulas<'_> {
         self.effect = ShadowEffect::Global(address, numbers.iter().map(|number| number.shadow.cloned()).collect());
     }
 
+    /// Numbers that are put together from bits are exact: they overwrite so many numbers of so many octets.
+    fn unpacked(&mut self, address: u32, count: ShadowInput, octets: u32) {
+        self.effect = ShadowEffect::Forget(address, (count.raw as u32).saturating_mul(octets));
+    }
+
     fn send(&mut self, to: i64, vectors: &[[ShadowInput; 3]]) {
         let message = vectors.iter().map(|vector| vector.map(|component| component.shadow.cloned()));
         self.effect = ShadowEffect::Send(to, message.collect());
@@ -119,6 +124,26 @@ impl BusRoom for RealFormulas<'_> {
 
     fn ldv3(&mut self, a: u32, i: i32) -> ([[RealResult; 3]; 3],) {
         (std::array::from_fn(|at| numbers(self.global, a.wrapping_add_signed(i).wrapping_add(3 * WORD * at as u32))),)
+    }
+
+    fn loadf(&mut self, a: u32, _: u32, c: ShadowInput, _: i32) {
+        self.unpacked(a, c, WORD);
+    }
+
+    fn loadfu(&mut self, a: u32, _: u32, c: ShadowInput, _: i32) {
+        self.unpacked(a, c, WORD);
+    }
+
+    fn ldv3f(&mut self, _: u32, _: i32, _: i32) -> ([[RealResult; 3]; 3],) {
+        (std::array::from_fn(|_| each(|_| Integer)),)
+    }
+
+    fn ldnode(&mut self, _: u32, _: i32, _: i32) -> (RealResult,) {
+        (Integer,)
+    }
+
+    fn loadnode(&mut self, a: u32, _: u32, c: ShadowInput, _: i32, _: i32) {
+        self.unpacked(a, c, WIDE);
     }
 
     fn stw(&mut self, b: ShadowInput, a: u32, i: i32) {

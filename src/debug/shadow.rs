@@ -27,7 +27,7 @@ fn named(session: &Session, list: &str) -> Result<Vec<(RegisterId, Option<i32>)>
     let id = |request: &ShowRequest| {
         let shown = request.shown(program, &session.stepper().state().registers, pc)?;
         let register = request.register(program, pc).ok_or("there is no such register")?;
-        Ok((register, shown.fraction_bits.map(|bits| bits as i32)))
+        Ok((register, shown.fraction_bits))
     };
     list.0.iter().map(id).collect()
 }
@@ -41,7 +41,7 @@ pub fn text(session: &Session, list: &str) -> Result<String, String> {
     let (program, pc) = (&session.target.program, session.pc());
     let wanted = match list {
         "" => isa::naming::registers()
-            .map(|register| (register, program.format_of(register, pc).map(|(_, bits)| bits as i32)))
+            .map(|register| (register, program.format_of(register, pc).map(|(_, bits)| bits)))
             .collect(),
         list => named(session, list)?,
     };

@@ -12,7 +12,7 @@ use super::totals::{FinalNumber, OutputWeight, ShadowTotals, SourcePrograms};
 fn of_register(stepper: &Stepper, shadow: &Shadow, register: RegisterId) -> Vec<(String, i64, Option<i32>, usize)> {
     let (registers, (file, number)) = (&stepper.state().registers, register);
     let declared = stepper.code.program.format_of(register, stepper.code.word(stepper.state().pc));
-    let declared = declared.map(|(_, bits)| bits as i32);
+    let declared = declared.map(|(_, bits)| bits);
     let scale = |at: usize| declared.or(shadow.of(register)[at].and_then(|number| number.scale));
     match file {
         's' => vec![(format!("s{number}"), registers.scalar(number).into(), scale(0), 0)],

@@ -69,7 +69,9 @@ fn declared_behind(program: &Program, register: RegisterId, word: u32) -> Option
     // What stands behind the last word of a function says nothing about it.
     let (next, here) = (word + 1, program.function(word));
     let next = if program.function(next) == here && (next as usize) < program.words.len() { next } else { word };
-    program.format_of(register, next).map(|(_, bits)| bits as i8)
+    // Shifts speak of the bits of the arithmetic, whatever units people are shown.
+    let (name, _) = program.format_of(register, next)?;
+    program.formats.get(name).map(|bits| *bits as i8)
 }
 
 /// Shadows of a message, and what is known of the program that sent it.

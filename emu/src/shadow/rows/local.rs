@@ -22,12 +22,12 @@ fn numbers(memory: &ShadowMemory, address: u32) -> [RealResult; 3] {
 }
 
 impl RealFormulas<'_> {
-    fn to_buffer(&mut self, address: u32, octets: u32, numbers: &[ShadowInput]) {
+    fn store_locally(&mut self, address: u32, octets: u32, numbers: &[ShadowInput]) {
         self.effect =
             ShadowEffect::Buffer(address, octets, numbers.iter().map(|number| number.shadow.cloned()).collect());
     }
 
-    fn to_global(&mut self, address: u32, numbers: &[ShadowInput]) {
+    fn store_globally(&mut self, address: u32, numbers: &[ShadowInput]) {
         self.effect = ShadowEffect::Global(address, numbers.iter().map(|number| number.shadow.cloned()).collect());
     }
 
@@ -68,7 +68,7 @@ impl LocalRoom for RealFormulas<'_> {
     }
 
     fn sw(&mut self, b: ShadowInput, a: u32, i: i32) {
-        self.to_buffer(a.wrapping_add_signed(i), WORD, &[b]);
+        self.store_locally(a.wrapping_add_signed(i), WORD, &[b]);
     }
 
     fn lv(&mut self, a: u32, i: i32) -> ([RealResult; 3],) {
@@ -76,7 +76,7 @@ impl LocalRoom for RealFormulas<'_> {
     }
 
     fn sv(&mut self, b: [ShadowInput; 3], a: u32, i: i32) {
-        self.to_buffer(a.wrapping_add_signed(i), WORD, &b);
+        self.store_locally(a.wrapping_add_signed(i), WORD, &b);
     }
 
     fn lvh(&mut self, _: u32, _: i32, _: i32) -> ([RealResult; 3],) {
@@ -88,7 +88,7 @@ impl LocalRoom for RealFormulas<'_> {
     }
 
     fn swide(&mut self, b: ShadowInput, a: u32, i: i32) {
-        self.to_buffer(a.wrapping_add_signed(i), WIDE, &[b]);
+        self.store_locally(a.wrapping_add_signed(i), WIDE, &[b]);
     }
 
     fn lwp(&mut self, x: ShadowInput, _: i32) -> (RealResult, RealResult) {
@@ -100,7 +100,7 @@ impl LocalRoom for RealFormulas<'_> {
     }
 
     fn swp(&mut self, b: ShadowInput, x: ShadowInput, _: i32) -> (RealResult,) {
-        self.to_buffer(x.raw as u32, WORD, &[b]);
+        self.store_locally(x.raw as u32, WORD, &[b]);
         (Integer,)
     }
 }
@@ -147,11 +147,11 @@ impl BusRoom for RealFormulas<'_> {
     }
 
     fn stw(&mut self, b: ShadowInput, a: u32, i: i32) {
-        self.to_global(a.wrapping_add_signed(i), &[b]);
+        self.store_globally(a.wrapping_add_signed(i), &[b]);
     }
 
     fn stv(&mut self, b: [ShadowInput; 3], a: u32, i: i32) {
-        self.to_global(a.wrapping_add_signed(i), &b);
+        self.store_globally(a.wrapping_add_signed(i), &b);
     }
 
     fn fetchadd(&mut self, a: u32, _: ShadowInput) -> (RealResult,) {

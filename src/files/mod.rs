@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use messages::{Diagnostic, Report, Source, refuse_packed, refuse_utf16};
 
-pub use self::set::{write, write_all, write_through};
+pub use self::set::{FileStream, write, write_all, write_through};
 
 /// Octets of the largest file that is read: sources, programs, machines, memory.
 const LARGEST: u64 = 64 << 20;

@@ -1,12 +1,14 @@
 //! Results as files: each is written beside its place and then renamed, so that no file is ever half-written, and those of
 //! one command take their places together. Leftovers of runs that were killed are removed by the next run.
 
-use std::fs::{self, Permissions};
-use std::io::{self, ErrorKind, Write};
+use std::collections::BTreeSet;
+use std::fs::{self, File, Permissions};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use messages::{Diagnostic, Report};
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, TempPath};
 
 use super::{STANDARD, check_target, folder_of};
 
@@ -73,10 +75,118 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
     for (path, octets) in in_place {
         written_in_place(path, octets).map_err(|error| refusal(path, &error))?;
     }
+    let is_set = ready.len() > 1;
+    let mut placed: Vec<PlacedFile> = Vec::new();
     for (file, target, path) in ready {
-        file.persist(&target).map_err(|error| refusal(path, &error.error))?;
+        match PlacedFile::place(file, target, is_set) {
+            Ok(one) => placed.push(one),
+            Err(error) => {
+                placed.into_iter().rev().for_each(PlacedFile::take_back);
+                return Err(refusal(path, &error).into());
+            }
+        }
+    }
+    if durability == Durability::Disk {
+        for folder in placed.iter().map(|one| folder_of(&one.target)).collect::<BTreeSet<_>>() {
+            // The new name is on the disk only when its folder is; a file system that cannot say so has done what it can.
+            let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        }
     }
     Ok(())
+}
+
+/// A file that has taken its place.
+struct PlacedFile {
+    target: PathBuf,
+    /// The file that it replaced, which is removed when the whole set has its places; `None` where there was none, or where the file system
+    /// gives a file no second name.
+    replaced: Option<TempPath>,
+    is_new: bool,
+}
+
+impl PlacedFile {
+    /// Renames a file; what it replaces is kept where others follow that could fail.
+    fn place(file: NamedTempFile, target: PathBuf, is_set: bool) -> io::Result<PlacedFile> {
+        let is_new = !target.exists();
+        let replaced = if is_new || !is_set { None } else { second_name(&target) };
+        file.persist(&target).map_err(|error| error.error)?;
+        Ok(PlacedFile { target, replaced, is_new })
+    }
+
+    /// Puts back what was there before.
+    fn take_back(self) {
+        // The reason why the set fails is told; that this fails as well would only hide it.
+        let _ = match self.replaced {
+            Some(replaced) => replaced.persist(&self.target).map_err(|error| error.error),
+            None if self.is_new => fs::remove_file(&self.target),
+            None => Ok(()),
+        };
+    }
+}
+
+/// A second name of a file, beside it, which is removed with the value.
+fn second_name(path: &Path) -> Option<TempPath> {
+    let name = temporary().make_in(folder_of(path), |name| fs::hard_link(path, name)).ok()?;
+    Some(name.into_temp_path())
+}
+
+/// Names of files that are being written, with the number of this process.
+fn temporary() -> Builder<'static, 'static> {
+    static NAME: LazyLock<String> = LazyLock::new(|| format!("{PREFIX}{}-", std::process::id()));
+    let mut builder = Builder::new();
+    builder.prefix(NAME.as_str());
+    builder
+}
+
+/// A file that is written line by line, and takes its place as a whole when it is finished: for results that memory need not hold.
+/// What is no regular file, such as a pipe, gets its lines at once.
+pub struct FileStream {
+    writer: BufWriter<File>,
+    /// The file beside its place, and the place.
+    beside: Option<(NamedTempFile, PathBuf)>,
+    /// The place as the user calls it.
+    path: PathBuf,
+}
+
+impl FileStream {
+    /// The beginning of a file.
+    ///
+    /// # Errors
+    /// What [`check_target`] refuses, and a folder that cannot be written.
+    pub fn new(path: &Path) -> Result<FileStream, Report> {
+        check_target(path)?;
+        let begun = || {
+            let target = behind_links(path);
+            if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
+                return Ok((File::create(&target)?, None));
+            }
+            remove_leftovers(&folder_of(&target));
+            let file = begun_beside(&target)?;
+            Ok((file.reopen()?, Some((file, target))))
+        };
+        let (file, beside) = begun().map_err(|error: io::Error| refusal(path, &error))?;
+        Ok(FileStream { writer: BufWriter::new(file), beside, path: path.to_owned() })
+    }
+
+    /// Adds a line.
+    ///
+    /// # Errors
+    /// A disk that is full, and a reader that went away.
+    pub fn line(&mut self, text: &str) -> Result<(), Report> {
+        writeln!(self.writer, "{text}").map_err(|error| refusal(&self.path, &error).into())
+    }
+
+    /// Lets the file take its place.
+    ///
+    /// # Errors
+    /// A disk that is full, or a place that cannot be written.
+    pub fn finish(mut self) -> Result<(), Report> {
+        self.writer.flush().map_err(|error| refusal(&self.path, &error))?;
+        if let Some((file, target)) = self.beside {
+            file.persist(&target).map_err(|error| refusal(&self.path, &error.error))?;
+        }
+        Ok(())
+    }
 }
 
 /// Writes what has no file to be renamed: standard output, pipes, terminals. A reader that went away wants no more.
@@ -121,22 +231,26 @@ fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
     }
 }
 
-/// A file beside its place, locked for as long as this run lives, with the permissions of the file that it replaces.
-fn written_beside(path: &Path, octets: &[u8], durability: Durability) -> io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    let prefix = format!("{PREFIX}{}-", std::process::id());
-    builder.prefix(&prefix);
+/// An empty file beside its place, locked for as long as this run lives, with the permissions of the file that it replaces.
+fn begun_beside(path: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = temporary();
     let permissions = fresh_permissions();
     if let Some(permissions) = &permissions {
         builder.permissions(permissions.clone());
     }
-    let mut file = builder.tempfile_in(folder_of(path))?;
+    let file = builder.tempfile_in(folder_of(path))?;
     // A file system without locks has its leftovers told by the number of the process alone.
     let _ = file.as_file().try_lock();
-    file.write_all(octets)?;
     if let Ok(replaced) = fs::metadata(path) {
         file.as_file().set_permissions(replaced.permissions())?;
     }
+    Ok(file)
+}
+
+/// A file beside its place with all of its octets.
+fn written_beside(path: &Path, octets: &[u8], durability: Durability) -> io::Result<NamedTempFile> {
+    let mut file = begun_beside(path)?;
+    file.write_all(octets)?;
     if durability == Durability::Disk {
         file.as_file().sync_all()?;
     }
@@ -172,7 +286,7 @@ fn is_running(process: u32) -> bool {
 /// True of a regular file that no run has locked.
 fn is_unlocked(path: &Path) -> bool {
     let is_file = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file());
-    is_file && fs::File::open(path).is_ok_and(|file| file.try_lock().is_ok())
+    is_file && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// Permissions of a new file before the user's mask; temporary files are private otherwise.
@@ -209,6 +323,33 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         write_all(&[(&good, b"1"), (&folder.path().join("a.obj"), b"2")]).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_was_there_comes_back_where_a_set_fails_in_the_middle() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("old"), "old").unwrap();
+        let file = |name: &str| written_beside(&at(name), b"new", Durability::Cache).unwrap();
+        let placed = ["old", "fresh"].map(|name| PlacedFile::place(file(name), at(name), true).unwrap());
+        assert_eq!((fs::read(at("old")).unwrap(), fs::read(at("fresh")).unwrap()), (b"new".to_vec(), b"new".to_vec()));
+        placed.into_iter().for_each(PlacedFile::take_back);
+        assert_eq!(fs::read(at("old")).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "only what was there before");
+    }
+
+    #[test]
+    fn a_stream_has_its_place_when_it_is_finished_and_leaves_nothing_when_it_is_dropped() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lines");
+        let mut stream = FileStream::new(&path).unwrap();
+        stream.line("one").unwrap();
+        assert!(!path.exists());
+        stream.finish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"one\n");
+        FileStream::new(&path).unwrap().line("two").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"one\n");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]
@@ -259,7 +400,7 @@ mod tests {
         }
         let running = format!(".lancer-{}-Ab3dE9", std::process::id());
         fs::write(at(&running), "half").unwrap();
-        let locked_file = fs::File::open(at(locked)).unwrap();
+        let locked_file = File::open(at(locked)).unwrap();
         locked_file.lock().unwrap();
         write(&at("a.txt"), b"whole").unwrap();
         let mut left: Vec<String> = fs::read_dir(folder.path())

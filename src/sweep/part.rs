@@ -50,7 +50,7 @@ pub fn name(recording: &str, points: &[&str]) -> String {
     format!("{}-{}.{ENDING}", short(recording), short(&hash::texts(points.iter().copied())))
 }
 
-/// Writes a part as a whole.
+/// Writes a part as a whole, and through to the disk: hours may lie between the first part of a study and the last.
 ///
 /// # Errors
 /// A folder or a disk that cannot be written.
@@ -69,7 +69,7 @@ pub fn write(folder: &Path, recording: &str, rows: &[PointRow]) -> Result<(), Re
     };
     let text = serde_json::to_string(&head).expect("a head has string keys") + "\n" + &rest;
     let points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
-    files::write(&folder.join(name(recording, &points)), text.as_bytes())
+    files::write_through(&folder.join(name(recording, &points)), text.as_bytes())
 }
 
 /// The parts of a folder in the order of their names, and those that are none with the reason.

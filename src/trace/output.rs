@@ -1,16 +1,13 @@
 //! Output of a trace of instructions, line by line: to standard output, or to a file that appears when the trace is whole.
 
-use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use emu::stepper::Stepper;
-use messages::Diagnostic;
-use tempfile::NamedTempFile;
 
 use super::instruction::{TraceClocks, head, next};
 use super::window::TraceWindows;
 use crate::failure::Failure;
-use crate::files;
+use crate::files::{self, FileStream};
 use crate::terminal::Terminal;
 
 /// Form of a trace.
@@ -45,7 +42,7 @@ const AT_ONCE: usize = 1 << 16;
 /// Place where the lines go.
 enum TraceTarget<'a> {
     Standard(&'a mut Terminal, Vec<u8>),
-    File(BufWriter<NamedTempFile>, PathBuf),
+    File(FileStream),
 }
 
 impl TraceTarget<'_> {
@@ -60,24 +57,16 @@ impl TraceTarget<'_> {
                 }
                 Ok(())
             }
-            TraceTarget::File(file, path) => writeln!(file, "{text}").map_err(|error| unwritable(path, &error)),
+            TraceTarget::File(file) => Ok(file.line(text)?),
         }
     }
 
     fn finish(self) -> Result<(), Failure> {
         match self {
             TraceTarget::Standard(terminal, gathered) => terminal.print_octets(&gathered),
-            TraceTarget::File(file, path) => {
-                let file = file.into_inner().map_err(|error| unwritable(&path, error.error()))?;
-                file.persist(&path).map_err(|error| unwritable(&path, &error.error))?;
-                Ok(())
-            }
+            TraceTarget::File(file) => Ok(file.finish()?),
         }
     }
-}
-
-fn unwritable(path: &Path, error: &io::Error) -> Failure {
-    Diagnostic::error(format!("{} cannot be written: {error}", path.display())).into()
 }
 
 /// Writes the instructions of a core that lie in the windows, to the program's end or the end of the windows; yields their number.
@@ -94,12 +83,7 @@ pub fn write_instructions(
 ) -> Result<u64, Failure> {
     let mut target = match is_standard(path) {
         true => TraceTarget::Standard(terminal, Vec::new()),
-        false => {
-            files::check_target(path)?;
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let file = NamedTempFile::new_in(folder).map_err(|error| unwritable(path, &error))?;
-            TraceTarget::File(BufWriter::new(file), path.to_owned())
-        }
+        false => TraceTarget::File(FileStream::new(path)?),
     };
     if form == TraceForm::Text {
         target.line(&head())?;

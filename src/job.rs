@@ -75,6 +75,10 @@ pub struct Job {
     pub error: bool,
     /// True where losses of results are counted.
     pub flags: bool,
+    /// True where a picture's energy is told.
+    pub energy: bool,
+    /// True where a picture is run beside exact arithmetic.
+    pub shadow: bool,
     /// Likely mistakes in the scene's files.
     pub warnings: Report,
     /// All files that were read for it.
@@ -102,6 +106,8 @@ impl Job {
             detail: Detail::Functions,
             error: true,
             flags: false,
+            energy: false,
+            shadow: false,
             warnings: Report::default(),
             files: Vec::new(),
         }

@@ -68,7 +68,7 @@ fn the_commands_of_the_readme_run() {
 
 #[test]
 fn the_commands_of_the_tutorial_run() {
-    assert_eq!(run_commands("docs/tutorial.md"), 19);
+    assert_eq!(run_commands("docs/tutorial.md"), 20);
 }
 
 /// 1234567 as 1,234,567.

@@ -108,6 +108,8 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     let start = Instant::now();
     let mut settings = arguments.job.settings()?;
     settings.results.flags |= arguments.flags;
+    settings.results.energy |= arguments.energy;
+    settings.results.shadow |= arguments.shadow;
     settings.results.error &= !arguments.no_error;
     // A map of errors is nothing without them.
     settings.results.error |= arguments.error.is_some();
@@ -144,8 +146,8 @@ pub(super) fn execute(arguments: &RenderArguments, terminal: &mut Terminal) -> R
     terminal.show(&machine::notes(&job.machine));
     let energies = arguments.energy_map.as_ref().map(|_| energy::pixels(&job)).transpose()?;
     let mut result = Render::new(&job, &drawing);
-    result.energy = arguments.energy.then(|| EnergyResult::of(&job, &drawing, Some(result.rays.all())));
-    result.shadow = arguments.shadow.then(|| compare(&job, terminal)).transpose()?;
+    result.energy = job.energy.then(|| EnergyResult::of(&job, &drawing, Some(result.rays.all())));
+    result.shadow = job.shadow.then(|| compare(&job, terminal)).transpose()?;
     result.host = arguments.timing.then(|| Host::new(load, &drawing));
     let [output, heat, error, sidecar, energy_map, folded, flame] = targets;
     let mut files = maps(&drawing, heat.map(|heat| (heat, arguments.heat_of)), error);

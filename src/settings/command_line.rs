@@ -77,7 +77,9 @@ impl Settings {
                         Skip::ALL.iter().filter(|&&skip| !self.effort.skips.has(skip)).map(NamedChoice::name).collect();
                     options.extend((!without.is_empty()).then(|| (option.into(), Some(without.join(",")))));
                 }
-                "flags" => options.extend(self.results.flags.then(|| (option.into(), None))),
+                "flags" | "energy" | "shadow" => {
+                    options.extend((*value == Value::Bool(true)).then(|| (option.into(), None)));
+                }
                 _ if value == default => {}
                 _ => options.push((option.into(), Some(written(key, value)))),
             }

@@ -57,6 +57,8 @@ impl Settings {
             detail: _,
             error,
             flags,
+            energy,
+            shadow,
             warnings: _,
             files: _,
         } = job;
@@ -107,7 +109,7 @@ impl Settings {
             formats: FormatSettings::from(formats),
             machine: MachineSettings { name: machine_name.clone(), config: machine.clone() },
             engine: *engine,
-            results: ResultSettings { error: *error, flags: *flags },
+            results: ResultSettings { error: *error, flags: *flags, energy: *energy, shadow: *shadow },
         }
     }
 
@@ -154,7 +156,8 @@ impl Settings {
         tree.choose(&mut job);
         job.formats = formats.overrides();
         (job.machine_name, job.machine) = (machine.name.clone(), machine.config.clone());
-        (job.engine, job.error, job.flags) = (*engine, results.error, results.flags);
+        job.engine = *engine;
+        (job.error, job.flags, job.energy, job.shadow) = (results.error, results.flags, results.energy, results.shadow);
         // Choose the kernels; files of extensions and those that replace functions are read here.
         for FileSettings { file, hash } in &kernels.extensions {
             let texts = extension::extend(&mut job.isa, Path::new(file))?.1;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::{FROM, Settings};
 
 /// Options of the command line with the keys that they set; an option of several values sets what is below its key.
-pub const OPTIONS: [(&str, &str); 31] = [
+pub const OPTIONS: [(&str, &str); 33] = [
     ("scene", "scene.name"),
     ("mesh", "scene.mesh"),
     ("camera", "view.camera"),
@@ -42,6 +42,8 @@ pub const OPTIONS: [(&str, &str); 31] = [
     ("kd-depth", "tree.depth"),
     ("kd-build", "tree.build"),
     ("flags", "results.flags"),
+    ("energy", "results.energy"),
+    ("shadow", "results.shadow"),
 ];
 
 /// Every key with its value in default settings, groups left out.

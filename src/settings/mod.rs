@@ -206,6 +206,10 @@ pub struct ResultSettings {
     pub error: bool,
     /// True where results that lost bits are counted.
     pub flags: bool,
+    /// True where a picture's energy and the machine's area are told.
+    pub energy: bool,
+    /// True where a picture is run beside exact arithmetic.
+    pub shadow: bool,
 }
 
 impl Default for ViewSettings {
@@ -234,7 +238,7 @@ impl Default for EffortSettings {
 
 impl Default for ResultSettings {
     fn default() -> ResultSettings {
-        ResultSettings { error: true, flags: false }
+        ResultSettings { error: true, flags: false, energy: false, shadow: false }
     }
 }
 

@@ -21,7 +21,7 @@ use serde_json::Value;
 use super::session::Session;
 
 /// Options of `lancer render` on which no result depends but for its place, its form and the host's time.
-const NO_SETTINGS: [&str; 17] = [
+const NO_SETTINGS: [&str; 19] = [
     "settings",
     "set",
     "json",
@@ -34,7 +34,9 @@ const NO_SETTINGS: [&str; 17] = [
     "sidecar",
     "timing",
     "heat",
-    "energy",
+    "heat-of",
+    "folded",
+    "flame",
     "energy-map",
     "error",
     "help",
@@ -42,7 +44,7 @@ const NO_SETTINGS: [&str; 17] = [
 ];
 
 /// A value of each option that is not its default.
-const SAMPLES: [(&str, &str); 31] = [
+const SAMPLES: [(&str, &str); 33] = [
     ("scene", "cornell"),
     ("mesh", "one.off"),
     ("camera", "perspective"),
@@ -74,6 +76,8 @@ const SAMPLES: [(&str, &str); 31] = [
     ("kd-depth", "3"),
     ("kd-build", "exact"),
     ("flags", ""),
+    ("energy", ""),
+    ("shadow", ""),
 ];
 
 /// Options whose defaults differ between commands on purpose, each with the reason.
@@ -118,7 +122,7 @@ fn every_option_that_changes_a_result_has_its_key() {
             "scene" => format!("render {sample} --size 8x6"),
             "mesh" => continue,
             "size" => format!("render triangle --size {sample}"),
-            "flags" => "render triangle --size 8x6 --flags".to_owned(),
+            _ if sample.is_empty() => format!("render triangle --size 8x6 --{name}"),
             _ => format!("render triangle --size 8x6 --{name}={sample}"),
         };
         let changed = session.json(&line);

@@ -122,6 +122,8 @@ mod tests {
         let mut moved = Moved::new(1);
         moved.octets()[0] = 0b0111_1010;
         assert_eq!(widths.node(moved.padded(), 0), [2, 0b11011]);
-        assert_eq!(NodeWidths::new(32, 31).address(u32::MAX), u32::MAX);
+        // An eighth of all names times 8 octets still has 32 bits; times 9 it has more.
+        assert_eq!(NodeWidths::new(32, 31).address(u32::MAX), 0xffff_fff8);
+        assert_eq!(NodeWidths::new(32, 33).address(u32::MAX), u32::MAX);
     }
 }

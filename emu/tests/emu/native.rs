@@ -116,9 +116,19 @@ fn gather(p: &mut Builder) {
 
 /// An instruction of a row with operands at random; addresses stay in reach.
 fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &InstructionDef) {
-    if op == Op::load {
-        p.emit(Op::movi, &[1, random.below(200)]).emit(Op::andi, &[2, 2, 0xff]).emit(Op::iaddi, &[2, 2, DATA]);
-        p.emit(Op::andi, &[3, 3, 0x7f]).emit(Op::load, &[1, 2, 3]);
+    if matches!(op, Op::load | Op::loadf | Op::loadfu | Op::loadnode) {
+        // Octets, numbers of up to 63 bits, or nodes of up to 12 octets, which are counted from address 0.
+        let (base, most) = match op {
+            Op::load => (DATA, 0x7f),
+            Op::loadnode => (0, 0xf),
+            _ => (DATA, 0xf),
+        };
+        p.emit(Op::movi, &[1, random.below(200)]).emit(Op::andi, &[2, 2, 0xff]).emit(Op::iaddi, &[2, 2, base]);
+        p.emit(Op::andi, &[3, 3, most]);
+        let widths =
+            row.operands[3..].iter().map(|operand| random.below(if operand.kind == Kind::Sh { 64 } else { 32 }));
+        let operands: Vec<i64> = [1, 2, 3].into_iter().chain(widths.collect::<Vec<_>>()).collect();
+        p.emit(op, &operands);
         return;
     }
     let has_address = row.room == "local" || row.room == "bus";

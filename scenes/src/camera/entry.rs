@@ -3,7 +3,9 @@
 //! A ray from the eye E along W meets the plane of a face, x_k = p, in x_j = E_j + (p - E_k) W_j / W_k. With S = |W_k|, the distances from both faces
 //! of axis j are quotients by S whose numerators, as W itself, are linear in column and row:
 //!
-//!     x_j - low_j = ((E_j - low_j) S + |p - E_k| W_j) / S,    high_j - x_j = ((high_j - E_j) S - |p - E_k| W_j) / S
+//! ```text
+//! x_j - low_j = ((E_j - low_j) S + |p - E_k| W_j) / S,    high_j - x_j = ((high_j - E_j) S - |p - E_k| W_j) / S
+//! ```
 //!
 //! So numerators are evaluated exactly, their signs say whether the ray enters by that face, and one division rounds the point once.
 

@@ -31,15 +31,18 @@ fn peak<T>(run: impl FnOnce() -> T) -> (usize, T) {
     (ALLOCATOR.peak_usage() - before, result)
 }
 
+/// Octets of an input, and what reads it.
+type SizedReader = (u64, Box<dyn Fn()>);
+
 /// An input of some megabytes, as the table of docs/formats.md calls it, and its reader.
 struct Reading {
     name: &'static str,
     /// Writes the input into a folder and says how large it is and how it is read.
-    input: fn(&Path) -> (u64, Box<dyn Fn()>),
+    input: fn(&Path) -> SizedReader,
 }
 
 /// A landscape of 40,000 triangles in a format.
-fn landscape(folder: &Path, format: MeshFormat) -> (u64, Box<dyn Fn()>) {
+fn landscape(folder: &Path, format: MeshFormat) -> SizedReader {
     let options = generate::GenerateOptions { triangles: Some(40_000), ..generate::GenerateOptions::default() };
     let scene = generate::scene("terrain", &options).expect("the terrain has any number of triangles");
     let files = mesh(&scene, format, "landscape").expect("a landscape can be written");
@@ -49,20 +52,20 @@ fn landscape(folder: &Path, format: MeshFormat) -> (u64, Box<dyn Fn()>) {
     scene_file(folder, &files[files.len() - 1].0)
 }
 
-fn scene_file(folder: &Path, name: &str) -> (u64, Box<dyn Fn()>) {
+fn scene_file(folder: &Path, name: &str) -> SizedReader {
     let path = folder.join(name);
     let size = fs::metadata(&path).expect("the file is there").len();
     let read = move || drop(scenes::read::load(&path, None).unwrap_or_else(|report| panic!("{report:?}")));
     (size, Box::new(read))
 }
 
-fn text_file(folder: &Path, name: &str, text: &str) -> (u64, Box<dyn Fn()>) {
+fn text_file(folder: &Path, name: &str, text: &str) -> SizedReader {
     fs::write(folder.join(name), text).expect("a temporary file can be written");
     scene_file(folder, name)
 }
 
 /// Facets as text.
-fn text_stl(folder: &Path) -> (u64, Box<dyn Fn()>) {
+fn text_stl(folder: &Path) -> SizedReader {
     let mut text = "solid a\n".to_owned();
     for x in 0..10_000 {
         let _ = write!(
@@ -75,7 +78,7 @@ fn text_stl(folder: &Path) -> (u64, Box<dyn Fn()>) {
 }
 
 /// One face with many corners on a circle.
-fn polygon(folder: &Path) -> (u64, Box<dyn Fn()>) {
+fn polygon(folder: &Path) -> SizedReader {
     const CORNERS: u32 = 20_000;
     let mut text = String::new();
     for corner in 0..CORNERS {
@@ -97,7 +100,7 @@ fn program_text() -> String {
     text + "halt\n"
 }
 
-fn source(folder: &Path) -> (u64, Box<dyn Fn()>) {
+fn source(folder: &Path) -> SizedReader {
     let path = folder.join("lines.s");
     let text = program_text();
     fs::write(&path, &text).expect("a temporary file can be written");
@@ -112,7 +115,7 @@ fn source(folder: &Path) -> (u64, Box<dyn Fn()>) {
 }
 
 /// A repetition: the size is that of the words it makes.
-fn repetition(_: &Path) -> (u64, Box<dyn Fn()>) {
+fn repetition(_: &Path) -> SizedReader {
     const TIMES: u64 = 100_000;
     let read = || {
         let source = Source::new("a.s", format!(".rept {TIMES}\nadd s1, s2, s3\n.endr\nhalt\n"));
@@ -124,7 +127,7 @@ fn repetition(_: &Path) -> (u64, Box<dyn Fn()>) {
     (4 * TIMES, Box::new(read))
 }
 
-fn program(folder: &Path, form: ProgramFile, name: &str) -> (u64, Box<dyn Fn()>) {
+fn program(folder: &Path, form: ProgramFile, name: &str) -> SizedReader {
     let source = Source::new("a.s", program_text());
     let assembled = asm::assemble(&source, &Isa::base(), &asm::Options::default());
     let program = assembled.unwrap_or_else(|report| panic!("{report:?}")).program;

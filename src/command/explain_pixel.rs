@@ -15,6 +15,7 @@ use crate::numeral::{count, grouped};
 use crate::pixel::{self, MOST_STEPS, PixelReplay};
 use crate::result::{self, WithSettings};
 use crate::settings::Settings;
+use crate::shadow;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -86,7 +87,8 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
     terminal.show(&load.build.warnings);
     let crop = load.build.crop;
     let place = [crop.column, crop.row];
-    let target = DebugTarget::pixel(String::new(), load, job.machine.clone())?;
+    let mut target = DebugTarget::pixel(String::new(), load, job.machine.clone())?;
+    target.has_shadow = page.is_some();
     let mut stepper = target.stepper()?;
     let explanation = pixel::explain(&job, &image, place, &mut stepper)?;
     if let Some(path) = page {
@@ -95,7 +97,8 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
             let message = format!("the pixel is over after {} instructions", grouped(explanation.instructions));
             return Err(Failure::usage(Diagnostic::error(message).hint("choose earlier steps")));
         }
-        let replay = PixelReplay::record(&mut target.stepper()?, window, explanation.instructions, None);
+        let errors = &mut shadow::register_errors;
+        let replay = PixelReplay::record(&mut target.stepper()?, window, explanation.instructions, Some(errors));
         files::write_all(&[(path, pixel::page(&explanation, &replay))])?;
         if replay.left_out() > 0 {
             let left_out = count(replay.left_out(), "instruction is", "instructions are");

@@ -9,7 +9,7 @@ mod result;
 mod text;
 mod totals;
 
-pub use numbers::{ShadowedNumber, number_text};
+pub use numbers::{ShadowedNumber, number_text, register_errors};
 pub use picture::picture;
 pub use program::program;
 pub use result::{DiedLine, FormatGapResult, OutputPart, ShadowFunction, ShadowLine, ShadowOutput, ShadowResult};

@@ -1,8 +1,11 @@
 //! A number beside its shadow, for people.
 
 use emu::shadow::ShadowNumber;
+use emu::stepper::Stepper;
+use isa::naming::RegisterId;
 
 use super::totals::{SourcePrograms, error_of, good_bits};
+use crate::registers::RegisterContents;
 
 /// Lines that are named of an error.
 const NAMED: usize = 3;
@@ -59,4 +62,18 @@ pub(super) fn ulps(number: f64) -> String {
         magnitude if (0.005..1e5).contains(&magnitude) => format!("{number:.2}"),
         _ => format!("{number:.1e}"),
     }
+}
+
+/// Errors of a register's components, the machine's number less the exact one, in units of its last place; NaN where a component is an integer,
+/// which has no shadow, or is not there. `None` of a core without shadows.
+pub fn register_errors(stepper: &Stepper, register: RegisterId) -> Option<[f64; 3]> {
+    let shadows = stepper.shadow()?.of(register);
+    let numbers = RegisterContents::of(&stepper.state().registers, register).numbers();
+    let mut errors = [f64::NAN; 3];
+    for ((error, raw), shadow) in errors.iter_mut().zip(numbers).zip(shadows) {
+        if let Some(shadow) = shadow {
+            *error = shadow.deviation.as_ref().map_or(0.0, |deviation| error_of(raw, deviation));
+        }
+    }
+    Some(errors)
 }

@@ -410,3 +410,27 @@ fn errors_of_registers_have_a_place_beside_what_is_written() {
     let length = |value: &Value| value.as_str().unwrap().len();
     assert_eq!((length(&with["errors"]), &with["values"]), (length(&plain["values"]), &plain["values"]));
 }
+
+/// Half an ulp is what one rounding brings in, and no more; an integer has no error.
+#[test]
+fn errors_on_the_page_are_those_of_shadows() {
+    let (mut target, explanation) = explained(&job("cornell", KernelSet::Vector, 32, [5, 4]));
+    target.has_shadow = true;
+    let (mut found, mut integers, mut exact) = (Vec::new(), 0, 0);
+    let source: &mut ErrorSource = &mut |stepper, register| {
+        let errors = lancer::shadow::register_errors(stepper, register);
+        for error in errors.into_iter().flatten().take(if register.0 == 'v' { 3 } else { 1 }) {
+            match error {
+                error if error.is_nan() => integers += 1,
+                0.0 => exact += 1,
+                error => found.push(error.abs()),
+            }
+        }
+        errors
+    };
+    let total = explanation.instructions;
+    PixelReplay::record(&mut target.stepper().unwrap(), 0..total, total, Some(source));
+    let first = found[0];
+    assert!((0.0..=0.5).contains(&first), "one rounding, to nearest: {first}");
+    assert!(found.len() > 100 && integers > 100 && exact > 100, "{} {integers} {exact}", found.len());
+}

@@ -80,8 +80,11 @@ fn no_kernel_has_a_shift_that_contradicts_its_formats() {
 fn a_shadow_changes_nothing_else_and_a_pixel_is_that_of_the_picture() {
     let session = Session::new();
     let mut with = session.json(PICTURE);
-    let without = session.json(PICTURE.strip_suffix(" --shadow").unwrap());
+    let mut without = session.json(PICTURE.strip_suffix(" --shadow").unwrap());
     let shadow = with.as_object_mut().unwrap().remove("shadow").unwrap();
+    // The settings say that it was asked for.
+    let asked = [&mut with, &mut without].map(|result| result["settings"]["results"]["shadow"].take());
+    assert_eq!(asked, [Value::Bool(true), Value::Bool(false)]);
     assert_eq!(with, without);
     // The worst number of the picture is that of its pixel drawn alone.
     let worst = &shadow["outputs"][0];

@@ -12,6 +12,7 @@ use scenes::layout::Layout;
 use toml::Value;
 
 use crate::job::Job;
+use crate::machine::arbiter_note;
 use crate::numeral::grouped;
 
 /// Part of the machine or of the picture that a change is about. Two changes of one part cannot be made together.
@@ -299,7 +300,13 @@ fn cores(machine: &Config) -> Vec<Change> {
 }
 
 fn arbiters(machine: &Config) -> Vec<Change> {
-    let others = ArbiterKind::ALL.into_iter().filter(|&kind| kind != machine.bus.arbiter);
+    // One that would be another by its keys is no other, such as even weights.
+    let is_another = |&kind: &ArbiterKind| {
+        let mut changed = machine.clone();
+        changed.bus.arbiter = kind;
+        kind != machine.bus.arbiter && arbiter_note(&changed).is_none()
+    };
+    let others = ArbiterKind::ALL.into_iter().filter(is_another);
     let change = |kind: ArbiterKind| {
         let words = format!("arbiter {}", kind.name());
         Change::of_keys(ChangedPart::Arbiter, words, &[("bus.arbiter", Value::String(kind.name().to_owned()))])

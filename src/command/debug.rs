@@ -48,6 +48,9 @@ pub struct DebugArguments {
     /// File with commands, a line each; - is standard input.
     #[arg(long, value_name = "FILE|-", help_heading = "Doors", conflicts_with = "dap")]
     commands: Option<PathBuf>,
+    /// Shows source, instructions, calls and registers on the whole terminal; a build with the feature full has it.
+    #[arg(long, help_heading = "Doors", conflicts_with_all = ["commands", "dap"])]
+    screen: bool,
     /// Serves an editor by the Debug Adapter Protocol, on standard input and output.
     #[arg(long, help_heading = "Doors")]
     dap: bool,
@@ -110,6 +113,7 @@ pub(super) fn execute(arguments: &DebugArguments, terminal: &mut Terminal) -> Re
     terminal.show(&warnings);
     let mut door = Door::new(Session::new(&target)?);
     match &arguments.commands {
+        None if arguments.screen => screen(&mut door),
         Some(path) => script(&mut door, path, terminal),
         None => interactive(&mut door, terminal),
     }
@@ -169,6 +173,20 @@ fn program(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure
         set.map_err(|message| Failure::usage(Diagnostic::error(message)))?;
     }
     Ok((target, warnings))
+}
+
+/// Shows the session on the whole terminal until it ends.
+#[cfg(feature = "full")]
+fn screen(door: &mut Door) -> Result<Exit, Failure> {
+    let shown = crate::debug::DebugScreen::new(door).run();
+    shown.map_err(|error| Diagnostic::error(format!("the terminal cannot be drawn on: {error}")))?;
+    Ok(Exit::Done)
+}
+
+#[cfg(not(feature = "full"))]
+fn screen(_: &mut Door) -> Result<Exit, Failure> {
+    let message = Diagnostic::error("this program was built without the full-screen view");
+    Err(Failure::usage(message.hint("cargo install --path . --features full has it")))
 }
 
 /// Carries out the commands of a file, each shown before its answer. The first one that is wrong ends it.

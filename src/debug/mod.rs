@@ -9,6 +9,8 @@ mod door;
 mod memory;
 mod motion;
 mod place;
+#[cfg(feature = "full")]
+mod screen;
 mod session;
 mod shadow;
 mod stop;
@@ -17,5 +19,7 @@ mod trial;
 
 pub use command::{COMMANDS, DebugCommand};
 pub use door::{Answer, Door};
+#[cfg(feature = "full")]
+pub use screen::DebugScreen;
 pub use session::{Direction, Session, StopReason};
 pub use target::DebugTarget;

@@ -116,9 +116,7 @@ fn keys_and_options_of_advice_can_be_pasted() {
         }
         session.write("m.toml", &(words(&advice["toml"]).join("\n") + "\n"));
         let options = words(&advice["options"]).join(" ");
-        // An arbiter with equal weights is said to be round-robin.
-        let run = session.run(&format!("render {scene} --no-error --machine m.toml {options} --json"));
-        let run: Value = serde_json::from_str(&run.out).expect("--json prints JSON");
+        let run = session.json(&format!("render {scene} --no-error --machine m.toml {options}"));
         assert_eq!(run["clocks"], advice["predicted"]["clocks"], "{advice}");
         parts.push(part);
     }

@@ -309,11 +309,11 @@ mod tests {
             (KeyCode::Right, 2, "rshift left, left, 1"),
             (KeyCode::Right, 3, "0.3:pos"),
             (KeyCode::Left, 2, "0.56:pos"),
-            (KeyCode::Home, 0, "step 0:"),
+            (KeyCode::Home, 0, "step 0, clock 0:"),
             (KeyCode::PageDown, 5, "the program halted"),
             (KeyCode::PageUp, 0, "the program's start"),
             (KeyCode::Down, 1, "call  s31, halve"),
-            (KeyCode::Tab, 4, "step 4:"),
+            (KeyCode::Tab, 4, "step 4, clock"),
         ] {
             screen.key(code, none);
             assert_eq!(screen.door.session.position(), step, "{code:?}");

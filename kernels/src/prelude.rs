@@ -221,7 +221,7 @@ fn top_nodes(image: &MemoryImage) -> u32 {
 /// The blocks of nodes in a buffer: the top of the tree, and one for the nodes below, if there are any. The address of an empty block is no node's.
 fn blocks(text: &mut String, image: &MemoryImage) {
     let _ = writeln!(text, "TOP: .word {}, TOP_NODES * sizeof(node)", image.root);
-    table(text, image, MemoryKind::Nodes, top_nodes(image) as usize);
+    table(text, image, MemoryKind::Nodes, top_nodes(image));
     if image.tree.nodes as u32 > TOP_NODES {
         text.push_str("BLOCK: .word 0, BLOCK_NODES * sizeof(node)\n    .space BLOCK_NODES * sizeof(node)\n");
     }
@@ -249,13 +249,13 @@ fn core(text: &mut String, image: &MemoryImage, features: &SceneFeatures, walk: 
     let _ = writeln!(text, "BACKGROUND: .word {}", words(&image.background));
     if is_local(image, MemoryKind::Materials) {
         text.push_str("MATERIALS:\n");
-        table(text, image, MemoryKind::Materials, usize::MAX);
+        table(text, image, MemoryKind::Materials, u32::MAX);
     } else {
         text.push_str("MATERIAL_SLOT: .space sizeof(material)\n");
     }
     if is_local(image, MemoryKind::Lights) {
         text.push_str("LIGHTS_AT:\n");
-        table(text, image, MemoryKind::Lights, usize::MAX);
+        table(text, image, MemoryKind::Lights, u32::MAX);
     } else {
         text.push_str("LIGHT_SLOT: .space sizeof(light)\n.equ LIGHTS_AT, 0\n");
     }
@@ -310,9 +310,9 @@ fn words(values: &[i32]) -> String {
 }
 
 /// The first structures of a region of the image, as words of the buffer.
-fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind, most: usize) {
-    let structures = image.table(kind).expect("the image was just built").into_iter().take(most);
-    let numbers: Vec<i32> = structures.flatten().map(|number| number as i32).collect();
+fn table(text: &mut String, image: &MemoryImage, kind: MemoryKind, most: u32) {
+    let structures = image.table(kind, most).expect("the image was just built");
+    let numbers: Vec<i32> = structures.into_iter().flatten().map(|number| number as i32).collect();
     for row in numbers.chunks(4) {
         let _ = writeln!(text, "    .word {}", words(row));
     }

@@ -31,7 +31,6 @@ fn far_eyes_take_no_bits() {
             assert!(error.off_pixels <= most_off, "{name}, {word} bits at {distance}: {} off", error.off_pixels);
             error.psnr_others_db.unwrap_or(f64::INFINITY)
         });
-        println!("{name} {word}: {decibels:.1?}");
         let least = if word == 32 { 165.0 } else { 115.0 };
         assert!(decibels.iter().all(|&found| found >= least), "{name}, {word} bits: {decibels:?}");
     }

@@ -231,7 +231,8 @@ fn perspective_rays_start_where_they_enter_the_box() {
                     let point = [0, 1, 2].map(|k| from[k] + t * way[k]);
                     let off = (0..3).map(|k| (f64::from(found[k]) - point[k]).abs()).fold(0.0, f64::max);
                     assert!(off <= most, "{eye:?} {word} {c} {r}: {found:?} is {off} away from {point:?}, not {most}");
-                    assert!(word == 8 || most <= 0.6, "{eye:?} {word} {c} {r}: {most}");
+                    let bound = if word >= 24 { 0.51 } else { 0.6 };
+                    assert!(word == 8 || most <= bound, "{eye:?} {word} {c} {r}: {most}");
                 }
                 None => assert!(matches!(start, RayStart::Eye(_)) || !inside(-3.0), "{eye:?} {word} {c} {r} misses"),
             }

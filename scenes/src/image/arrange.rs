@@ -46,15 +46,14 @@ pub(super) fn arrange(parts: &ImageParts<impl Triangles>) -> Result<(StructureSe
         // A wider link makes nodes larger, which moves references and triangles, which may take wider fields in turn: with 1,023 nodes
         // a link of 12 bits names them, until their octets push the last references beyond address 8,192. Widths only grow.
         let [nodes, references, triangles] = [1, 2, 3].map(|kind: usize| regions[kind].1.clone());
-        let last = nodes.end / structures.node.octets() * NODE_NAMES;
-        let link = unsigned_bits(u64::from(packed_link(last.max(references.end) | WIDE_LEAF)));
-        let reference = unsigned_bits(u64::from(triangles.end / structures.triangle.octets()));
-        if link > FieldWidths::WORDS.link {
+        let Some(last) = (nodes.end / structures.node.octets()).checked_mul(NODE_NAMES) else {
             return Err(Diagnostic::error("the kd tree is larger than the links of layout `packed` reach")
                 .hint("use --layout wide, or a lower tree with --kd-depth")
                 .into());
-        }
-        if (link, reference) == (link.min(widths.link), reference.min(widths.reference)) {
+        };
+        let link = unsigned_bits(u64::from(packed_link(last.max(references.end) | WIDE_LEAF)));
+        let reference = unsigned_bits(u64::from(triangles.end / structures.triangle.octets()));
+        if link <= widths.link && reference <= widths.reference {
             return Ok((structures, regions));
         }
         (widths.link, widths.reference) = (link.max(widths.link), reference.max(widths.reference));

@@ -38,15 +38,16 @@ impl MemoryImage {
                 Layout::Wide | Layout::Packet | Layout::Packed => self.wide_tree(nodes)?,
             },
             triangles: (0..self.counts.triangles).map(|k| self.triangle(k)).collect::<Option<_>>()?,
-            materials: self.table(MemoryKind::Materials)?,
-            lights: self.table(MemoryKind::Lights)?,
+            materials: self.table(MemoryKind::Materials, u32::MAX)?,
+            lights: self.table(MemoryKind::Lights, u32::MAX)?,
         })
     }
 
-    /// The integers of the structures of a kind, of which there is nothing else: nodes, materials or lights; `None` for other kinds.
+    /// The integers of the first structures of a region that holds those of one kind alone, at most so many: nodes, materials or lights; `None` for
+    /// other regions.
     ///
     /// The links of nodes are as the rows that walk take them.
-    pub fn table(&self, kind: MemoryKind) -> Option<Vec<Vec<i64>>> {
+    pub fn table(&self, kind: MemoryKind, most: u32) -> Option<Vec<Vec<i64>>> {
         let (structure, count) = match kind {
             MemoryKind::Nodes => (&self.structures.node, self.tree.nodes as u32),
             MemoryKind::Materials => (&self.structures.material, self.counts.materials),
@@ -57,7 +58,7 @@ impl MemoryImage {
             MemoryKind::Nodes if self.layout != Layout::Report => self.wide_node(number).map(|node| node.to_vec()),
             _ => self.element(kind, structure, number),
         };
-        (0..count).map(element).collect()
+        (0..count.min(most)).map(element).collect()
     }
 
     /// The scene with its vertices where the image has them; each triangle has vertices of its own.

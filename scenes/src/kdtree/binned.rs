@@ -39,7 +39,7 @@ struct NodePlace {
 impl NodePlace {
     /// The places of both children, for packets of `left` and `right` of the node's `count` triangles; `None` when these are more than there is room for.
     ///
-    /// What is left of the room is shared out by size: with room for 3 a triangle, 100 triangles that become 60 and 60 leave 2.5, and 2.5 (60 + 60) is
+    /// The room that is left is shared out by size: with room for 3 a triangle, 100 triangles that become 60 and 60 leave 2.5, and 2.5 (60 + 60) is
     /// 3 x 100 again. So no thread has to know what the others need.
     fn children(self, division: &Division, count: usize, [left, right]: [usize; 2]) -> Option<[NodePlace; 2]> {
         let room = self.room * count as f64 / (left + right) as f64;

@@ -1,5 +1,5 @@
-//! The report's kd tree, level by level, on the grid's integers (report 5.3). How a node is divided is decided in [`split`], by exact
-//! comparisons; nothing here knows of memory layouts or of how rays walk through the tree.
+//! The kd tree, the report's (5.3) or a cheaper one, level by level, on the grid's integers. Planes are chosen in [`split`], by exact comparisons,
+//! or in [`bins`], in double precision; nothing here knows of memory layouts or of how rays walk through the tree.
 
 mod binned;
 mod bins;
@@ -166,7 +166,7 @@ impl<T: AsRef<[[[i32; 3]; 3]]> + Sync + ?Sized> Triangles for T {
 /// threads of the current pool. The tree is the same for any number of them.
 ///
 /// # Errors
-/// When the leaves would hold more than [`MOST_REFERENCES`] triangles together, which [`BuildMethod::Binned`] avoids.
+/// A tree whose leaves would hold more than [`MOST_REFERENCES`] triangles together; [`BuildMethod::Binned`] makes none.
 pub fn build(
     triangles: &(impl Triangles + ?Sized),
     root: Bounds,

@@ -290,7 +290,6 @@ fn parts_make_a_better_tree_than_boxes() {
     let [boxes, parts, binned] = [BuildMethod::Report, BuildMethod::Exact, BuildMethod::Binned].map(cost);
     assert!(binned < 1.05 * parts, "{binned} by bins, {parts} by all bounds");
     assert!(parts < 0.95 * boxes, "{parts} by parts, {boxes} by boxes");
-    assert!(binned < 1.05 * parts, "{binned} by bins, {parts} by all bounds");
 }
 
 /// A round cap as drawing programs export it: `n` thin triangles around a point of the rim.

@@ -15,7 +15,7 @@ pub const fn unsigned_bits(largest: u64) -> u32 {
 /// Writes the low `bits` bits of a value from bit `at` of the octets on; what stands beside them stays.
 ///
 /// # Panics
-/// When the octets end before.
+/// Octets that end before the value does.
 pub fn put_bits(octets: &mut [u8], at: usize, bits: u32, value: i64) {
     if at.is_multiple_of(8) && bits.is_multiple_of(8) {
         let length = bits as usize / 8;
@@ -38,7 +38,7 @@ pub fn put_bits(octets: &mut [u8], at: usize, bits: u32, value: i64) {
 /// The integer of `bits` bits from bit `at` of the octets on, extended by its sign where it has one.
 ///
 /// # Panics
-/// When the octets end before, or there are more than 63 bits.
+/// Octets that end before the integer does, and more than 63 bits.
 pub fn bits_at(octets: &[u8], at: usize, bits: u32, is_signed: bool) -> i64 {
     let (mut value, mut done) = (0u64, 0);
     while done < bits {

@@ -21,7 +21,7 @@ fn the_manual_of_the_layouts_is_not_stale() {
     let line = stale.unwrap_or_else(|| written.lines().count().min(manual.lines().count())) + 1;
     assert!(
         written == manual,
-        "docs/layouts.md is stale from line {line} on. Write it anew: {BLESS}=1 cargo test -p lancer-scenes --test manual_layouts"
+        "docs/layouts.md is stale from line {line} on. Write it anew: {BLESS}=1 cargo test -p lancer-scenes --test scenes manual_layouts"
     );
 }
 

@@ -91,9 +91,12 @@ dispatch_drained:
     linear \at
     bwltz w1, \outside
     wdiv  s12, w1, w4, CAMERA_SHIFT
+    .holds s12, pos
     lw    s13, \at + across.low(s0)
+    .holds s13, pos
     add   s12, s12, s13
     lw    s13, \at + across.axis(s0)
+    .holds s13
     vputr origin, s12, s13
 .endm
 
@@ -133,6 +136,7 @@ dispatch_drained:
     enter_across CAMERA_FACES_AT + sizeof(face) * k + face.first, 1f
     enter_across CAMERA_FACES_AT + sizeof(face) * k + face.second, 1f
     lw    s12, CAMERA_FACES_AT + sizeof(face) * k + face.at(s0)
+    .holds s12, pos
     lw    s13, CAMERA_FACES_AT + sizeof(face) * k + face.axis(s0)
     vputr origin, s12, s13
     ret   link_node
@@ -141,7 +145,9 @@ dispatch_drained:
     ; It misses the box, and starts behind it on every axis.
     lv    origin, CAMERA_ABOVE(s0)
     vlt   s12, direction, zero_vector
+    .holds s12
     lv    v6, CAMERA_BELOW(s0)
+    .holds v6, pos
     vselect origin, v6, s12
   .endif
 .else

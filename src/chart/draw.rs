@@ -3,17 +3,15 @@
 use super::canvas::{Canvas, PagePlace, TextAnchor, TextLine};
 use super::font;
 use super::label::{LabelBox, LabelPlacer};
+use super::page::{EDGE, Page, TEXT};
 use super::scale::AxisScale;
 use super::style::{self, ChartColumns, ChartStyle, MARK};
 use super::{AxisKind, ChartAxis, ChartFigure, ChartLine, ChartSeries, Plot};
 
-/// Sizes of letters in points.
-const TITLE: f64 = 9.5;
-const TEXT: f64 = 7.5;
+/// Size of small letters in points.
 const SMALL: f64 = 6.5;
 
-/// Room at the edges and between parts, in points.
-const EDGE: f64 = 8.0;
+/// Room between parts, in points.
 const GAP: f64 = 5.0;
 
 /// Length of a line in the legend.
@@ -24,10 +22,7 @@ const TICK_GAP: f64 = 5.0;
 
 /// A figure on its page. The page is as high as what stands on it.
 pub(super) fn figure(figure: &ChartFigure, style: ChartStyle) -> Canvas {
-    let width = style.columns.points();
-    let mut page = Page { canvas: Canvas { size: (width, 0.0), shapes: Vec::new() }, style, y: EDGE };
-    page.paragraph(&figure.title, TITLE, true);
-    page.paragraph(&figure.note, TEXT, false);
+    let mut page = Page::new(&figure.title, &figure.note, style);
     page.legend(figure);
     for row in &figure.rows {
         match style.columns {
@@ -35,20 +30,7 @@ pub(super) fn figure(figure: &ChartFigure, style: ChartStyle) -> Canvas {
             ChartColumns::Two => page.row(row),
         }
     }
-    let height = page.y.ceil();
-    let ground = vec![(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
-    let mut canvas = Canvas { size: (width, height), shapes: Vec::new() };
-    canvas.area(ground, style.theme.ground(), "");
-    canvas.shapes.extend(page.canvas.shapes);
-    canvas
-}
-
-/// A page that is filled from the top down.
-struct Page {
-    canvas: Canvas,
-    style: ChartStyle,
-    /// Height of what is drawn.
-    y: f64,
+    page.finish()
 }
 
 impl Page {
@@ -56,18 +38,6 @@ impl Page {
         let colour = self.style.theme.ink();
         let words = words.to_owned();
         self.canvas.text(TextLine { at, anchor, size, is_bold: false, is_turned: false, colour, words });
-    }
-
-    /// Words in as many lines as they take.
-    fn paragraph(&mut self, words: &str, size: f64, is_bold: bool) {
-        let most = self.canvas.size.0 - 2.0 * EDGE;
-        for words in font::wrapped(words, size, is_bold, most) {
-            self.y += size * 1.1;
-            let (at, colour) = ((EDGE, self.y), self.style.theme.ink());
-            let anchor = TextAnchor::Start;
-            self.canvas.text(TextLine { at, anchor, size, is_bold, is_turned: false, colour, words });
-            self.y += size * 0.2;
-        }
     }
 
     /// A sample of each name's line and mark, in rows above all plots, so that no curve runs under it.

@@ -2,6 +2,7 @@
 
 use super::canvas::{Canvas, Colour, TextAnchor, TextLine};
 use super::font;
+use super::page::{EDGE, Page};
 use super::style::{ChartStyle, ChartTheme};
 
 /// A flame graph.
@@ -50,13 +51,8 @@ impl FlameNode {
     }
 }
 
-/// Sizes of letters in points.
-const TITLE: f64 = 9.5;
-const TEXT: f64 = 7.5;
+/// Size of the letters in boxes, in points.
 const NAME: f64 = 7.0;
-
-/// Room at the edges, in points.
-const EDGE: f64 = 8.0;
 
 /// Height of a box, and the gap around it.
 const BOX: f64 = 12.0;
@@ -85,26 +81,12 @@ const fn tints(theme: ChartTheme, kind: FlameKind) -> [Colour; 3] {
 
 /// A flame graph on its page.
 pub(super) fn figure(figure: &FlameFigure, style: ChartStyle) -> Canvas {
-    let (width, ink) = (style.columns.points(), style.theme.ink());
-    let mut page = Canvas { size: (width, 0.0), shapes: Vec::new() };
-    let mut y = EDGE;
-    for (words, size, is_bold) in [(&figure.title, TITLE, true), (&figure.note, TEXT, false)] {
-        for words in font::wrapped(words, size, is_bold, width - 2.0 * EDGE) {
-            y += size * 1.1;
-            let (at, anchor) = ((EDGE, y), TextAnchor::Start);
-            page.text(TextLine { at, anchor, size, is_bold, is_turned: false, colour: ink, words });
-            y += size * 0.2;
-        }
-    }
-    let bottom = y + EDGE + BOX * figure.root.levels() as f64;
-    let scale = (width - 2.0 * EDGE) / figure.root.weight.max(1) as f64;
-    FlamePage { page: &mut page, style, scale }.draw(&figure.root, EDGE, bottom, 0);
-    let height = (bottom + EDGE).ceil();
-    let mut canvas = Canvas { size: (width, height), shapes: Vec::new() };
-    let ground = vec![(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
-    canvas.area(ground, style.theme.ground(), "");
-    canvas.shapes.extend(page.shapes);
-    canvas
+    let mut page = Page::new(&figure.title, &figure.note, style);
+    let bottom = page.y + EDGE + BOX * figure.root.levels() as f64;
+    let scale = (page.canvas.size.0 - 2.0 * EDGE) / figure.root.weight.max(1) as f64;
+    FlamePage { page: &mut page.canvas, style, scale }.draw(&figure.root, EDGE, bottom, 0);
+    page.y = bottom + EDGE;
+    page.finish()
 }
 
 /// The page while boxes are drawn on it.

@@ -7,6 +7,7 @@ mod draw;
 mod flame;
 mod font;
 mod label;
+mod page;
 mod pdf;
 mod scale;
 mod style;

@@ -15,7 +15,6 @@ use crate::numeral::{count, grouped};
 use crate::pixel::{self, MOST_STEPS, PixelReplay};
 use crate::result::{self, WithSettings};
 use crate::settings::Settings;
-use crate::shadow;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -88,17 +87,18 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
     let crop = load.build.crop;
     let place = [crop.column, crop.row];
     let mut target = DebugTarget::pixel(String::new(), load, job.machine.clone())?;
-    target.has_shadow = page.is_some();
-    let mut stepper = target.stepper()?;
-    let explanation = pixel::explain(&job, &image, place, &mut stepper)?;
+    let (explanation, trap) = {
+        let mut stepper = target.stepper()?;
+        (pixel::explain(&job, &image, place, &mut stepper)?, stepper.trap())
+    };
     if let Some(path) = page {
         let window = arguments.steps.clone().unwrap_or(0..MOST_STEPS);
         if window.start > explanation.instructions {
             let message = format!("the pixel is over after {} instructions", grouped(explanation.instructions));
             return Err(Failure::usage(Diagnostic::error(message).hint("choose earlier steps")));
         }
-        let errors = &mut shadow::register_errors;
-        let replay = PixelReplay::record(&mut target.stepper()?, window, explanation.instructions, Some(errors));
+        target.has_shadow = true;
+        let replay = PixelReplay::record(&mut target.stepper()?, window, explanation.instructions);
         files::write_all(&[(path, pixel::page(&explanation, &replay))])?;
         if replay.left_out() > 0 {
             let left_out = count(replay.left_out(), "instruction is", "instructions are");
@@ -110,7 +110,7 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
         (false, true) => terminal.print(&result::json(&WithSettings::new(&explanation, Settings::of(&job))))?,
         (false, false) => terminal.tell(&explanation.text())?,
     }
-    match stepper.trap() {
+    match trap {
         Some(trap) => Err(Failure::Message { exit: Exit::of_trap(&trap), report: trap.diagnostic().into() }),
         None => Ok(Exit::Done),
     }

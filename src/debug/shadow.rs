@@ -5,11 +5,8 @@ use isa::Program;
 use isa::naming::RegisterId;
 
 use super::session::Session;
-use crate::registers::{self, RegisterContents, ShowList, ShowRequest};
+use crate::registers::{ShowList, ShowRequest};
 use crate::shadow::{self, ShadowedNumber, SourcePrograms, number_text};
-
-/// Names of the components of a vector.
-const COMPONENTS: [&str; 3] = ["x", "y", "z"];
 
 fn shadow_of<'a>(session: &'a Session) -> Result<&'a emu::shadow::Shadow, String> {
     session.stepper().shadow().ok_or_else(|| "numbers have no shadows: start `lancer debug` with --shadow".to_owned())
@@ -40,23 +37,21 @@ pub fn text(session: &Session, list: &str) -> Result<String, String> {
     let shadow = shadow_of(session)?;
     let (program, pc) = (&session.target.program, session.pc());
     let wanted = match list {
-        "" => isa::naming::registers()
-            .map(|register| (register, program.format_of(register, pc).map(|(_, bits)| bits)))
-            .collect(),
+        "" => isa::naming::registers().map(|register| (register, None)).collect(),
         list => named(session, list)?,
     };
     let programs = SourcePrograms { core: (program, &shadow.program), main: sender(session) };
     let mut lines = String::new();
     for (register, scale) in wanted {
-        let numbers = RegisterContents::of(&session.stepper().state().registers, register).numbers();
-        let shadows = shadow.of(register);
-        let is_shown = !list.is_empty() || shadows.iter().flatten().any(|number| number.deviation.is_some());
-        for (k, (&raw, number)) in numbers.iter().zip(&shadows).enumerate().filter(|_| is_shown) {
-            let component = if numbers.len() == 1 { String::new() } else { format!(".{}", COMPONENTS[k]) };
-            let name = program.name_of(register, pc).map_or(String::new(), |name| format!("[{name}]"));
-            let number = ShadowedNumber { raw, scale, shadow: *number };
-            lines +=
-                &format!("{}{component}{name}={raw}: {}\n", registers::name(register), number_text(number, &programs));
+        let numbers = shadow::register_numbers(session.stepper(), shadow_of(session)?, register);
+        let deviates = |number: &ShadowedNumber| number.shadow.is_some_and(|shadow| shadow.deviation.is_some());
+        if list.is_empty() && !numbers.iter().any(|(_, number)| deviates(number)) {
+            continue;
+        }
+        let name = program.name_of(register, pc).map_or(String::new(), |name| format!("[{name}]"));
+        for (component, number) in numbers {
+            let number = ShadowedNumber { scale: scale.or(number.scale), ..number };
+            lines += &format!("{component}{name}={}: {}\n", number.raw, number_text(number, &programs));
         }
     }
     Ok(if lines.is_empty() { "every number is exact\n".into() } else { lines })

@@ -4,7 +4,7 @@ use scenes::cadrage::Formats;
 use scenes::grid::Grid;
 use scenes::image::MemoryImage;
 use scenes::model::Vec3;
-use scenes::vector::shifted;
+use scenes::vector::{shifted, sub};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -45,7 +45,7 @@ impl ComparedNumber {
 impl ComparedVector {
     /// Raw components of values, and the vector in double precision.
     pub fn new(raw: Option<[i32; 3]>, value: Option<Vec3>, reference: Option<Vec3>) -> ComparedVector {
-        let difference = value.zip(reference).map(|(value, reference)| [0, 1, 2].map(|k| value[k] - reference[k]));
+        let difference = value.zip(reference).map(|(value, reference)| sub(value, reference));
         ComparedVector { raw, value, reference, difference }
     }
 }
@@ -104,12 +104,12 @@ pub fn weights(ray: [[i32; 3]; 2], vertices: [[i32; 3]; 3]) -> Option<[f64; 2]> 
     let wide = |a: [i32; 3]| a.map(i128::from);
     let [origin, direction] = ray.map(wide);
     let [p, q, s] = vertices.map(wide);
-    let sub = |a: [i128; 3], b: [i128; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
+    let from = |a: [i128; 3], b: [i128; 3]| [0, 1, 2].map(|k| a[k] - b[k]);
     let cross = |a: [i128; 3], b: [i128; 3]| {
         [0usize, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
     };
     let dot = |a: [i128; 3], b: [i128; 3]| (0..3).map(|k| a[k] * b[k]).sum::<i128>();
-    let (e, f, way) = (sub(q, p), sub(s, p), sub(origin, p));
+    let (e, f, way) = (from(q, p), from(s, p), from(origin, p));
     let across = cross(direction, f);
     let determinant = dot(across, e);
     let ratio = |part: i128| part as f64 / determinant as f64;
@@ -125,7 +125,7 @@ mod tests {
         // A triangle of legs 8 and 4 in the plane z = 0, met from above at a quarter of one and a half of the other.
         let triangle = [[0, 0, 0], [8, 0, 0], [0, 4, 0]];
         assert_eq!(weights([[2, 2, 5], [0, 0, -1]], triangle), Some([0.25, 0.5]));
-        assert_eq!(weights([[2, 2, 5], [0, 0, -1 << 30]], triangle.map(|v| v)), Some([0.25, 0.5]));
+        assert_eq!(weights([[2, 2, 5], [0, 0, -1 << 30]], triangle), Some([0.25, 0.5]));
         assert_eq!(weights([[2, 2, 5], [1, 0, 0]], triangle), None);
         // The largest numbers there are do not overflow.
         let far = [[i32::MIN; 3], [i32::MAX, i32::MIN, i32::MAX], [i32::MAX, i32::MAX, i32::MIN]];

@@ -16,8 +16,8 @@ use scenes::reference::{Reference, SearchMethod};
 
 pub use compared::{ComparedNumber, ComparedVector};
 pub use page::page;
-pub use probe::{RawPixel, RawRay, RawShadow, probe};
-pub use replay::{ErrorSource, MOST_STEPS, PixelReplay};
+use probe::probe;
+pub use replay::{MOST_STEPS, PixelReplay};
 pub use result::{ExplainedHit, ExplainedLight, ExplainedRay, PixelExplanation, SCHEMA};
 
 use crate::job::Job;

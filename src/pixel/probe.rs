@@ -148,7 +148,6 @@ pub struct RayProbe<'a> {
     open: Vec<(Function, usize)>,
     is_shadow: bool,
     begun: Option<Begun>,
-    elsewhere: SearchWork,
     pixel: RawPixel,
 }
 
@@ -194,7 +193,6 @@ impl<'a> RayProbe<'a> {
             open: Vec::new(),
             is_shadow: false,
             begun: None,
-            elsewhere: SearchWork::default(),
             pixel: RawPixel::default(),
         }
     }
@@ -202,7 +200,7 @@ impl<'a> RayProbe<'a> {
     /// Before the word at `pc`: a function may begin there.
     fn before(&mut self, stepper: &Stepper, pc: u32) {
         if self.packets.contains(&pc) && self.scalar(stepper, "packet_count") >= 0 {
-            self.work().packets += 1;
+            self.add_work(1, 0);
         }
         let Some(&function) = self.entries.get(&pc) else { return };
         let depth = stepper.calls().len();
@@ -213,8 +211,8 @@ impl<'a> RayProbe<'a> {
         self.open.push((function, depth));
         match function {
             Function::Trace => self.begin_search(stepper),
-            Function::Packet if self.scalar(stepper, "packet_count") >= 0 => self.work().packets += 1,
-            Function::Triangle => self.work().triangles += 1,
+            Function::Packet if self.scalar(stepper, "packet_count") >= 0 => self.add_work(1, 0),
+            Function::Triangle => self.add_work(0, 1),
             Function::Contribution => {
                 let weight = if self.has_tree() { self.scalar(stepper, "weight_now") } else { self.one() };
                 let (ray, rays) = (self.tree_ray(stepper, weight), self.pixel.rays.len());
@@ -229,8 +227,8 @@ impl<'a> RayProbe<'a> {
         let is_triangle = self.open.last().is_some_and(|(function, _)| *function == Function::Triangle);
         match self.tests.get(&executed.pc) {
             // The function of that name has been counted.
-            Some(TriangleTest::One) if !is_triangle => self.work().triangles += 1,
-            Some(TriangleTest::Units) => self.work().triangles += u64::from(executed.units),
+            Some(TriangleTest::One) if !is_triangle => self.add_work(0, 1),
+            Some(TriangleTest::Units) => self.add_work(0, u64::from(executed.units)),
             _ => {}
         }
         let calls = stepper.calls().len();
@@ -340,15 +338,16 @@ impl<'a> RayProbe<'a> {
         }
     }
 
-    /// Work of the search that goes on.
-    fn work(&mut self) -> &mut SearchWork {
+    /// Adds to the work of the search that goes on. Kernels of the user's own may test before they search; that belongs to no ray.
+    fn add_work(&mut self, packets: u64, triangles: u64) {
         let is_shadow = self.is_shadow;
-        // Kernels of the user's own may test before they search; that belongs to no ray.
-        let Some(ray) = self.pixel.rays.last_mut() else { return &mut self.elsewhere };
-        match ray.shadows.last_mut().filter(|_| is_shadow) {
+        let Some(ray) = self.pixel.rays.last_mut() else { return };
+        let work = match ray.shadows.last_mut().filter(|_| is_shadow) {
             Some(shadow) => &mut shadow.work,
             None => &mut ray.work,
-        }
+        };
+        work.packets += packets;
+        work.triangles += triangles;
     }
 
     /// The program walks a tree of rays.

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::registers::{self as shown, RegisterContents};
 use crate::report::base64;
+use crate::shadow::register_errors;
 use crate::trace::instruction;
 
 /// Instructions that a page holds at most.
@@ -19,10 +20,6 @@ pub const MOST_STEPS: u64 = 400_000;
 
 /// Words of written registers that a page holds at most.
 const MOST_WORDS: usize = 3_000_000;
-
-/// Source of the errors of registers: what each component of a register holds less what exact arithmetic would have given, after the instruction
-/// that has just been executed; `None` where nothing is known of it.
-pub type ErrorSource<'s> = dyn FnMut(&Stepper, RegisterId) -> Option<[f64; 3]> + 's;
 
 /// Steps of a pixel.
 #[derive(Clone, Debug, Serialize)]
@@ -101,12 +98,7 @@ fn text_of(words: &[i32]) -> String {
 
 impl PixelReplay {
     /// Records the steps of a window, at most [`MOST_STEPS`], of a core before its first instruction. `total` are all that the pixel takes.
-    pub fn record(
-        stepper: &mut Stepper,
-        window: Range<u64>,
-        total: u64,
-        mut shadow: Option<&mut ErrorSource>,
-    ) -> PixelReplay {
+    pub fn record(stepper: &mut Stepper, window: Range<u64>, total: u64) -> PixelReplay {
         stepper.run_to(window.start);
         let first = stepper.steps();
         let end = window.end.min(first.saturating_add(MOST_STEPS));
@@ -126,9 +118,8 @@ impl PixelReplay {
             expected = Some(pc + 1);
             for register in written {
                 let written = words(register, RegisterContents::of(&stepper.state().registers, register));
-                if let Some(shadow) = shadow.as_deref_mut() {
-                    let known = shadow(stepper, register);
-                    errors.extend((0..written.len()).map(|k| known.map_or(f32::NAN, |known| known[k] as f32)));
+                if let Some(known) = register_errors(stepper, register) {
+                    errors.extend(known.iter().take(written.len()).map(|&error| error as f32));
                 }
                 values.extend(written);
             }
@@ -164,7 +155,8 @@ impl PixelReplay {
             start: text_of(&start),
             jumps: text_of(&jumps),
             values: text_of(&values),
-            errors: shadow
+            errors: stepper
+                .shadow()
                 .is_some()
                 .then(|| base64::text(&errors.iter().flat_map(|error: &f32| error.to_le_bytes()).collect::<Vec<u8>>())),
             transfers,

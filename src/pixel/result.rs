@@ -192,7 +192,8 @@ impl Explainer<'_> {
         let parents = parents(reference);
         // Match the trees from the root down: parents come before their children in both.
         let mut partner: Vec<Option<usize>> = vec![None; raw.rays.len()];
-        let mut is_matched = vec![None; reference.len()];
+        // Numbers of the explained rays, of which those of the machine come first.
+        let mut number_of = vec![None; reference.len()];
         for (number, ray) in raw.rays.iter().enumerate() {
             let above = ray.parent.map(|parent| partner[parent]);
             let found = (0..reference.len()).find(|&other| {
@@ -201,11 +202,11 @@ impl Explainer<'_> {
                     (Some(Some(above)), Some(parent)) => above == parent,
                     _ => false,
                 };
-                same_place && reference[other].kind == ray.kind && is_matched[other].is_none()
+                same_place && reference[other].kind == ray.kind && number_of[other].is_none()
             });
             partner[number] = found;
             if let Some(found) = found {
-                is_matched[found] = Some(number);
+                number_of[found] = Some(number);
             }
         }
         // Explain the machine's rays in their order, then the others.
@@ -213,7 +214,7 @@ impl Explainer<'_> {
         let sums: Vec<Vec3> = reference
             .iter()
             .map(|ray| {
-                sum = [0, 1, 2].map(|k| sum[k] + ray.colour[k] * ray.weight);
+                sum = add(sum, scale(ray.colour, ray.weight));
                 sum
             })
             .collect();
@@ -224,9 +225,9 @@ impl Explainer<'_> {
             rays.push(self.ray(number, ray.parent, pair, other.map(|other| sums[other])));
         }
         for (other, ray) in reference.iter().enumerate() {
-            if is_matched[other].is_none() {
-                let parent = parents[other].and_then(|parent| is_matched[parent]);
-                is_matched[other] = Some(rays.len());
+            if number_of[other].is_none() {
+                let parent = parents[other].and_then(|parent| number_of[parent]);
+                number_of[other] = Some(rays.len());
                 rays.push(self.ray(rays.len(), parent, (None, Some(ray)), Some(sums[other])));
             }
         }
@@ -312,7 +313,7 @@ impl Explainer<'_> {
             local: colour(raw.and_then(|raw| raw.seen), other.map(|other| other.colour)),
             added: colour(
                 sums.map(|[after, before]| [0, 1, 2].map(|k| after[k].wrapping_sub(before[k]))),
-                other.map(|other| other.colour.map(|x| x * other.weight)),
+                other.map(|other| scale(other.colour, other.weight)),
             ),
             sum: colour(sums.map(|[after, _]| after), sum),
         }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use scenes::vector::largest;
+
 use super::compared::{ComparedNumber, ComparedVector};
 use super::result::{ExplainedHit, ExplainedLight, ExplainedRay, PixelExplanation};
 use crate::numeral::{count, grouped};
@@ -29,7 +31,6 @@ impl<'a> ComparedLine<'a> {
 
     fn three(name: &'a str, vector: &ComparedVector) -> ComparedLine<'a> {
         let list = |value: Option<[f64; 3]>| value.map(|value| value.to_vec());
-        let largest = |difference: [f64; 3]| difference.into_iter().map(f64::abs).fold(0.0, f64::max);
         ComparedLine {
             name,
             value: list(vector.value),

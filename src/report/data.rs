@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::base64;
 use crate::advise::AdviceResult;
 use crate::annex::result::Annexes;
-use crate::chart::{self, ChartStyle, ChartTheme};
+use crate::chart::{self, ChartStyle, ChartTheme, FlameFigure};
 use crate::clocks::{self, LineClocks};
 use crate::drawing::Drawing;
 use crate::files::map;
@@ -76,6 +76,7 @@ impl<'a> PageData<'a> {
         let pixels = |pixels| base64::text(&PictureFormat::Png.encode_pixels(&pixels));
         let picture = |picture: &Picture| base64::text(&PictureFormat::Png.encode(picture));
         let cut = |&number: &u64| u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes();
+        let figure = clocks::flame(result.title(), &clocks::stacks(&drawing.build.cores, &drawing.frame));
         PageData {
             title: result.title(),
             render: result,
@@ -101,16 +102,14 @@ impl<'a> PageData<'a> {
             advice,
             annexes,
             functions: result.functions.iter().chain(&result.regions).collect(),
-            flames: [ChartTheme::Light, ChartTheme::Dark].map(|theme| flame(result, drawing, theme)),
+            flames: [ChartTheme::Light, ChartTheme::Dark].map(|theme| flame(&figure, theme)),
         }
     }
 }
 
 /// The flame graph of the cores' clocks, for a page of HTML.
-fn flame(result: &Render, drawing: &Drawing, theme: ChartTheme) -> String {
-    let stacks = clocks::stacks(&drawing.build.cores, &drawing.frame);
-    let figure = clocks::flame(result.title(), &stacks);
-    let svg = chart::flame_svg(&figure, ChartStyle { theme, ..ChartStyle::default() });
+fn flame(figure: &FlameFigure, theme: ChartTheme) -> String {
+    let svg = chart::flame_svg(figure, ChartStyle { theme, ..ChartStyle::default() });
     // HTML knows SVG without its name space, and the page names nothing outside of itself.
     svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }

@@ -1,24 +1,33 @@
 //! A number beside its shadow, for people.
 
-use emu::shadow::ShadowNumber;
+use emu::shadow::{Shadow, ShadowNumber};
 use emu::stepper::Stepper;
 use isa::naming::RegisterId;
 
-use super::totals::{SourcePrograms, error_of, good_bits};
-use crate::registers::RegisterContents;
+use super::totals::{ShadowedNumber, SourcePrograms, error_of, good_bits};
+use crate::registers::{self, RegisterContents};
 
 /// Lines that are named of an error.
 const NAMED: usize = 3;
 
-/// A number of a register or of memory with its shadow.
-#[derive(Clone, Copy)]
-pub struct ShadowedNumber<'a> {
-    /// The machine's number.
-    pub raw: i64,
-    /// Fraction bits of its format, where they are known.
-    pub scale: Option<i32>,
-    /// The shadow; `None` of an integer.
-    pub shadow: Option<&'a ShadowNumber>,
+/// Names of the components of a vector.
+const COMPONENTS: [&str; 3] = ["x", "y", "z"];
+
+/// Numbers of a register beside their shadows, by the names of its components: `s2`, or `v1.x`, `v1.y` and `v1.z`. The fraction bits are those of
+/// the format that it is declared to hold, else those of the shadow.
+pub fn register_numbers<'a>(
+    stepper: &Stepper,
+    shadow: &'a Shadow,
+    register: RegisterId,
+) -> Vec<(String, ShadowedNumber<'a>)> {
+    let declared = stepper.code.program.format_of(register, stepper.code.word(stepper.state().pc));
+    let numbers = RegisterContents::of(&stepper.state().registers, register).numbers();
+    let component = |k: usize| if numbers.len() == 1 { String::new() } else { format!(".{}", COMPONENTS[k]) };
+    let number = |(k, (&raw, shadow)): (usize, (&i64, Option<&'a ShadowNumber>))| {
+        let scale = declared.map(|(_, bits)| bits).or(shadow.and_then(|shadow| shadow.scale));
+        (registers::name(register) + &component(k), ShadowedNumber { raw, scale, shadow })
+    };
+    numbers.iter().zip(shadow.of(register)).enumerate().map(number).collect()
 }
 
 /// The exact number, how far the machine's is from it, and which lines brought that in: `exact 0.6, error -0.40 ulp, 31 good bits (unit.s:9 -0.40)`.
@@ -67,13 +76,13 @@ pub(super) fn ulps(number: f64) -> String {
 /// Errors of a register's components, the machine's number less the exact one, in units of its last place; NaN where a component is an integer,
 /// which has no shadow, or is not there. `None` of a core without shadows.
 pub fn register_errors(stepper: &Stepper, register: RegisterId) -> Option<[f64; 3]> {
-    let shadows = stepper.shadow()?.of(register);
-    let numbers = RegisterContents::of(&stepper.state().registers, register).numbers();
+    let error = |number: ShadowedNumber| match number.shadow {
+        Some(shadow) => shadow.deviation.as_ref().map_or(0.0, |deviation| error_of(number.raw, deviation)),
+        None => f64::NAN,
+    };
     let mut errors = [f64::NAN; 3];
-    for ((error, raw), shadow) in errors.iter_mut().zip(numbers).zip(shadows) {
-        if let Some(shadow) = shadow {
-            *error = shadow.deviation.as_ref().map_or(0.0, |deviation| error_of(raw, deviation));
-        }
+    for (place, (_, number)) in errors.iter_mut().zip(register_numbers(stepper, stepper.shadow()?, register)) {
+        *place = error(number);
     }
     Some(errors)
 }

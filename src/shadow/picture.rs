@@ -8,7 +8,7 @@ use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::PIXEL;
 
 use super::result::ShadowResult;
-use super::totals::{FinalNumber, OutputWeight, ShadowTotals, SourcePrograms};
+use super::totals::{OutputWeight, ShadowTotals, ShadowedNumber, SourcePrograms};
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::load::Load;
@@ -82,7 +82,7 @@ fn totals(frame: &ShadowFrame, build: &Build, image: &MemoryImage, crop: Crop) -
         for (k, colour) in (0u32..).zip(COLOURS) {
             let address = start + pixel * octets + 4 * k;
             let raw = frame.memory.word(address).unwrap_or(0);
-            let number = FinalNumber {
+            let number = ShadowedNumber {
                 scale: Some(image.formats.colour as i32),
                 raw: raw.into(),
                 shadow: frame.numbers.get(address, 4),

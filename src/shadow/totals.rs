@@ -84,6 +84,7 @@ pub enum OutputWeight {
     /// Units count alike, as in pixels, which have one format.
     Units,
     /// Numbers count alike, whatever their formats.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only commands run a program by itself"))]
     Shares,
 }
 
@@ -101,14 +102,14 @@ pub struct ShadowTotals {
     worst: Vec<(ShadowOutput, Vec<(SiteKey, f64)>)>,
 }
 
-/// A number at the end, as totals take it.
+/// A number of a register or of memory with its shadow.
 #[derive(Clone, Copy)]
-pub struct FinalNumber<'a> {
-    /// Fraction bits, where they are known.
-    pub scale: Option<i32>,
+pub struct ShadowedNumber<'a> {
     /// The machine's number.
     pub raw: i64,
-    /// Shadow of the number.
+    /// Fraction bits, where they are known.
+    pub scale: Option<i32>,
+    /// The shadow; `None` of an integer.
     pub shadow: Option<&'a ShadowNumber>,
 }
 
@@ -146,7 +147,7 @@ impl ShadowTotals {
         &mut self,
         programs: &SourcePrograms,
         name: impl FnOnce() -> String,
-        number: FinalNumber,
+        number: ShadowedNumber,
         weight: OutputWeight,
     ) {
         self.compared += 1;

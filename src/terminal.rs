@@ -163,6 +163,15 @@ impl Terminal {
         }
     }
 
+    /// A count of what has been done of a work whose length nobody knows; shown where [`Terminal::progress`] is.
+    pub fn counter(&self, what: &str) -> ProgressBar {
+        if !self.is_watched {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{msg:<24} {human_pos}").expect("the template is valid");
+        ProgressBar::no_length().with_style(style).with_message(what.to_owned())
+    }
+
     /// A bar that shows how far a work of `length` steps has come; it is invisible where standard error is no terminal,
     /// and vanishes when it is finished.
     pub fn progress(&self, what: &str, length: u64) -> ProgressBar {

@@ -174,11 +174,10 @@ pub(super) fn execute(
     job.kernels.profile = arguments.profile;
     job.layout = Some(arguments.layout);
     (job.machine_name, job.machine) = (machine.name.clone(), machine.config.clone());
-    let bar = terminal.progress("pictures", 0);
+    let bar = terminal.counter("pictures");
     let demand = arguments.demand();
-    let mut progress = |trials: &formats::FormatTrials| bar.set_position(trials.drawn);
     let effort = SearchEffort { shifts: arguments.shifts.into(), guard: arguments.guard };
-    let found = formats::find(&job, demand, &seen, &unseen, effort, &mut progress);
+    let found = formats::find(&job, demand, &seen, &unseen, effort, &|| bar.inc(1));
     bar.finish_and_clear();
     let Some(found) = found? else {
         let refusal = format!("words of {} bits do not keep {demand}", formats::WORDS.1);

@@ -13,8 +13,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use choice::{DemandedError, FormatChoice, PooledError};
-pub use search::{ORDER, WORDS};
-pub use trial::{FormatTrials, TrialFigures, TrialScene};
+pub use search::WORDS;
+pub use trial::TrialFigures;
+
+use trial::{FormatTrials, TrialScene};
 
 use crate::energy::FigureRange;
 use crate::failure::Failure;
@@ -171,15 +173,15 @@ pub fn find(
     seen: &NamedScenes,
     unseen: &NamedScenes,
     effort: SearchEffort,
-    progress: &mut dyn FnMut(&FormatTrials),
+    progress: &dyn Fn(),
 ) -> Result<Option<FormatsResult>, Failure> {
     let SearchEffort { shifts, guard } = effort;
     let shifts = &SEARCHED_SHIFTS[..shifts.clamp(1, SEARCHED_SHIFTS.len())];
     let trial_scenes = |scenes: &NamedScenes, shifts: &[[f64; 2]]| -> Result<Vec<TrialScene>, Failure> {
         scenes.iter().map(|(name, scene)| TrialScene::new(name, scene.clone(), &job.view, shifts)).collect()
     };
-    let mut trials = FormatTrials::new(job, demand, trial_scenes(seen, shifts)?);
-    let Some(searched) = search::search(&mut trials, demand, guard as i32, progress)? else { return Ok(None) };
+    let mut trials = FormatTrials::new(job, demand, trial_scenes(seen, shifts)?, progress);
+    let Some(searched) = search::search(&mut trials, demand, guard as i32)? else { return Ok(None) };
     let search::FormatSearch { quantities, found } = searched;
     // What stands beside: words that leave all formats to the scenes.
     let best = search::uniform_word(&mut trials, found.word, guard as i32)?;
@@ -188,11 +190,8 @@ pub fn find(
     words.retain(|word| (WORDS.0..=WORDS.1).contains(word));
     words.sort_unstable_by(|a, b| b.cmp(a));
     words.dedup();
-    let mut measure = |choice: FormatChoice| -> Result<ChoiceFigures, Failure> {
-        let figures = trials.measure(choice)?;
-        progress(&trials);
-        Ok(ChoiceFigures::of(figures))
-    };
+    let mut measure =
+        |choice: FormatChoice| -> Result<ChoiceFigures, Failure> { Ok(ChoiceFigures::of(trials.measure(choice)?)) };
     let figures = measure(found)?;
     let layout = job.layout().name();
     let uniform = words.into_iter().map(|word| {
@@ -223,22 +222,25 @@ pub fn find(
         more: word(found.word + 1).map(&mut measure).transpose()?.and_then(fitting),
     });
     let fields = fields(job, seen, &found);
+    let (mut drawn, mut reused) = (trials.drawn, trials.reused);
     // Without packed structures a shorter word moves as many octets as a longer one.
     if let Some(word) = best.filter(|_| job.layout() == Layout::Packed) {
         let wide = Job { layout: Some(Layout::Wide), ..job.clone() };
-        let mut trials = FormatTrials::new(&wide, demand, trial_scenes(seen, shifts)?);
+        let mut trials = FormatTrials::new(&wide, demand, trial_scenes(seen, shifts)?, progress);
         let figures = ChoiceFigures::of(trials.measure(FormatChoice::uniform(word))?);
+        drawn += trials.drawn;
+        reused += trials.reused;
         uniform.push(UniformWord { word, layout: Layout::Wide.name(), is_best: true, figures });
     }
     // What the search did not see.
-    let (drawn, reused) = (trials.drawn, trials.reused);
-    let mut checked = |scenes: &NamedScenes| -> Result<(Vec<TrialFigures>, u64), Failure> {
-        let mut trials = FormatTrials::new(job, demand, trial_scenes(scenes, &CHECKED_SHIFTS)?);
+    let mut checked = |scenes: &NamedScenes| -> Result<Vec<TrialFigures>, Failure> {
+        let mut trials = FormatTrials::new(job, demand, trial_scenes(scenes, &CHECKED_SHIFTS)?, progress);
         let figures = trials.measure(found)?;
-        progress(&trials);
-        Ok((figures, trials.drawn))
+        drawn += trials.drawn;
+        reused += trials.reused;
+        Ok(figures)
     };
-    let ((seen, first), (unseen, second)) = (checked(seen)?, checked(unseen)?);
+    let (seen, unseen) = (checked(seen)?, checked(unseen)?);
     let (width, height) = job.view.size;
     Ok(Some(FormatsResult {
         schema: SCHEMA,
@@ -255,7 +257,7 @@ pub fn find(
         uniform,
         seen,
         unseen,
-        drawn: drawn + first + second,
+        drawn,
         reused,
     }))
 }
@@ -283,9 +285,9 @@ fn fields(job: &Job, scenes: &NamedScenes, choice: &FormatChoice) -> Vec<SceneFi
 impl ChoiceFigures {
     /// Figures of some scenes together.
     fn of(scenes: Vec<TrialFigures>) -> ChoiceFigures {
-        let count = scenes.len().max(1) as f64;
-        let mean = |part: &dyn Fn(&TrialFigures) -> f64| scenes.iter().map(part).sum::<f64>() / count;
         let drawn = || scenes.iter().filter(|scene| scene.refused.is_none());
+        let count = drawn().count().max(1) as f64;
+        let mean = |part: &dyn Fn(&TrialFigures) -> f64| drawn().map(part).sum::<f64>() / count;
         ChoiceFigures {
             octets: mean(&|scene| scene.octets),
             clocks: mean(&|scene| scene.clocks),

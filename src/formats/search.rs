@@ -52,12 +52,7 @@ pub fn uniform_word(trials: &mut FormatTrials, guess: u32, guard: i32) -> Result
 ///
 /// # Errors
 /// See [`FormatTrials::keeps`].
-pub fn search(
-    trials: &mut FormatTrials,
-    demand: DemandedError,
-    guard: i32,
-    progress: &mut dyn FnMut(&FormatTrials),
-) -> Result<Option<FormatSearch>, Failure> {
+pub fn search(trials: &mut FormatTrials, demand: DemandedError, guard: i32) -> Result<Option<FormatSearch>, Failure> {
     let longest = FormatChoice::uniform(WORDS.1);
     let formats = trials.formats(&longest);
     if formats.is_empty() || !trials.keeps(longest)? {
@@ -77,11 +72,7 @@ pub fn search(
     for at in ORDER {
         let QuantitySearch { start, estimate, integer, .. } = quantities[at];
         let least = if at == 0 || at == 3 { start - WORDS.1 as i32 + integer.max(2) } else { 0 };
-        let mut keeps = |bits: i32| {
-            let kept = trials.keeps(choice.with(at, bits));
-            progress(trials);
-            kept
-        };
+        let mut keeps = |bits: i32| trials.keeps(choice.with(at, bits));
         if let Some(found) = safest(least, start, estimate, &mut keeps)? {
             // What no picture depends on needs no guard.
             let found = if found == least { found } else { (found + guard).min(start) };
@@ -92,11 +83,7 @@ pub fn search(
     // The word: as wide as the widest quantity, or wider where intermediates ask for it.
     let widest = (0..6).map(|at| quantities[at].integer + quantities[at].fewest).max().unwrap_or(8);
     let widest = widest.clamp(WORDS.0 as i32, WORDS.1 as i32);
-    let mut keeps = |word: i32| {
-        let kept = trials.keeps(FormatChoice { word: word as u32, ..choice });
-        progress(trials);
-        kept
-    };
+    let mut keeps = |word: i32| trials.keeps(FormatChoice { word: word as u32, ..choice });
     if let Some(word) = safest(WORDS.0 as i32, WORDS.1 as i32, widest, &mut keeps)? {
         choice.word = word as u32;
     }
@@ -162,38 +149,23 @@ fn fewest(
 ) -> Result<Option<i32>, Failure> {
     // `bad` does not keep, `good` does.
     let (mut bad, mut good) = (least - 1, most + 1);
-    let mut at = guess.clamp(least, most);
-    let mut step = 1;
-    let first = keeps(at)?;
-    if first {
-        good = at
-    } else {
-        bad = at
-    }
-    while bad < least && first || good > most && !first {
-        let next = if first { (at - step).max(least) } else { (at + step).min(most) };
-        if next == at {
-            break;
-        }
-        at = next;
-        step *= 2;
+    let (mut at, mut step) = (guess.clamp(least, most), 1);
+    loop {
         if keeps(at)? {
             good = at
         } else {
             bad = at
         }
-        if first && bad >= least || !first && good <= most {
-            break;
+        if good - bad <= 1 {
+            return Ok((good <= most).then_some(good));
         }
+        at = match (bad < least, good > most) {
+            (true, _) => (at - step).max(least),
+            (_, true) => (at + step).min(most),
+            _ => bad + (good - bad) / 2,
+        };
+        step *= 2;
     }
-    if good > most {
-        return Ok(None);
-    }
-    while good - bad > 1 && bad >= least {
-        let middle = bad + (good - bad) / 2;
-        if keeps(middle)? { good = middle } else { bad = middle }
-    }
-    Ok(Some(good))
 }
 
 #[cfg(test)]

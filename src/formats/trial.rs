@@ -73,7 +73,6 @@ pub struct TrialFigures {
 }
 
 /// Pictures of scenes, drawn when they are asked for.
-#[derive(Debug)]
 pub struct FormatTrials<'a> {
     job: &'a Job,
     demand: DemandedError,
@@ -86,11 +85,18 @@ pub struct FormatTrials<'a> {
     pub drawn: u64,
     /// Pictures that were known.
     pub reused: u64,
+    /// Called for each picture that was drawn.
+    progress: &'a dyn Fn(),
 }
 
 impl<'a> FormatTrials<'a> {
     /// Trials of some scenes, drawn as the job says.
-    pub fn new(job: &'a Job, demand: DemandedError, scenes: Vec<TrialScene>) -> FormatTrials<'a> {
+    pub fn new(
+        job: &'a Job,
+        demand: DemandedError,
+        scenes: Vec<TrialScene>,
+        progress: &'a dyn Fn(),
+    ) -> FormatTrials<'a> {
         FormatTrials {
             job,
             demand,
@@ -100,6 +106,7 @@ impl<'a> FormatTrials<'a> {
             pictures: HashMap::new(),
             drawn: 0,
             reused: 0,
+            progress,
         }
     }
 
@@ -126,7 +133,7 @@ impl<'a> FormatTrials<'a> {
     /// True where all scenes keep the demand; stops at the first that does not.
     ///
     /// # Errors
-    /// What is no result of a choice: see [`FormatTrials::measure`].
+    /// As of [`FormatTrials::measure`].
     pub fn keeps(&mut self, choice: FormatChoice) -> Result<bool, Failure> {
         if let Some(&verdict) = self.verdicts.get(&choice) {
             return Ok(verdict);
@@ -214,6 +221,7 @@ impl<'a> FormatTrials<'a> {
             nanojoules: energy.frame_nj,
         };
         self.drawn += 1;
+        (self.progress)();
         self.pictures.insert(key, figure);
         Ok(figure)
     }

@@ -6,7 +6,7 @@ use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
 use crate::numeral::{count, grouped, percent, short};
-use crate::result::{ByClass, KindOctets, OperationTimes, ProcessorResult, RegionCounts, Render};
+use crate::result::{ByClass, ByKind, OperationTimes, ProcessorResult, RegionCounts, Render};
 use crate::table::{row, table};
 
 /// Classes with a column of their own in tables of functions.
@@ -228,7 +228,7 @@ pub fn operation_times(times: &OperationTimes) -> String {
 }
 
 /// One line on octets by kind of data, in parts of all of them; nothing where there are none.
-fn by_kind(what: &str, kinds: &KindOctets, all: u64) -> String {
+fn by_kind(what: &str, kinds: &ByKind, all: u64) -> String {
     let kinds = kinds.0.iter().filter(|(_, octets)| *octets != 0);
     let kinds: Vec<String> = kinds.map(|(kind, octets)| format!("{kind} {}", percent(*octets, all))).collect();
     if kinds.is_empty() { String::new() } else { format!("{what}: {}\n", kinds.join(", ")) }

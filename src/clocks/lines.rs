@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::drawing::Drawing;
 use crate::job::Job;
-use crate::result::{KindOctets, OUTSIDE, waiting_kinds};
+use crate::result::{ByKind, OUTSIDE, waiting_kinds};
 
 /// A source line that was executed.
 #[derive(Clone, Debug, Serialize)]
@@ -33,7 +33,7 @@ pub struct LineClocks {
     /// Transfers and messages that it asked for.
     pub transfers: u64,
     /// Waits by kind of data.
-    pub waiting_kinds: KindOctets,
+    pub waiting_kinds: ByKind,
 }
 
 /// The executed lines of the cores' program in their order. Words of one line are added up: macros and pseudo-instructions make several of them.
@@ -60,7 +60,7 @@ pub fn lines(job: &Job, drawing: &Drawing) -> Vec<LineClocks> {
                 busy: 0,
                 waiting: 0,
                 transfers: 0,
-                waiting_kinds: KindOctets(Vec::new()),
+                waiting_kinds: ByKind(Vec::new()),
             };
             (row, PlaceUse::default())
         });

@@ -2,7 +2,7 @@
 
 use super::lines::LineClocks;
 use crate::numeral::{percent, short};
-use crate::result::{FunctionClocks, KindOctets, RegionCounts, Render};
+use crate::result::{ByKind, FunctionClocks, RegionCounts, Render};
 use crate::table::{row, table};
 
 /// Lines that the table of lines has, those with the most clocks.
@@ -55,7 +55,7 @@ fn function_table([functions, regions]: [&[RegionCounts]; 2]) -> String {
 }
 
 /// The kind of data that was waited for longest; empty for none.
-fn most_waited(kinds: &KindOctets) -> String {
+fn most_waited(kinds: &ByKind) -> String {
     // Of equal ones the first, as they stand in memory.
     let longest = kinds.0.iter().rev().max_by_key(|(_, waiting)| *waiting);
     longest.map_or(String::new(), |(kind, _)| kind.clone())

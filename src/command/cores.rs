@@ -192,8 +192,7 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResu
 fn settings(arguments: &CoresArguments, mut job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
     let machines: Vec<_> = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
     job.machine.clone_from(&machines[0]);
-    job.tree.depth.get_or_insert(job.kernels.profile.kd_depth());
-    job.tree.build.get_or_insert(job.kernels.profile.kd_method());
+    job.tree.resolve(job.kernels.profile);
     CoresSettings { job, cores: cores_of(arguments), machines }
 }
 

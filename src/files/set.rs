@@ -22,7 +22,7 @@ const MOST_ENTRIES: usize = 10_000;
 /// (`-`), is written in place.
 ///
 /// # Errors
-/// What [`check_target`] refuses, and a disk or folder that cannot be written.
+/// Places that [`check_target`] refuses, and a disk or folder that cannot be written.
 pub fn write(path: &Path, octets: &[u8]) -> Result<(), Report> {
     write_all(&[(path, octets)])
 }
@@ -139,7 +139,7 @@ fn temporary() -> Builder<'static, 'static> {
 }
 
 /// A file that is written line by line, and takes its place as a whole when it is finished: for results that memory need not hold.
-/// What is no regular file, such as a pipe, gets its lines at once.
+/// A pipe, or another place that is no regular file, gets them at once.
 pub struct FileStream {
     writer: BufWriter<File>,
     /// The file beside its place, and the place.
@@ -152,7 +152,7 @@ impl FileStream {
     /// The beginning of a file.
     ///
     /// # Errors
-    /// What [`check_target`] refuses, and a folder that cannot be written.
+    /// Places that [`check_target`] refuses, and a folder that cannot be written.
     pub fn new(path: &Path) -> Result<FileStream, Report> {
         check_target(path)?;
         let begun = || {

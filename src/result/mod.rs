@@ -146,7 +146,7 @@ pub struct Render {
     pub bus: BusResult,
     /// Octets over the bus, and beside it, by kind of data: of the kind that a cache holds, the lines that were filled. Without a
     /// cache they are those of `bus.kinds`, which were asked for.
-    pub moved_kinds: KindOctets,
+    pub moved_kinds: ByKind,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: FormatTable,
     /// Instructions of the cores of whose results some lost bits or did not fit; left out unless it was asked for.
@@ -233,7 +233,7 @@ pub struct BusResult {
     /// Longest wait from a request to its grant, in clocks.
     pub longest_wait: u64,
     /// Octets by kind of data; `messages` are the messages.
-    pub kinds: KindOctets,
+    pub kinds: ByKind,
     /// The cores' caches together.
     pub cache: CacheResult,
 }
@@ -251,11 +251,11 @@ pub struct CacheResult {
     pub filled: u64,
 }
 
-/// Octets by kind of data, in the order of the addresses.
+/// Octets or clocks by kind of data, in the order of the addresses.
 #[derive(Clone, Debug, JsonSchema)]
-pub struct KindOctets(#[schemars(with = "BTreeMap<String, u64>")] pub Vec<(String, u64)>);
+pub struct ByKind(#[schemars(with = "BTreeMap<String, u64>")] pub Vec<(String, u64)>);
 
-impl Serialize for KindOctets {
+impl Serialize for ByKind {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, octets)| (name, octets)))
     }
@@ -374,7 +374,7 @@ impl Render {
                 transfers: frame.bus.transfers,
                 bursts: frame.bus.bursts,
                 longest_wait: frame.bus.longest_wait.0,
-                kinds: KindOctets(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
+                kinds: ByKind(frame.kinds.iter().map(|kind| (kind.kind.clone(), kind.octets.0)).collect()),
                 cache: CacheResult {
                     hits: frame.cache.hits,
                     misses: frame.cache.misses,

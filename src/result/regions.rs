@@ -5,7 +5,7 @@ use isa::Program;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{ByClass, KindOctets};
+use super::{ByClass, ByKind};
 
 /// Name of the row for instructions that lie in no function.
 pub const OUTSIDE: &str = "(outside)";
@@ -25,7 +25,7 @@ pub struct RegionCounts {
     pub exclusive: RegionCost,
     /// Own clocks of waiting by kind of data, where clocks of functions were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub waiting_kinds: Option<KindOctets>,
+    pub waiting_kinds: Option<ByKind>,
 }
 
 /// Operations by class, and where they were measured the clocks beside them.
@@ -116,9 +116,9 @@ pub fn regions(profile: Option<&Profile>, kinds: &[&str], is_function: bool) -> 
 }
 
 /// Waits of a place by kind of data, those without any left out.
-pub fn waiting_kinds(place: &PlaceUse, kinds: &[&str]) -> KindOctets {
+pub fn waiting_kinds(place: &PlaceUse, kinds: &[&str]) -> ByKind {
     let named = kinds.iter().zip(&place.waiting_kinds).filter(|(_, waiting)| **waiting != 0);
-    KindOctets(named.map(|(kind, &waiting)| ((*kind).to_owned(), waiting)).collect())
+    ByKind(named.map(|(kind, &waiting)| ((*kind).to_owned(), waiting)).collect())
 }
 
 /// The functions, or the regions that are none, of one core.

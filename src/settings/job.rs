@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use kernels::Function;
 use kernels::build::{Crop, KernelOptions};
+use kernels::{Function, KernelSet};
 use messages::{Diagnostic, Report, Source};
 use scenes::cadrage::Overrides;
 use scenes::model::{Camera, View};
@@ -30,6 +30,12 @@ pub const LONGEST: u32 = 16_384;
 pub const MOST_BOUNCES: u32 = 30;
 
 impl TreeSettings {
+    /// Puts those of the kernels where nothing was chosen.
+    pub fn resolve(&mut self, kernels: KernelSet) {
+        self.depth.get_or_insert(kernels.kd_depth());
+        self.build.get_or_insert(kernels.kd_method());
+    }
+
     /// Puts the choices into a job.
     pub fn choose(&self, job: &mut Job) {
         (job.kd_depth, job.kd_method) = (self.depth, self.build);

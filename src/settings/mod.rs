@@ -172,12 +172,12 @@ pub struct TreeSettings {
     pub depth: Option<Depth>,
     /// Way to build it: report, exact or binned; results have that of the kernels where none was chosen.
     #[serde(with = "named::option")]
-    #[schemars(with = "String")]
+    #[schemars(with = "Option<String>")]
     pub build: Option<BuildMethod>,
 }
 
 fn levels(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    schemars::json_schema!({ "type": ["integer", "string"] })
+    schemars::json_schema!({ "type": ["integer", "string", "null"] })
 }
 
 /// Fraction bits by quantity.

@@ -127,7 +127,7 @@ impl<T: Arithmetic> Target<T> {
     /// where there is one.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The mistake, in words.
     fn check_packets(&self, ray: &Ray, found: &[Crossing]) -> Result<(), String> {
         let (nearest, expected) = (self.nearest_of_packets(ray), self.expected(found));
         if nearest != expected {
@@ -158,7 +158,7 @@ impl<T: Arithmetic> Target<T> {
     /// Checks that the ray crosses the closed surface evenly, and that a search finds what there is.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The mistake, in words.
     pub fn check_closed(&self, ray: &Ray, is_searched: bool) -> Result<(), String> {
         let found = self.crossings(ray);
         self.check_packets(ray, &found)?;
@@ -185,7 +185,7 @@ impl<T: Arithmetic> Target<T> {
     /// where it `is_searched`, that the tree finds what there is.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The mistake, in words.
     pub fn check_leaks(&self, ray: &Ray, is_searched: bool) -> Result<(), String> {
         let bounds = &self.twin.stage.bounds;
         let starts_outside = (0..3).any(|k| ray.origin[k] < bounds.low[k] || ray.origin[k] > bounds.high[k]);
@@ -199,7 +199,7 @@ impl<T: Arithmetic> Target<T> {
     /// Checks the nearest hit and all crossings against a search through all triangles.
     ///
     /// # Errors
-    /// What is wrong, in words.
+    /// The mistake, in words.
     pub fn check_nearest(&self, ray: &Ray) -> Result<(), String> {
         let all = self.all_crossings(ray);
         let mut found = self.crossings(ray);

@@ -71,8 +71,7 @@ impl Contents {
             view.fov.get_or_insert(FIELD);
         }
         let layout = *settings.layout.get_or_insert(settings.kernels.profile.layout());
-        settings.tree.depth.get_or_insert(settings.kernels.profile.kd_depth());
-        settings.tree.build.get_or_insert(settings.kernels.profile.kd_method());
+        settings.tree.resolve(settings.kernels.profile);
         // Kernels: the user's files, then all that the set has beside them.
         let mut replaced = Vec::new();
         for (function, file) in &mut settings.kernels.replaced {

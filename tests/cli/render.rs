@@ -114,7 +114,11 @@ fn the_number_of_cores_changes_clocks_and_nothing_else() {
         }
         let functions = |result: &Value| -> Vec<Value> {
             let functions = result["functions"].as_array().unwrap().iter();
-            functions.map(|f| serde_json::json!([f["name"], f["calls"], operations(&f["inclusive"])])).collect()
+            let counted = |f: &Value| {
+                let [inclusive, exclusive] = ["inclusive", "exclusive"].map(|key| operations(&f[key]));
+                serde_json::json!([f["name"], f["calls"], f["instructions"], inclusive, exclusive])
+            };
+            functions.map(counted).collect()
         };
         assert_eq!(functions(result), functions(&results[0]));
         assert!(result["error"].is_null());

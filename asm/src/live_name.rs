@@ -60,7 +60,7 @@ enum Course {
 /// One register's part in one word.
 #[derive(Clone, Copy, Default)]
 struct Touch {
-    /// Name by which it is read, as a bit; 0 for none.
+    /// Names by which it is read, a bit each.
     read: Writers,
     /// Bit of the name by which it is written.
     written: Option<Writers>,
@@ -106,12 +106,17 @@ impl Assembler<'_> {
             let touches = touches(register, &names, &uses, &decoded, self.isa);
             let Some(before) = flow.writers(&touches, &mut steps) else { return };
             let mut seen = HashSet::new();
-            for (pc, touch) in touches.iter().enumerate() {
+            let read_names = |touch: &Touch| {
+                let read = touch.read;
+                (0..names.len()).filter(move |own| read >> own & 1 == 1)
+            };
+            let reads = touches.iter().enumerate().flat_map(|(pc, touch)| read_names(touch).map(move |own| (pc, own)));
+            for (pc, own) in reads {
                 // A way on which the name itself was written last, or no name, may be the only one that is taken.
-                let is_sure = touch.read != 0 && before[pc] & (touch.read | UNNAMED | UNCHANGED) == 0;
+                let is_sure = before[pc] & (1 << own | UNNAMED | UNCHANGED) == 0;
                 let bits = if is_sure { before[pc] & !REACHED } else { 0 };
+                let own = names[own];
                 for (number, &alias) in names.iter().enumerate().filter(|(number, _)| bits >> number & 1 == 1) {
-                    let own = names[touch.read.trailing_zeros() as usize];
                     if !spans[alias].words.contains(&(pc as u32)) || !seen.insert((own, alias)) {
                         continue;
                     }
@@ -158,14 +163,17 @@ fn touches(
             if operand.kind.register_file() != Some(register.0) || !group.contains(&register.1) {
                 continue;
             }
-            // A statement that calls a register by two names says nothing about which is read.
-            let name = named.get(&(pc as u32)).copied().filter(|bits| bits.count_ones() == 1).unwrap_or(0);
             if operand.is_read() {
-                touch.read = name;
+                touch.read = named.get(&(pc as u32)).copied().unwrap_or(0);
             }
             if operand.is_written() {
-                touch.written = Some(if name == 0 { UNNAMED } else { name });
+                let name = named.get(&(pc as u32)).copied().filter(|bits| bits.count_ones() == 1);
+                touch.written = Some(name.unwrap_or(UNNAMED));
             }
+        }
+        // A statement that reads and writes a register by two names says nothing about which is read.
+        if touch.written == Some(UNNAMED) {
+            touch.read = 0;
         }
         touch
     };

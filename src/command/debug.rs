@@ -157,10 +157,14 @@ fn program(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure
     let formats = job.numbers.formats.iter().map(|text| arguments::setting::<i64>(text));
     let formats = formats.collect::<Result<_, _>>().map_err(|message| Failure::usage(Diagnostic::error(message)))?;
     let source = SourceArguments { defines: arguments.defines.clone(), formats, folders: arguments.folders.clone() };
-    let (program, warnings) = match files::program::load_any(path)? {
+    // The name of a scene without a pixel is a likely slip.
+    let is_scene = scenes::generate::SCENES.iter().any(|scene| scene.name == job.scene);
+    let hint = |message: Diagnostic| message.hint("a scene is debugged pixel by pixel: add --pixel X,Y");
+    let hinted = |report: Report| if is_scene { Report(report.0.into_iter().map(hint).collect()) } else { report };
+    let loaded = files::program::load_any(path).map_err(hinted)?;
+    let (program, warnings) = match loaded {
         LoadedFile::Program(program) => (*program, Report::default()),
         LoadedFile::Other(octets) => {
-            // The name of a scene without a pixel is a likely slip.
             let source_text = files::source_of(path, octets)?;
             let assembled = assemble::attempted(&source_text, &source, &isa).finish()?;
             (assembled.program, assembled.warnings)
@@ -275,6 +279,8 @@ fn serve(arguments: &DebugArguments, terminal: &mut Terminal) -> Result<Exit, Fa
     let address = listener.local_addr().map_err(|error| failed("the port has no address", error))?;
     terminal.say(&format!("listening at {address}"));
     let (stream, _) = listener.accept().map_err(|error| failed("no client came", error))?;
+    // A message is short, and the next request waits for it.
+    stream.set_nodelay(true).map_err(|error| failed("the client cannot be served", error))?;
     let input = stream.try_clone().map_err(|error| failed("the client cannot be served", error))?;
     let served = dap::serve(&mut BufReader::new(input), &mut BufWriter::new(stream), given, &launched);
     served.map(|()| Exit::Done).map_err(|error| failed("the client cannot be served", error))

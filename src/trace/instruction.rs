@@ -174,7 +174,7 @@ impl TracedInstruction {
     pub fn line(&self) -> String {
         let clock = self.clock.map_or_else(|| "-".to_owned(), |clock| clock.to_string());
         let mut text = format!(
-            "{:>8} {clock:>9} {:>2} {:06x} {:<14} {:<32} {:<32}",
+            "{:>8} {clock:>9} {:>2} {:#06x} {:<14} {:<32} {:<32}",
             self.step,
             self.core,
             self.pc,

@@ -44,7 +44,7 @@ fn a_script_breaks_in_a_pixel_goes_back_and_comes_to_the_same_state() {
     assert_eq!(hashes.len(), 3, "{text}");
     assert!(hashes[0] == hashes[2] && hashes[0] != hashes[1], "{text}");
     assert!(text.contains("1: break triangle if step > 1100") && text.contains("breakpoint 1\n"), "{text}");
-    assert!(text.contains("in triangle, kernels/asm/"), "{text}");
+    assert!(text.contains("in triangle, kernels/asm/wide.inc:"), "{text}");
     let origin = text.lines().find(|line| line.starts_with("v1[origin]=")).unwrap();
     assert!(origin.contains(":pos)"), "real values without being told: {origin}");
     assert!(text.contains("  1 packet ") && text.contains("the program's start"), "{text}");
@@ -181,6 +181,7 @@ fn mistakes_in_commands_are_told_with_what_was_meant() {
     fails("delete 7\n", "no breakpoint 7");
     fails("where now\n", "takes nothing");
     session.fail("debug", 2, "nothing to debug");
+    session.fail("debug cornell", 1, "add --pixel X,Y");
     session.fail("debug cornell --pixel 1000,1", 2, "outside");
     session.fail("debug cornell --pixel 1,1 --reg s1=5", 2, "begins with its ray");
     session.fail("debug p.s --port 4711", 2, "--dap");

@@ -19,6 +19,9 @@ fn names_of_one_register_that_meet_are_told() {
         // One after the other is no meeting, a write in between is.
         ("movi count, 3\nmov s1, count\nmovi total, 0\nmov s1, total\nhalt", 0),
         ("movi count, 3\nmovi total, 0\nmov s1, count\nhalt", 1),
+        // Two names in one statement that only reads.
+        ("movi count, 3\nmovi total, 0\nadd s1, count, total\nhalt", 1),
+        ("movi count, 3\nmovi total, 0\nadd count, count, total\nhalt", 0),
         // Without a name nothing is said.
         ("movi count, 3\nmovi s5, 0\nmov s1, count\nhalt", 0),
         // On every way, not on one of two.

@@ -36,9 +36,9 @@ pub struct ShadowFrame {
 /// Phase of a processor between its turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FrameState {
-    /// Nothing: it can run, or try again.
+    /// It can run, or try again.
     Ready,
-    /// The others, at a barrier.
+    /// It waits at the barrier.
     Barrier,
     /// Nothing is left to do: the program has halted.
     Rests,
@@ -68,61 +68,15 @@ struct FrameLink<'a> {
 }
 
 impl FrameLink<'_> {
-    fn acts<R>(&mut self, result: R) -> R {
+    /// Global memory, for something that the work item does with it.
+    fn acting(&mut self) -> &mut Memory {
         self.has_acted = true;
-        result
-    }
-}
-
-/// Global memory, answered at once.
-struct AtOnce<'a>(&'a mut Memory);
-
-impl Link for AtOnce<'_> {
-    at_once! { self => self.0 }
-
-    fn send(&mut self, _: i32, _: Message) -> Result<(), Stop> {
-        Err(Stop::Wait)
-    }
-
-    fn receive(&mut self) -> Result<(Message, u32), Stop> {
-        Err(Stop::Wait)
-    }
-
-    fn barrier(&mut self) -> Result<(), Stop> {
-        Err(Stop::Wait)
+        self.memory
     }
 }
 
 impl Link for FrameLink<'_> {
-    fn load(&mut self, buffer: &mut Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        let result = AtOnce(self.memory).load(buffer, to, from, octets);
-        self.acts(result)
-    }
-
-    fn store(&mut self, buffer: &Buffer, to: u32, from: u32, octets: u32) -> Result<(), Stop> {
-        let result = AtOnce(self.memory).store(buffer, to, from, octets);
-        self.acts(result)
-    }
-
-    fn read(&mut self, address: u32, words: &mut [i32]) -> Result<(), Stop> {
-        let result = AtOnce(self.memory).read(address, words);
-        self.acts(result)
-    }
-
-    fn read_octets(&mut self, address: u32, octets: &mut [u8]) -> Result<(), Stop> {
-        let result = AtOnce(self.memory).read_octets(address, octets);
-        self.acts(result)
-    }
-
-    fn write(&mut self, address: u32, words: &[i32]) -> Result<(), Stop> {
-        let result = AtOnce(self.memory).write(address, words);
-        self.acts(result)
-    }
-
-    fn fetch_add(&mut self, address: u32, more: i32) -> Result<i32, Stop> {
-        let result = AtOnce(self.memory).fetch_add(address, more);
-        self.acts(result)
-    }
+    at_once! { self => self.acting() }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
         let receiver = u32::try_from(to).ok().filter(|&to| to <= self.largest);
@@ -136,17 +90,23 @@ impl Link for FrameLink<'_> {
         if receiver != self.core {
             self.sent.push(receiver);
         }
-        self.acts(Ok(()))
+        self.has_acted = true;
+        Ok(())
     }
 
     fn receive(&mut self) -> Result<(Message, u32), Stop> {
         let letter = self.inboxes[self.core as usize].pop_front().ok_or(Stop::Wait)?;
-        self.acts(Ok(letter))
+        self.has_acted = true;
+        Ok(letter)
     }
 
     fn barrier(&mut self) -> Result<(), Stop> {
         self.meets = !self.is_released;
-        if std::mem::take(&mut self.is_released) { self.acts(Ok(())) } else { Err(Stop::Wait) }
+        if !std::mem::take(&mut self.is_released) {
+            return Err(Stop::Wait);
+        }
+        self.has_acted = true;
+        Ok(())
     }
 }
 

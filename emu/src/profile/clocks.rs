@@ -40,7 +40,7 @@ impl AddAssign for WorkClocks {
     }
 }
 
-/// Work of one word on one call path.
+/// Work of a place, with its waits by kind of data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PlaceUse {
     /// All of it.

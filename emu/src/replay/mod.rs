@@ -77,7 +77,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
     if extension::keeps_state(&code) {
         return Err("an instruction keeps its state from one work item to the next");
     }
-    Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
+    Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
 }
 
 /// Outcome of one machine, or the reason for which it has to be stepped.

@@ -118,7 +118,7 @@ fn has_too_many_paths<T: Watch, O: Observer>(recorders: &mut [Recorder<T, O>]) -
             most = room;
         }
     }
-    // A recorder that is full has met one more than it has; to be as full as that is to have had no room soon.
+    // A full recorder may have turned a path away, so one that is just full counts as too small.
     all.len() >= most
 }
 
@@ -149,10 +149,9 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     let config = setup.config;
     let core_code = Code::new(setup.core, setup.isa, config.timing());
     let main_code = Code::new(setup.main, setup.isa, config.timing());
-    let recorder = |_| Recorder::<T, O>::new(&core_code, setup, memory, arithmetic.clone(), level);
+    let recorder = |number| Recorder::<T, O>::new(number, &core_code, setup, memory, arithmetic.clone(), level);
     // A recorder a host thread, kept for all batches: engines and buffers are made once.
-    let mut recorders: Vec<_> = (0..rayon::current_num_threads()).map(recorder).collect();
-    (0..).zip(&mut recorders).for_each(|(number, recorder)| recorder.number = number);
+    let mut recorders: Vec<_> = (0..rayon::current_num_threads() as u32).map(recorder).collect();
     let mut memory = memory.clone();
     let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
     let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));

@@ -136,15 +136,22 @@ pub struct Recorder<'a, T, O> {
     sites: Option<SiteTable>,
     /// Room for the sites of an item, which is kept for the next one.
     own_sites: Vec<u32>,
-    /// Number of this recorder.
-    pub number: u32,
+    /// Number of this recorder among those of a run.
+    number: u32,
     /// Segments of the last item, and so about those of the next one.
     usual: usize,
 }
 
 impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
-    /// A core that has recorded nothing.
-    pub fn new(code: &'a Code<'a>, setup: &Setup, memory: &'a Memory, arithmetic: T, level: RecordLevel) -> Self {
+    /// A core that has recorded nothing, by its number among those of a run.
+    pub fn new(
+        number: u32,
+        code: &'a Code<'a>,
+        setup: &Setup,
+        memory: &'a Memory,
+        arithmetic: T,
+        level: RecordLevel,
+    ) -> Self {
         let config = setup.config;
         let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
@@ -158,7 +165,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         };
         Recorder {
             usual: 0,
-            number: 0,
+            number,
             own_sites: Vec::new(),
             sites: (profile == ProfileLevel::Clocks && level == RecordLevel::Segments).then(SiteTable::default),
             runner: choose(&demand),

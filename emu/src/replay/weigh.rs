@@ -95,7 +95,7 @@ impl Task for WeighTask<'_> {
         let code = Code::new(setup.core, setup.isa, setup.config.timing());
         let each = messages.len().div_ceil(rayon::current_num_threads()).max(1);
         let portion = |messages: &[Message], arithmetic: T| -> Result<Vec<WeighedItem>, Reason> {
-            let mut recorder = Recorder::<T, Unobserved>::new(&code, setup, memory, arithmetic, RecordLevel::Passes);
+            let mut recorder = Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic, RecordLevel::Passes);
             let one = |&message: &Message| {
                 recorder.record(message, &Budget::new(MOST_SEGMENTS))?;
                 Ok(WeighedItem { subject: message.first(), weight: weights.of(&recorder.take_tally()) })

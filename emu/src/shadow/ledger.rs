@@ -99,7 +99,7 @@ pub struct LineErrors {
     pub arrived: LargestError,
     /// Results that are off by a unit or more: they did not fit.
     pub saturated: u64,
-    /// Decisions on numbers with shadows.
+    /// Decisions on numbers of which one at least has a shadow; those on integers are left out.
     pub decisions: u64,
     /// Decisions that the shadow would have taken otherwise.
     pub turned: u64,

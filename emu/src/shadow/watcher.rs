@@ -1,6 +1,7 @@
 //! The shadow of one core: registers, buffer and messages, kept up with the machine's by the interpreter's observer.
 
 use std::collections::VecDeque;
+use std::ops::Range;
 use std::sync::Arc;
 
 use isa::naming::RegisterId;
@@ -9,7 +10,7 @@ use isa::{Op, Program};
 
 use super::ledger::{ShadowLedger, ShadowSites};
 use super::memory::ShadowMemory;
-use super::number::ShadowNumber;
+use super::number::{ShadowNumber, ShadowTerm};
 use super::rows::{
     BusRoom, ControlRoom, IntegerRoom, LocalRoom, PacketRoom, RayRoom, RealFormulas, RealResult, ScalarRoom,
     ShadowEffect, ShadowInput, VectorRoom, WalkRoom, WideRoom,
@@ -81,8 +82,6 @@ pub struct ShadowLetter {
     pub vectors: Vec<MessageVector>,
     /// The sender's program.
     pub program: Arc<ShadowProgram>,
-    /// Errors of the sender's program up to the message.
-    pub ledger: ShadowLedger,
 }
 
 /// A result that waits for the machine's.
@@ -131,6 +130,16 @@ fn wide_cell(number: u8) -> usize {
     4 * FILE + usize::from(number) % FILE
 }
 
+/// Places of a register: one, or three of a vector.
+fn cells_of((file, number): RegisterId) -> Range<usize> {
+    let (first, count) = match file {
+        's' => (scalar_cell(number), 1),
+        'v' => (vector_cell(number, 0), 3),
+        _ => (wide_cell(number), 1),
+    };
+    first..first + count
+}
+
 impl Shadow {
     /// The shadow of a core that begins.
     pub fn new(program: Arc<ShadowProgram>, core: u32) -> Shadow {
@@ -157,21 +166,13 @@ impl Shadow {
     }
 
     /// Shadows of a register: one, or three of a vector.
-    pub fn of(&self, (file, number): RegisterId) -> Vec<Option<&ShadowNumber>> {
-        match file {
-            's' => vec![self.cells[scalar_cell(number)].as_ref()],
-            'v' => (0..3).map(|k| self.cells[vector_cell(number, k)].as_ref()).collect(),
-            _ => vec![self.cells[wide_cell(number)].as_ref()],
-        }
+    pub fn of(&self, register: RegisterId) -> Vec<Option<&ShadowNumber>> {
+        self.cells[cells_of(register)].iter().map(Option::as_ref).collect()
     }
 
-    /// A register was changed by hand: its number begins anew at the machine's.
-    pub fn forget(&mut self, (file, number): RegisterId) {
-        match file {
-            's' => self.cells[scalar_cell(number)] = None,
-            'v' => (0..3).for_each(|k| self.cells[vector_cell(number, k)] = None),
-            _ => self.cells[wide_cell(number)] = None,
-        }
+    /// Numbers of a register that was written without a formula begin anew at the machine's.
+    fn forget(&mut self, register: RegisterId) {
+        self.cells[cells_of(register)].fill(None);
     }
 
     /// Registers were changed by hand: shadows of those that differ begin anew.
@@ -193,7 +194,7 @@ impl Shadow {
                 _ => Vec::new(),
             },
         };
-        ShadowLetter { vectors, program: self.program, ledger: self.ledger }
+        ShadowLetter { vectors, program: self.program }
     }
 
     /// Sees the operands of an instruction that is about to be executed.
@@ -329,19 +330,19 @@ impl Shadow {
         let site = self.program.sites.of(word);
         let mut expected = std::mem::take(&mut self.expected);
         for Expected { cell, result, declared } in expected.drain(..) {
+            let mut settled = |term: ShadowTerm, is_fitted: bool| {
+                let place =
+                    ResultPlace { site: self.program.first_site + site, raw: raw_of(registers, cell), declared };
+                let (number, result) = settle(term, is_fitted, place);
+                self.ledger.note(site, &result);
+                Some(number)
+            };
             self.cells[cell] = match result {
                 // Where a number of a format is said to be, it is one from here on.
                 RealResult::Integer => declared.map(|scale| ShadowNumber { deviation: None, scale: Some(scale) }),
                 RealResult::Moved(number) => Some(moved(number, declared)),
-                RealResult::Computed(_) | RealResult::Fitted(_) => {
-                    let is_fitted = matches!(result, RealResult::Fitted(_));
-                    let (RealResult::Computed(term) | RealResult::Fitted(term)) = result else { continue };
-                    let raw = raw_of(registers, cell);
-                    let place = ResultPlace { site: self.program.first_site + site, raw, declared };
-                    let (number, settled) = settle(term, is_fitted, place);
-                    self.ledger.note(site, &settled);
-                    Some(number)
-                }
+                RealResult::Computed(term) => settled(term, false),
+                RealResult::Fitted(term) => settled(term, true),
             };
         }
         self.expected = expected;

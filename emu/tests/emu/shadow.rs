@@ -158,14 +158,13 @@ impl Model {
                 let root = w(1).scaled(shift(2)).root();
                 scalar(root.filter(|_| before.wide(number(1)) >= 0))
             }
-            Op::sw | Op::stw => Vec::new(),
             other => panic!("{other:?} is not modelled"),
         }
     }
 }
 
 /// Rows of straight-line programs.
-const ROWS: [Op; 29] = [
+const ROWS: [Op; 30] = [
     Op::add,
     Op::sub,
     Op::neg,
@@ -191,6 +190,7 @@ const ROWS: [Op; 29] = [
     Op::wdot,
     Op::wadd,
     Op::wsub,
+    Op::wmulw,
     Op::wextend,
     Op::wround,
     Op::wdiv,
@@ -412,6 +412,59 @@ fn cancellation_and_turned_decisions_are_told() {
     assert_eq!((line(4).saturated, line(4).results), (0, 1));
     assert!((line(4).brought.ulps - 1.0 / 3.0).abs() < 1e-9 && line(5).brought.ulps == 0.0);
     assert!((line(5).arrived.ulps - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn decisions_are_counted_on_numbers_and_not_on_integers() {
+    let (isa, config) = (Isa::base(), Config::default());
+    let mut registers = Registers::default();
+    for (at, vector) in [(1, [100, 120, 140]), (2, [3, -5, 7]), (3, [200, 0, 0]), (4, [300, 90, 0]), (5, [300, 0, 900])]
+    {
+        registers.set_vector(at, vector);
+    }
+    // A node's plane x = 200, the start of the ray, and the plane y = -1000 by which it leaves.
+    (0u8..).zip([200, 3 << 32, 2 << 32 | -1000]).for_each(|(at, plane)| registers.set_wide(at, plane));
+    let decides: [(Op, &[i64], u64); 9] = [
+        (Op::vmajor, &[5, 2], 1),
+        (Op::vlt, &[5, 1, 2], 3),
+        (Op::rtri, &[5, 8, 1, 3, 16], 1),
+        (Op::rbox, &[4, 5, 1, 3], 1),
+        (Op::rexit, &[4, 1, 3], 1),
+        (Op::rstep, &[5, 6, 1, 0, 8], 1),
+        (Op::rbefore, &[5, 1, 2, 0, 16], 1),
+        (Op::rwalk, &[4, 10, 11, 1, 1, 12], 1),
+        (Op::rnear, &[8, 1, 13, 14, 16], 1),
+    ];
+    for is_number in [false, true] {
+        let program = program(|p| {
+            // What is computed has a shadow, here one that is the machine's number.
+            for vector in [1, 2] {
+                p.emit(Op::vadd, &[if is_number { vector } else { 20 }, vector, 0]);
+            }
+            p.constant(9, 8);
+            p.emit(Op::sw, &[9, 0, 4]); // a block of one node at address 0
+            p.constant(11, 64);
+            p.constant(13, 128);
+            p.constant(14, 1);
+            decides.iter().for_each(|(op, operands, _)| {
+                p.emit(*op, operands);
+            });
+            p.emit(Op::halt, &[]);
+        });
+        let mut stepper = shadowed(&config, &isa, &program, registers.clone());
+        stepper.run_to(u64::MAX);
+        let shadow = stepper.shadow().unwrap();
+        for (word, (op, _, expected)) in (11..).zip(decides) {
+            let line = &shadow.ledger.lines[shadow.program.sites.of(word) as usize];
+            let expected = if is_number { expected } else { 0 };
+            assert_eq!(
+                (line.decisions, line.turned),
+                (expected, 0),
+                "{op:?}, numbers: {is_number}, {:?}",
+                stepper.end()
+            );
+        }
+    }
 }
 
 #[test]

@@ -12,10 +12,8 @@ use crate::profile::{Profiler, UnitCount};
 #[derive(Clone, Debug)]
 pub(super) struct Counters {
     pub frame: ContextFrame,
-    /// Units by exit.
-    pub units: Vec<u64>,
-    /// Clocks of those.
-    pub unit_clocks: Vec<u64>,
+    /// Units by exit, and clocks of those.
+    pub units: Vec<(u64, u64)>,
     /// Losses of results by slot, where those are counted.
     pub losses: Vec<Losses>,
     /// Kinds of the data that each site has met last.
@@ -27,8 +25,7 @@ impl Counters {
     pub fn new(layout: CounterLayout, plan: &Plan, sites: usize, has_contexts: bool) -> Counters {
         Counters {
             frame: ContextFrame::new(layout, has_contexts),
-            units: vec![0; plan.exits()],
-            unit_clocks: vec![0; plan.exits()],
+            units: vec![(0, 0); plan.exits()],
             losses: vec![Losses::default(); plan.slots().len()],
             kinds: vec![0; sites],
         }
@@ -116,8 +113,7 @@ impl Native<'_> {
                 }
             }
         }
-        for (exit, (units, clocks)) in counters.units.iter_mut().zip(&mut counters.unit_clocks).enumerate() {
-            let (units, clocks) = (std::mem::take(units), std::mem::take(clocks));
+        for (exit, (units, clocks)) in counters.units.iter_mut().map(std::mem::take).enumerate() {
             if let Some(pass) = plan.pass(exit) {
                 passes[pass].units += units;
                 passes[pass].unit_clocks += clocks;

@@ -225,7 +225,7 @@ impl<'a> NativeHost<'a> {
         let is_busy = self.plan.code.costs()[pass].has_busy_units;
         let (Clocks(clocks), elementary) = if is_busy { self.plan.code.unit_cost(pass, units) } else { (Clocks(0), 0) };
         let counters = &mut self.counters;
-        if let (Some(count), Some(sum)) = (counters.units.get_mut(exit), counters.unit_clocks.get_mut(exit)) {
+        if let Some((count, sum)) = counters.units.get_mut(exit) {
             *count += u64::from(units);
             *sum += clocks;
         }

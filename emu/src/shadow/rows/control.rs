@@ -3,8 +3,6 @@
 use super::{ControlRoom, RealFormulas, RealResult, ShadowInput};
 use RealResult::Integer;
 
-const ZERO: ShadowInput<'static> = ShadowInput { raw: 0, shadow: None };
-
 impl ControlRoom for RealFormulas<'_> {
     fn beq(&mut self, a: ShadowInput, b: ShadowInput, _: i32) {
         self.compare(&a, &b, |order| order.is_eq());
@@ -27,19 +25,19 @@ impl ControlRoom for RealFormulas<'_> {
     fn bgeu(&mut self, _: ShadowInput, _: ShadowInput, _: i32) {}
 
     fn bweqz(&mut self, a: ShadowInput, _: i32) {
-        self.compare(&a, &ZERO, |order| order.is_eq());
+        self.compare(&a, &ShadowInput::ZERO, |order| order.is_eq());
     }
 
     fn bwnez(&mut self, a: ShadowInput, _: i32) {
-        self.compare(&a, &ZERO, |order| order.is_ne());
+        self.compare(&a, &ShadowInput::ZERO, |order| order.is_ne());
     }
 
     fn bwltz(&mut self, a: ShadowInput, _: i32) {
-        self.compare(&a, &ZERO, |order| order.is_lt());
+        self.compare(&a, &ShadowInput::ZERO, |order| order.is_lt());
     }
 
     fn bwgez(&mut self, a: ShadowInput, _: i32) {
-        self.compare(&a, &ZERO, |order| order.is_ge());
+        self.compare(&a, &ShadowInput::ZERO, |order| order.is_ge());
     }
 
     fn bwlt(&mut self, a: ShadowInput, b: ShadowInput, _: i32) {

@@ -34,11 +34,6 @@ pub(super) fn raws(vector: &[ShadowInput; 3]) -> [i32; 3] {
     vector.map(|component| component.raw as i32)
 }
 
-/// A component of the ray has a shadow that is another number.
-pub(super) fn deviates(vectors: &[[ShadowInput; 3]]) -> bool {
-    vectors.iter().flatten().any(ShadowInput::deviates)
-}
-
 impl RealRay {
     pub(super) fn new(ray: &[[ShadowInput; 3]; 2]) -> RealRay {
         RealRay { origin: reals(&ray[0]), direction: reals(&ray[1]) }
@@ -153,15 +148,15 @@ pub(super) fn surely_misses(ray: &[[f64; 3]; 2], vertices: &[[f64; 3]; 3]) -> bo
 impl RealFormulas<'_> {
     /// Notes the choice of the largest component.
     pub(super) fn decide_major(&mut self, a: &[ShadowInput; 3]) {
-        if a.iter().all(|component| component.shadow.is_none()) {
-            return;
-        }
         let largest = |magnitudes: [LongReal; 3]| {
-            let is_least = |k: usize, j: usize| magnitudes[j].partial_cmp(&magnitudes[k]) != Some(Ordering::Greater);
-            (0..3).find(|&k| (0..3).all(|j| is_least(k, j)))
+            let is_not_above =
+                |j: usize, k: usize| magnitudes[j].partial_cmp(&magnitudes[k]) != Some(Ordering::Greater);
+            (0..3).find(|&k| (0..3).all(|j| is_not_above(j, k)))
         };
         let magnitude = |number: LongReal| if number.is_negative() { number.negated() } else { number };
-        let machine = largest(a.map(|component| magnitude(LongReal::whole(component.raw.into()))));
-        self.decide(true, || !deviates(&[*a]) || largest(reals(a).map(magnitude)) == machine);
+        self.decide_on(a.iter(), || {
+            let machine = a.map(|component| LongReal::whole(component.raw.into()));
+            largest(reals(a).map(magnitude)) == largest(machine.map(magnitude))
+        });
     }
 }

@@ -1,11 +1,11 @@
-//! RealFormulas of the integer instructions: what they write is an integer, which has no shadow. A copy keeps it, and so does logic that changes
+//! Exact formulas of the integer instructions: what they write is an integer, which has no shadow. A copy keeps it, and so does logic that changes
 //! no bit of a number: that is how programs select one of two numbers by masks.
 
 use super::{IntegerRoom, RealFormulas, RealResult, ShadowInput};
 use RealResult::Integer;
 
 /// The number among two of which a pattern has all bits, if there is one.
-fn kept(pattern: i64, a: ShadowInput, b: ShadowInput) -> RealResult {
+pub(super) fn kept(pattern: i64, a: ShadowInput, b: ShadowInput) -> RealResult {
     let number = [a, b].into_iter().find(|number| number.shadow.is_some() && number.raw == pattern);
     number.map_or(Integer, |number| number.moved())
 }

@@ -12,6 +12,8 @@ mod vector;
 mod walk;
 mod wide;
 
+use std::cmp::Ordering;
+
 use isa::number::Modes;
 
 use super::memory::ShadowMemory;
@@ -76,7 +78,7 @@ pub struct RealFormulas<'a> {
     pub global: &'a ShadowMemory,
     /// Word length and modes of the machine.
     pub modes: Modes,
-    /// Decisions on numbers with shadows.
+    /// Decisions on numbers of which one at least has a shadow.
     pub decisions: u32,
     /// Those that the shadow would have taken otherwise.
     pub turned: u32,
@@ -89,6 +91,9 @@ pub struct RealFormulas<'a> {
 }
 
 impl<'a> ShadowInput<'a> {
+    /// The integer 0.
+    const ZERO: ShadowInput<'a> = ShadowInput { raw: 0, shadow: None };
+
     /// The number in a formula.
     pub fn term(&self) -> ShadowTerm {
         ShadowTerm::new(self.raw, self.shadow)
@@ -106,22 +111,25 @@ impl<'a> ShadowInput<'a> {
 }
 
 impl RealFormulas<'_> {
-    /// Notes a decision on numbers, of which one at least has a shadow that is another number.
-    fn decide(&mut self, machine: bool, shadow: impl FnOnce() -> bool) {
-        self.decisions += 1;
-        self.turned += u32::from(machine != shadow());
-    }
-
-    /// Notes a comparison. Of integers it is none.
-    fn compare(&mut self, a: &ShadowInput, b: &ShadowInput, claim: impl Fn(std::cmp::Ordering) -> bool) {
-        if a.shadow.is_none() && b.shadow.is_none() {
+    /// Notes a decision on numbers, of which `agrees` says whether the shadow takes it too. Of integers it is none.
+    fn decide_on<'i>(
+        &mut self,
+        mut of: impl Iterator<Item = &'i ShadowInput<'i>> + Clone,
+        agrees: impl FnOnce() -> bool,
+    ) {
+        if of.clone().all(|number| number.shadow.is_none()) {
             return;
         }
-        let machine = claim(a.raw.cmp(&b.raw));
-        if !a.deviates() && !b.deviates() {
-            return self.decide(machine, || machine);
-        }
-        self.decide(machine, || claim(a.term().real().partial_cmp(b.term().real()).expect("reals are ordered")));
+        self.decisions += 1;
+        self.turned += u32::from(of.any(ShadowInput::deviates) && !agrees());
+    }
+
+    /// Notes a comparison.
+    fn compare(&mut self, a: &ShadowInput, b: &ShadowInput, claim: impl Fn(Ordering) -> bool) {
+        self.decide_on([a, b].into_iter(), || {
+            let real = a.term().real().partial_cmp(b.term().real()).expect("reals are ordered");
+            claim(a.raw.cmp(&b.raw)) == claim(real)
+        });
     }
 }
 

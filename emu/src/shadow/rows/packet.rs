@@ -2,13 +2,21 @@
 
 use std::cmp::Ordering;
 
-use isa::number::ray::{PACKET_WORDS, PacketHit, PacketWords};
+use isa::number::Modes;
+use isa::number::ray::{PACKET_WORDS, PacketHit, PacketWords, Ray, TriangleEnd, ratio, triangle};
 
-use super::decisions::{RealRay, deviates, meeting, reals, surely_misses};
+use super::decisions::{RealRay, meeting, reals, surely_misses};
 use super::ray::{hit, machine_ray};
 use super::{PacketRoom, RealFormulas, RealResult, ShadowInput, each};
 use crate::shadow::long_real::LongReal;
 use RealResult::Integer;
+
+/// Search of a packet.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum PacketSearch {
+    Nearest,
+    Any,
+}
 
 /// A packet in the buffer.
 struct BufferedPacket<'a> {
@@ -25,23 +33,56 @@ impl BufferedPacket<'_> {
     fn vertices(&self, triangle: usize) -> [[i64; 3]; 3] {
         [1, 4, 7].map(|kind| [0, 1, 2].map(|axis| self.word(kind + axis, triangle)))
     }
+
+    /// The first triangle of a hit's name with a hit at its distance.
+    fn find(&self, modes: &Modes, ray: &Ray, shift: u32, hit: PacketHit) -> Option<usize> {
+        let is_it = |&at: &usize| {
+            let met = triangle(ray, &self.vertices(at).map(|vertex| vertex.map(|component| component as i32)));
+            met.end == TriangleEnd::Hit && ratio(modes, met.t, met.determinant, shift) == hit.t
+        };
+        (0..self.count).filter(|&at| self.word(0, at) as u32 == hit.name).find(is_it)
+    }
+
+    /// The shadow's choice: of two at one distance the machine's.
+    fn real_choice(
+        &self,
+        search: PacketSearch,
+        limit: &ShadowInput,
+        a: &[[ShadowInput; 3]; 2],
+        i: i32,
+        chosen: Option<usize>,
+    ) -> Option<usize> {
+        let ray = RealRay::new(a);
+        let doubles = [reals(&a[0]), reals(&a[1])].map(|vector| vector.map(|component| component.to_f64()));
+        let mut best = limit.term().real().scaled(-i);
+        let mut found = None;
+        for triangle in 0..self.count {
+            let vertices = self.vertices(triangle);
+            if surely_misses(&doubles, &vertices.map(|vertex| vertex.map(|component| component as f64))) {
+                continue;
+            }
+            let Some(t) = meeting(&ray, &vertices.map(|vertex| vertex.map(|raw| LongReal::whole(raw.into())))) else {
+                continue;
+            };
+            let is_nearer = match t.partial_cmp(&best) {
+                Some(Ordering::Less) => true,
+                Some(Ordering::Equal) => chosen == Some(triangle),
+                _ => false,
+            };
+            if is_nearer {
+                (best, found) = (t, Some(triangle));
+                // Any hit ends a search for one; which of them is all the same.
+                if search == PacketSearch::Any {
+                    return if chosen.is_some() { chosen } else { Some(triangle) };
+                }
+            }
+        }
+        found
+    }
 }
 
-/// A hit of the shadow.
-struct RealHit {
-    t: LongReal,
-    triangle: usize,
-}
-
-/// Search of a packet.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum PacketSearch {
-    Nearest,
-    Any,
-}
-
-impl RealFormulas<'_> {
-    fn packet(&self, address: u32, triangles: i64) -> Option<BufferedPacket<'_>> {
+impl<'a> RealFormulas<'a> {
+    fn packet(&self, address: u32, triangles: i64) -> Option<BufferedPacket<'a>> {
         let octets = self.buffer.octets().get(address as usize..)?;
         let count = triangles as u32 as usize;
         (count.checked_mul(4 * PACKET_WORDS)? <= octets.len()).then_some(BufferedPacket { octets, count })
@@ -62,22 +103,16 @@ impl RealFormulas<'_> {
         let (ray, modes) = (machine_ray(&a), self.modes);
         let known = PacketHit { t: x[0].raw as i32, name: x[1].raw as u32 };
         let chosen = match search {
-            PacketSearch::Nearest => Some(words.nearest(&modes, &ray, i as u32, known)).filter(|hit| *hit != known),
-            PacketSearch::Any => words.any(&modes, &ray, i as u32, known.t).map(|(_, hit)| hit),
+            PacketSearch::Nearest => {
+                let nearest = words.nearest(&modes, &ray, i as u32, known);
+                (nearest != known).then(|| packet.find(&modes, &ray, i as u32, nearest)).flatten()
+            }
+            PacketSearch::Any => words.any(&modes, &ray, i as u32, known.t).map(|(at, _)| at),
         };
-        let chosen = chosen.and_then(|hit| {
-            let named = (0..packet.count).filter(|&at| packet.word(0, at) as u32 == hit.name);
-            let alone = |at: usize| {
-                let raw = packet.vertices(at).map(|vertex| vertex.map(|component| component as i32));
-                let met = isa::number::ray::triangle(&ray, &raw);
-                met.end == isa::number::ray::TriangleEnd::Hit
-                    && isa::number::ray::ratio(&modes, met.t, met.determinant, i as u32) == hit.t
-            };
-            named.into_iter().find(|&at| alone(at))
+        self.decide_on(a.iter().flatten().chain([&x[0]]), || {
+            packet.real_choice(search, &x[0], &a, i, chosen) == chosen
         });
-        let has_shadow = deviates(&a) || x[0].deviates();
-        let is_same = !has_shadow || self.real_choice(search, &packet, &x[0], &a, i, chosen) == chosen;
-        let result = match chosen {
+        match chosen {
             None => unchanged,
             Some(at) => {
                 let vertices = packet.vertices(at).map(|vertex| vertex.map(|raw| ShadowInput { raw, shadow: None }));
@@ -86,48 +121,7 @@ impl RealFormulas<'_> {
                 (result[0], result[2]) = (t, x[2].moved());
                 result
             }
-        };
-        self.decide(true, || is_same);
-        result
-    }
-
-    /// The shadow's choice: of two at one distance the machine's.
-    fn real_choice(
-        &self,
-        search: PacketSearch,
-        packet: &BufferedPacket,
-        limit: &ShadowInput,
-        a: &[[ShadowInput; 3]; 2],
-        i: i32,
-        chosen: Option<usize>,
-    ) -> Option<usize> {
-        let ray = RealRay::new(a);
-        let doubles = [reals(&a[0]), reals(&a[1])].map(|vector| vector.map(|component| component.to_f64()));
-        let mut best = limit.term().real().scaled(-i);
-        let mut found: Option<RealHit> = None;
-        for triangle in 0..packet.count {
-            let vertices = packet.vertices(triangle);
-            if surely_misses(&doubles, &vertices.map(|vertex| vertex.map(|component| component as f64))) {
-                continue;
-            }
-            let Some(t) = meeting(&ray, &vertices.map(|vertex| vertex.map(|raw| LongReal::whole(raw.into())))) else {
-                continue;
-            };
-            let is_nearer = match t.partial_cmp(&best) {
-                Some(Ordering::Less) => true,
-                Some(Ordering::Equal) => chosen == Some(triangle),
-                _ => false,
-            };
-            if is_nearer {
-                best = t;
-                found = Some(RealHit { t, triangle });
-                // Any hit ends a search for one; which of them is all the same.
-                if search == PacketSearch::Any {
-                    return if chosen.is_some() { chosen } else { Some(triangle) };
-                }
-            }
         }
-        found.filter(|hit| hit.t.partial_cmp(&best) == Some(Ordering::Equal)).map(|hit| hit.triangle)
     }
 }
 

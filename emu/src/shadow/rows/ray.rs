@@ -4,7 +4,7 @@ use isa::number::ray::{
     BoxEnd, Plane, Ray, SplitEnd, TriangleEnd, across_box, exit_face, is_surely_before, step, triangle,
 };
 
-use super::decisions::{RealCrossing, RealRay, deviates, meeting, raws, reals};
+use super::decisions::{RealCrossing, RealRay, meeting, raws, reals};
 use super::{RayRoom, RealFormulas, RealResult, ShadowInput, cross, difference, dot, each, quotient, terms};
 use RealResult::Integer;
 
@@ -76,7 +76,6 @@ pub(super) fn real_step(ray: &RealRay, split: Plane, entry: &RealCrossing, exit:
 impl RayRoom for RealFormulas<'_> {
     fn rtri(&mut self, a: [[ShadowInput; 3]; 2], b: [[ShadowInput; 3]; 3], i: i32) -> (RealResult, [RealResult; 3]) {
         let is_hit = triangle(&machine_ray(&a), &[raws(&b[0]), raws(&b[1]), raws(&b[2])]).end == TriangleEnd::Hit;
-        let has_shadow = deviates(&a) || deviates(&b);
         let is_real_hit = || {
             let vertices = [reals(&b[0]), reals(&b[1]), reals(&b[2])];
             match surely_missed(&a, &vertices) {
@@ -84,7 +83,7 @@ impl RayRoom for RealFormulas<'_> {
                 false => meeting(&RealRay::new(&a), &vertices).is_some(),
             }
         };
-        self.decide(is_hit, || if has_shadow { is_real_hit() } else { is_hit });
+        self.decide_on(a.iter().chain(&b).flatten(), || is_real_hit() == is_hit);
         if !is_hit {
             return (Integer, each(|_| Integer));
         }
@@ -95,7 +94,7 @@ impl RayRoom for RealFormulas<'_> {
     fn rbox(&mut self, a: [[ShadowInput; 3]; 2], b: [[ShadowInput; 3]; 2]) -> (RealResult, RealResult) {
         let (low, high) = (raws(&b[0]), raws(&b[1]));
         let machine = across_box(&machine_ray(&a), low, high);
-        self.decide(true, || !deviates(&a) || real_box(&RealRay::new(&a), low, high) == machine);
+        self.decide_on(a.iter().flatten(), || real_box(&RealRay::new(&a), low, high) == machine);
         (Integer, Integer)
     }
 
@@ -110,7 +109,7 @@ impl RayRoom for RealFormulas<'_> {
             });
             first_to_leave(&ray, &faces)
         };
-        self.decide(true, || !deviates(&a) || real() == machine);
+        self.decide_on(a.iter().flatten(), || real() == machine);
         (Integer,)
     }
 
@@ -119,11 +118,10 @@ impl RayRoom for RealFormulas<'_> {
         let [split, entry, exit] = b.map(|plane| Plane::from_pattern(plane.raw));
         let machine = step(&ray, split, entry, exit);
         if machine != SplitEnd::Leaf {
-            self.decide(true, || {
+            self.decide_on(a.iter().flatten(), || {
                 let real = RealRay::new(&a);
                 let (entry, exit) = (real.crossing(entry), real.crossing(exit));
-                !deviates(&a)
-                    || real_step(&real, split, &entry, &exit) == (machine, machine.is_right_first(&ray, split.axis))
+                real_step(&real, split, &entry, &exit) == (machine, machine.is_right_first(&ray, split.axis))
             });
         }
         (Integer, Integer)
@@ -132,10 +130,8 @@ impl RayRoom for RealFormulas<'_> {
     fn rbefore(&mut self, a: [[ShadowInput; 3]; 2], b: ShadowInput, c: ShadowInput, i: i32) -> (RealResult,) {
         let plane = Plane::from_pattern(b.raw);
         let machine = is_surely_before(&machine_ray(&a), plane, c.raw as i32, i as u32);
-        let has_shadow = deviates(&a) || c.deviates();
-        self.decide(machine, || match has_shadow {
-            true => RealRay::new(&a).crossing(plane).is_surely_behind(c.term().real(), i),
-            false => machine,
+        self.decide_on(a.iter().flatten().chain([&c]), || {
+            RealRay::new(&a).crossing(plane).is_surely_behind(c.term().real(), i) == machine
         });
         (Integer,)
     }

@@ -53,8 +53,7 @@ impl ScalarRoom for RealFormulas<'_> {
 impl RealFormulas<'_> {
     /// The magnitude by the sign that the machine sees.
     pub(super) fn magnitude(&mut self, a: &ShadowInput) -> RealResult {
-        let zero = ShadowInput { raw: 0, shadow: None };
-        self.compare(a, &zero, |order| order.is_lt());
+        self.compare(a, &ShadowInput::ZERO, |order| order.is_lt());
         Computed(if a.raw < 0 { a.term().negated() } else { a.term() })
     }
 

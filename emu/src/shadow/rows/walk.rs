@@ -2,7 +2,7 @@
 
 use isa::number::ray::{Children, Descent, Plane, SplitEnd};
 
-use super::decisions::{RealRay, deviates};
+use super::decisions::RealRay;
 use super::ray::{machine_ray, real_step};
 use super::{RealFormulas, RealResult, ShadowEffect, ShadowInput, WalkRoom};
 use RealResult::Integer;
@@ -23,9 +23,8 @@ impl RealFormulas<'_> {
         let ray = RealRay::new(a);
         let (first, octets) =
             (self.buffer.word(block).ok()? as u32, self.buffer.word(block.wrapping_add(4)).ok()? as u32);
-        let exit = Plane::from_pattern(self.pattern(note)?);
+        let mut exit = Plane::from_pattern(self.pattern(note)?);
         let mut descent = Descent::new(&machine_ray(a), entry, exit);
-        let (entry, mut exit) = (ray.crossing(entry), ray.crossing(exit));
         loop {
             let inside = node.wrapping_sub(first);
             if octets < NODE || inside > octets - NODE {
@@ -39,11 +38,13 @@ impl RealFormulas<'_> {
                 Children::One { is_right } => is_right,
                 Children::Both { is_right_first } => is_right_first,
             };
-            let (end, is_right_first) = real_step(&ray, plane, &entry, &exit);
             let is_both = matches!(taken, Children::Both { .. });
-            self.decide(true, || is_both == (end == SplitEnd::Both) && is_right == is_right_first);
+            self.decide_on(a.iter().flatten(), || {
+                let (end, is_right_first) = real_step(&ray, plane, &ray.crossing(entry), &ray.crossing(exit));
+                is_both == (end == SplitEnd::Both) && is_right == is_right_first
+            });
             if is_both {
-                exit = ray.crossing(plane);
+                exit = plane;
             }
             let child = if is_right { left.wrapping_add(NODE) } else { left };
             if child <= node {
@@ -63,10 +64,8 @@ impl WalkRoom for RealFormulas<'_> {
         b: ShadowInput,
         c: u32,
     ) -> (RealResult, RealResult, RealResult) {
-        if deviates(&a) {
-            // A walk that traps has decided nothing: then all of this is thrown away.
-            let _ = self.walk(x.raw as u32, y.raw as u32, &a, Plane::from_pattern(b.raw), c);
-        }
+        // A walk that traps has decided nothing: then all of this is thrown away.
+        let _ = self.walk(x.raw as u32, y.raw as u32, &a, Plane::from_pattern(b.raw), c);
         self.effect = ShadowEffect::Notes((y.raw as u32).wrapping_add(NOTE), self.note_register);
         (Integer, Integer, Integer)
     }

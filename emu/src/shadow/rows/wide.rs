@@ -1,5 +1,6 @@
 //! Exact formulas of the instructions on wide accumulators. Rows on patterns of bits write integers.
 
+use super::integer::kept;
 use super::{RealFormulas, RealResult, ShadowInput, WideRoom, cross, dot, quotient, terms};
 use RealResult::{Computed, Fitted, Integer};
 
@@ -63,9 +64,7 @@ impl WideRoom for RealFormulas<'_> {
     }
 
     fn wand(&mut self, a: ShadowInput, b: ShadowInput) -> (RealResult,) {
-        let pattern = a.raw & b.raw;
-        let number = [a, b].into_iter().find(|number| number.shadow.is_some() && number.raw == pattern);
-        (number.map_or(Integer, |number| number.moved()),)
+        (kept(a.raw & b.raw, a, b),)
     }
 
     fn wsll(&mut self, _: ShadowInput, _: ShadowInput) -> (RealResult,) {
@@ -81,8 +80,7 @@ impl WideRoom for RealFormulas<'_> {
     }
 
     fn wltz(&mut self, a: ShadowInput) -> (RealResult,) {
-        let zero = ShadowInput { raw: 0, shadow: None };
-        self.compare(&a, &zero, |order| order.is_lt());
+        self.compare(&a, &ShadowInput::ZERO, |order| order.is_lt());
         (Integer,)
     }
 

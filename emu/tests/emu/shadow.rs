@@ -423,7 +423,7 @@ fn decisions_are_counted_on_numbers_and_not_on_integers() {
         registers.set_vector(at, vector);
     }
     // A node's plane x = 200, the start of the ray, and the plane y = -1000 by which it leaves.
-    (0u8..).zip([200, 3 << 32, 2 << 32 | -1000]).for_each(|(at, plane)| registers.set_wide(at, plane));
+    (0u8..).zip([200, 3 << 32, 1 << 32 | i64::from(-1000_i32 as u32)]).for_each(|(at, plane)| registers.set_wide(at, plane));
     let decides: [(Op, &[i64], u64); 9] = [
         (Op::vmajor, &[5, 2], 1),
         (Op::vlt, &[5, 1, 2], 3),
@@ -442,7 +442,11 @@ fn decisions_are_counted_on_numbers_and_not_on_integers() {
                 p.emit(Op::vadd, &[if is_number { vector } else { 20 }, vector, 0]);
             }
             p.constant(9, 8);
-            p.emit(Op::sw, &[9, 0, 4]); // a block of one node at address 0
+            // A block of one node at address 0, and a note of the last plane at 64.
+            p.emit(Op::sw, &[0, 0, 0]);
+            p.emit(Op::sw, &[9, 0, 4]);
+            p.emit(Op::swide, &[0, 0, 8]);
+            p.emit(Op::swide, &[2, 0, 64]);
             p.constant(11, 64);
             p.constant(13, 128);
             p.constant(14, 1);
@@ -454,7 +458,8 @@ fn decisions_are_counted_on_numbers_and_not_on_integers() {
         let mut stepper = shadowed(&config, &isa, &program, registers.clone());
         stepper.run_to(u64::MAX);
         let shadow = stepper.shadow().unwrap();
-        for (word, (op, _, expected)) in (11..).zip(decides) {
+        let first = program.words.len() - decides.len() - 1;
+        for (word, (op, _, expected)) in (first as u32..).zip(decides) {
             let line = &shadow.ledger.lines[shadow.program.sites.of(word) as usize];
             let expected = if is_number { expected } else { 0 };
             assert_eq!(

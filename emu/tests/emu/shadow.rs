@@ -423,7 +423,9 @@ fn decisions_are_counted_on_numbers_and_not_on_integers() {
         registers.set_vector(at, vector);
     }
     // A node's plane x = 200, the start of the ray, and the plane y = -1000 by which it leaves.
-    (0u8..).zip([200, 3 << 32, 1 << 32 | i64::from(-1000_i32 as u32)]).for_each(|(at, plane)| registers.set_wide(at, plane));
+    (0u8..)
+        .zip([200, 3 << 32, 1 << 32 | i64::from(-1000_i32 as u32)])
+        .for_each(|(at, plane)| registers.set_wide(at, plane));
     let decides: [(Op, &[i64], u64); 9] = [
         (Op::vmajor, &[5, 2], 1),
         (Op::vlt, &[5, 1, 2], 3),

@@ -36,9 +36,9 @@ pub struct ShadowFrame {
 /// Phase of a processor between its turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FrameState {
-    /// It can run, or try again.
+    /// A turn is due: the processor can run, or try again.
     Ready,
-    /// It waits at the barrier.
+    /// Arrival at the barrier, where others are awaited.
     Barrier,
     /// Nothing is left to do: the program has halted.
     Rests,

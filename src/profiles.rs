@@ -1,4 +1,5 @@
-//! Pictures in every profile of the kernels, next to each other: what vector rows save on the report's scalar ones, and the ray unit on those.
+//! Pictures in several profiles of the kernels, next to each other: what vector rows save on the report's scalar ones, the ray unit on
+//! those, and what the report's buffer changes.
 
 use emu::machine::Config;
 use emu::profile::Profile;
@@ -17,7 +18,7 @@ use crate::settings::TreeSettings;
 /// Version of [`Profiles`].
 pub const SCHEMA: &str = "lancer-profiles-1";
 
-/// Scenes in all profiles. All counts are those of the cores together.
+/// Scenes in several profiles. All counts are those of the cores together.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Profiles {
     /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
@@ -33,7 +34,7 @@ pub struct Profiles {
     pub shift: [f64; 2],
     /// The pictures, scene by scene.
     pub pictures: Vec<ProfileResult>,
-    /// Each profile against the one before it, scene by scene, and then in the mean of the scenes.
+    /// Each profile against the one that it is compared with, scene by scene, and then in the mean of the scenes.
     pub ratios: Vec<Ratio>,
 }
 
@@ -60,6 +61,8 @@ pub struct ProfileResult {
     pub clocks: u64,
     /// Words of the cores' program.
     pub program_words: usize,
+    /// Octets of a core's buffer that the program uses.
+    pub buffer_octets: usize,
     /// Bits of a word and fraction bits of each quantity.
     pub formats: FormatTable,
     /// Pixels that differ from the double-precision reference by 1/255 or more.
@@ -89,12 +92,13 @@ pub struct Ratio {
     pub clocks: f64,
 }
 
-/// Draws scenes in all profiles, each in its own layout, on a machine and its name. `done` is called when a picture is drawn.
+/// Draws scenes in some profiles, each in its own layout, on a machine and its name. `done` is called when a picture is drawn.
 ///
 /// # Errors
 /// What keeps any of them from being drawn.
 pub fn measure(
     scenes: &[Scene],
+    profiles: &[KernelSet],
     size: (u32, u32),
     tree: &TreeSettings,
     machine: &(String, Config),
@@ -111,19 +115,24 @@ pub fn measure(
     };
     for scene in scenes {
         let first = result.pictures.len();
-        for &profile in KernelSet::ALL {
+        for &profile in profiles {
             let mut job = job(scene, size, profile);
             tree.choose(&mut job);
             (job.machine_name, job.machine) = machine.clone();
             result.pictures.push(ProfileResult::new(&job, &drawing::draw(&job, Comparison::Reference, &mut |_| {})?));
             done();
         }
-        // Each profile against the one before it.
-        let pairs = result.pictures[first..].windows(2);
-        result.ratios.extend(pairs.map(|pair| Ratio::new(&pair[1], &pair[0])));
+        // Each profile against the one whose work it does in another way.
+        let pictures = profiles.iter().zip(&result.pictures[first..]);
+        let ratios = pictures.clone().filter_map(|(profile, picture)| {
+            let other = profile.compared_with()?;
+            let (_, of) = pictures.clone().find(|&(&of, _)| of == other)?;
+            Some(Ratio::new(picture, of))
+        });
+        result.ratios.extend(ratios);
     }
-    // The first profile has none before it.
-    let means: Vec<Ratio> = KernelSet::ALL[1..].iter().filter_map(|profile| mean(&result.ratios, *profile)).collect();
+    // A profile without one that it is compared with has no ratios.
+    let means: Vec<Ratio> = profiles.iter().filter_map(|profile| mean(&result.ratios, *profile)).collect();
     result.ratios.extend(means);
     Ok(result)
 }
@@ -166,6 +175,7 @@ impl ProfileResult {
             octets: cores.iter().map(|core| core.octets.0).sum(),
             clocks: frame.clocks.0,
             program_words: drawing.build.cores.words.len(),
+            buffer_octets: drawing.build.cores.buffer.len(),
             formats: (&drawing.image.formats).into(),
             off_pixels: drawing.error.map_or(0, |error| error.off_pixels),
             image_hash: image_hash((drawing.crop.width, drawing.crop.height), &drawing.words),

@@ -64,3 +64,44 @@ fn profiles_save_what_their_document_says() {
         assert!((0.05..0.3).contains(&ratio), "{scene}: {ratio} times the transfers");
     }
 }
+
+/// The page on the report's buffer: its listings are what the commands print, and its sums the octets of the programs.
+#[test]
+fn buffers_take_what_their_document_says() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/buffer.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let mut parts = document.split("```console\n$ lancer ");
+    let mut text = parts.next().unwrap().to_owned();
+    let mut listings = 0;
+    for part in parts {
+        let (listing, after) = part.split_once("```\n").unwrap();
+        let command = listing.lines().next().unwrap();
+        let output = lancer(&command.split(' ').collect::<Vec<_>>());
+        text += &format!("```console\n$ lancer {command}\n{output}```\n{after}");
+        listings += 1;
+    }
+    assert_eq!(listings, 4);
+    if std::env::var_os("LANCER_BLESS").is_some() {
+        std::fs::write(path, &text).unwrap();
+    } else {
+        assert_eq!(document, text, "LANCER_BLESS=1 writes it as it is now");
+    }
+    let sets = "report,buffered,prefetched";
+    let scenes = ["cornell", "slabs"];
+    let json: Value = serde_json::from_str(&lancer(
+        &[&["profiles", "--size", "8x6", "--profiles", sets, "--json"], &scenes[..]].concat(),
+    ))
+    .unwrap();
+    let pictures = json["pictures"].as_array().unwrap();
+    let picture = |scene: &str, profile: &str| {
+        let is_it = |picture: &&Value| picture["scene"] == scene && picture["profile"] == profile;
+        pictures.iter().find(is_it).unwrap()
+    };
+    for scene in scenes {
+        let hash = |profile: &str| picture(scene, profile)["image_hash"].clone();
+        assert!(hash("report") == hash("buffered") && hash("report") == hash("prefetched"), "{scene}");
+        // Nodes, triangles, the nearest one, rays, what the page adds, and the materials and lights, of 32 and 24 octets.
+        let tables = picture(scene, "buffered")["buffer_octets"].as_u64().unwrap() - (110 + 15_872 + 31 + 572 + 591);
+        assert!(tables <= 768 && tables % 8 == 0 && tables > 0, "{scene}: {tables}");
+    }
+}

@@ -27,6 +27,8 @@ pub struct SceneFeatures {
     pub cutoff: i32,
     /// Skips: what its programs leave out.
     pub skips: Skips,
+    /// Block loads of its programs need not be over when the core goes on: they wait where they use the data.
+    pub loads_ahead: bool,
     /// Difference of a component (in the colour format) up to which the corners around a pixel agree, so that it is interpolated; `None`
     /// when every pixel has its ray.
     pub agreement: Option<i32>,
@@ -45,6 +47,7 @@ impl SceneFeatures {
             bounces: view.bounces,
             cutoff: raw(options.weight_cutoff, formats.weight),
             skips: options.skips.known_to(options.profile),
+            loads_ahead: options.profile.loads_ahead(),
             agreement: options.interpolate.map(|difference| raw(difference, formats.colour)),
         }
     }

@@ -65,6 +65,8 @@ pub fn text(image: &MemoryImage, features: &SceneFeatures, crop: &Crop, walk: Wa
     for (name, value) in constants(image, features, crop) {
         let _ = writeln!(text, ".equ {name}, {value}");
     }
+    // No load of the main processor goes on beside its computing.
+    let _ = writeln!(text, ".equ LOADS_AHEAD, {}", u32::from(features.loads_ahead && !is_main));
     text.push_str(".equ T_QUOTIENT, dir + t - pos + T_SHIFT - EDGE_SHIFT\n\n");
     for part in image.structures.all() {
         match image.layout {
@@ -365,7 +367,7 @@ fn camera(text: &mut String, image: &MemoryImage) {
 }
 
 /// Names of registers and macros that every program in a layout includes.
-pub fn included(layout: Layout) -> [Arc<Source>; 8] {
+pub fn included(layout: Layout) -> [Arc<Source>; 9] {
     macro_rules! file {
         ($path:literal) => {
             Source::new(concat!("kernels/asm/", $path), include_str!(concat!("../asm/", $path)))
@@ -389,6 +391,7 @@ pub fn included(layout: Layout) -> [Arc<Source>; 8] {
         transfers,
         structures,
         file!("tested.inc"),
+        file!("pieces.inc"),
     ]
 }
 

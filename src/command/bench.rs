@@ -85,7 +85,7 @@ pub struct BenchArguments {
     tolerance: Option<f64>,
 }
 
-fn profile(text: &str) -> Result<KernelSet, String> {
+pub(super) fn profile(text: &str) -> Result<KernelSet, String> {
     KernelSet::from_str(text).map_err(|message| arguments::plain(&message))
 }
 

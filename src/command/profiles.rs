@@ -1,7 +1,9 @@
 //! `lancer profiles`: what the sets of kernels take for the same pictures.
 
 use clap::Args;
+use kernels::KernelSet;
 
+use super::bench::profile;
 use super::invocation::{CommandSettings, scene_hashes};
 use crate::arguments::{self, ArithmeticArguments, MachineKeyArguments, Size, TreeArguments};
 use crate::failure::{Exit, Failure};
@@ -16,15 +18,16 @@ const EXAMPLES: &str = "\
 Examples:
   lancer profiles
   lancer profiles cornell --machine wide32
+  lancer profiles cornell --profiles report,buffered,prefetched --machine two_buffers
   lancer profiles cornell slabs --size 320x240 --json > profiles.json
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped.";
 
 /// Sets the profiles of the kernels side by side: operations, octets, instructions, clocks, error.
 ///
-/// Draws each scene with the report's scalar kernels, with vector rows and with the ray unit, each profile in its own layout, and divides
-/// the figures of each profile by those of the one before. Counts are those of the cores; operations are of all classes but moves; the
-/// search is what walks the kd tree and intersects.
+/// Draws each scene with several sets of kernels, each in its own layout of memory, and divides the figures of each profile by those of the one
+/// that it is compared with. Counts are those of the cores; operations are of all classes but moves; the search is what walks the kd tree
+/// and intersects; the buffer is what the program takes of a core's, in octets.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct ProfilesArguments {
@@ -34,6 +37,9 @@ pub struct ProfilesArguments {
     /// Size of the pictures in pixels.
     #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "80x60")]
     size: Size,
+    /// Sets of kernels.
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = profile, default_value = "report,vector,ray,packet")]
+    profiles: Vec<KernelSet>,
     #[command(flatten)]
     tree: TreeArguments,
     #[command(flatten)]
@@ -58,9 +64,10 @@ pub(super) fn execute(
         terminal.show(&loaded.warnings);
         scenes.push(loaded.scene);
     }
-    let bar = terminal.progress("pictures", (scenes.len() * kernels::KernelSet::ALL.len()) as u64);
+    let bar = terminal.progress("pictures", (scenes.len() * arguments.profiles.len()) as u64);
     let profiles = profiles::measure(
         &scenes,
+        &arguments.profiles,
         arguments.size,
         &arguments.tree.settings(),
         &(machine.name.clone(), machine.config.clone()),
@@ -86,6 +93,7 @@ fn text(profiles: &Profiles) -> String {
         "octets",
         "clocks",
         "words",
+        "buffer",
         "pixels off",
     ])];
     pictures.extend(profiles.pictures.iter().map(|picture| {
@@ -98,6 +106,7 @@ fn text(profiles: &Profiles) -> String {
             short(picture.octets),
             short(picture.clocks),
             short(picture.program_words as u64),
+            short(picture.buffer_octets as u64),
             short(picture.off_pixels),
         ]
     }));

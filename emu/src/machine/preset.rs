@@ -40,6 +40,11 @@ pub const PRESETS: &[Preset] = &[
         make: || Config { bus: BusConfig { overlap: true, ..BusConfig::default() }, ..Config::default() },
     },
     Preset {
+        name: "two_buffers",
+        description: "the report's, with room for a second packet in the buffer, 34,397 octets, and block loads beside computing",
+        make: two_buffers,
+    },
+    Preset {
         name: "node_cache",
         description: "the report's, with a private cache of 4 KiB for tree nodes in each core",
         make: || Config { cache: CacheConfig { octets: 4096, ..CacheConfig::default() }, ..Config::default() },
@@ -60,6 +65,13 @@ pub const PRESETS: &[Preset] = &[
         make: counted_all,
     },
 ];
+
+/// The report's buffer with its 512 triangles of 31 octets twice. Kernels that fetch ahead (`--profile prefetched`) use nothing before it has come.
+fn two_buffers() -> Config {
+    let report = Config::default();
+    let bus = BusConfig { overlap: true, ..BusConfig::default() };
+    Config { buffer_octets: report.buffer_octets + 512 * 31, bus, ..report }
+}
 
 /// Two clocks before a burst, the report's access time, are paid once in 64 octets instead of for each one.
 fn wide32() -> Config {

@@ -8,6 +8,7 @@
     next_reference
     movi  s12, sizeof(triangle)
     load  slot, s15, s12
+    wait_for_load
     call  link_step, triangle
     .holds s12, t
     iaddi s14, s14, 1

@@ -31,6 +31,7 @@ TREE: .space (2 * BOUNCES + 1) * sizeof(treenode)
     lw    s13, treenode.near(node)
     movi  s12, sizeof(triangle)
     load  near_slot, s13, s12
+    wait_for_load
     load_material
 .endm
 

@@ -34,8 +34,15 @@ const DRIVERS: &[(&str, &str)] = files! {
 };
 
 /// A scene that needs every function.
-const EVERYTHING: SceneFeatures =
-    SceneFeatures { has_mirror: true, is_transparent: true, bounces: 1, cutoff: 0, skips: Skips::ALL, agreement: None };
+const EVERYTHING: SceneFeatures = SceneFeatures {
+    has_mirror: true,
+    is_transparent: true,
+    bounces: 1,
+    cutoff: 0,
+    skips: Skips::ALL,
+    loads_ahead: false,
+    agreement: None,
+};
 
 /// The functions that a driver may call.
 fn functions() -> impl Iterator<Item = (&'static str, &'static str)> {

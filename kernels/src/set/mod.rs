@@ -1,7 +1,9 @@
 //! The sets of kernels: one file a set, with an answer to each question that a set has to answer, and one line here. The functions that a
 //! picture is made of are listed in [`crate::function`].
 
+mod buffered;
 mod packet;
+mod prefetched;
 mod ray;
 mod report;
 mod vector;
@@ -34,6 +36,8 @@ pub(crate) struct SetAnswers {
     pub tree: (Depth, BuildMethod),
     /// Set that serves the functions for which this one has no file; `None` when it has all of them.
     pub base: Option<KernelSet>,
+    /// Set that it is compared with, whose work it does in another way; `None` for the first one.
+    pub compared_with: Option<KernelSet>,
     /// Files of the functions that it serves by themselves, with the registers that `registers.inc` gives them.
     pub files: &'static [(Function, KernelFile)],
     /// Functions that it serves by files made for each other.
@@ -42,6 +46,8 @@ pub(crate) struct SetAnswers {
     pub walk: WalkMemory,
     /// Way in which its walk remembers far sides, when the user has replaced one of them.
     pub walk_alone: WalkMemory,
+    /// Block loads may go on beside computing: its programs wait for one where they use the data.
+    pub loads_ahead: bool,
     /// Exactness of its decisions.
     pub decisions: Decisions,
     /// Formulas for what follows a hit.
@@ -114,6 +120,10 @@ kernel_sets! {
     Ray ray;
     /// Rows that meet whole packets and walk down several levels of the tree, else as `Ray`: the same decisions, and fewer transfers.
     Packet packet;
+    /// As `Report`, but the triangles of a packet come to the buffer before they are tested, up to 512 at once: its section 6.2.
+    Buffered buffered;
+    /// As `Report`, with two such buffers: the next triangle comes while one is tested.
+    Prefetched prefetched;
 }
 
 impl KernelSet {
@@ -149,6 +159,16 @@ impl KernelSet {
     /// Way to build the kd tree that goes with the set unless the user chooses another.
     pub const fn kd_method(self) -> BuildMethod {
         self.answers().tree.1
+    }
+
+    /// The set that it is compared with; `None` for the first one.
+    pub const fn compared_with(self) -> Option<KernelSet> {
+        self.answers().compared_with
+    }
+
+    /// Block loads may go on beside computing: the set's programs wait for one where they use the data.
+    pub const fn loads_ahead(self) -> bool {
+        self.answers().loads_ahead
     }
 
     /// Exactness of the set's decisions.

@@ -15,6 +15,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     layout: Layout::Packet,
     tree: (Depth::Auto, BuildMethod::Binned),
     base: Some(super::KernelSet::Ray),
+    compared_with: Some(super::KernelSet::Ray),
     files: &[],
     teams: &[Team {
         members: &[
@@ -30,6 +31,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     }],
     walk: WalkMemory::Blocks,
     walk_alone: WalkMemory::Boxes,
+    loads_ahead: false,
     decisions: Decisions::Exact,
     formulas: Formulas::Vector,
     skips: &[Skip::Features, Skip::Weightless, Skip::Unlit, Skip::AnyHit, Skip::Missed, Skip::Beyond, Skip::Empty],

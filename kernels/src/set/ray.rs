@@ -14,6 +14,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     layout: Layout::Wide,
     tree: (Depth::Auto, BuildMethod::Binned),
     base: Some(super::KernelSet::Vector),
+    compared_with: Some(super::KernelSet::Vector),
     files: &[(Function::Triangle, file!("ray/triangle.s")), (Function::ExitFace, file!("ray/exit_face.s"))],
     teams: &[
         Team { members: &[(Function::Packet, Some(file!("ray/packet.s"))), (Function::Triangle, None)] },
@@ -30,6 +31,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     ],
     walk: WalkMemory::Planes,
     walk_alone: WalkMemory::Boxes,
+    loads_ahead: false,
     decisions: Decisions::Exact,
     formulas: Formulas::Vector,
     skips: Skip::ALL,

@@ -14,6 +14,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     layout: Layout::Report,
     tree: (Depth::Levels(DEPTH), BuildMethod::Report),
     base: Some(super::KernelSet::Vector),
+    compared_with: None,
     files: &[
         (Function::Pixel, file!("report/pixel.s")),
         (Function::RayTree, file!("report/ray_tree.s")),
@@ -39,6 +40,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     teams: &[],
     walk: WalkMemory::Restart,
     walk_alone: WalkMemory::Restart,
+    loads_ahead: false,
     decisions: Decisions::Rounded,
     formulas: Formulas::Printed,
     skips: &[Skip::Features, Skip::Weightless, Skip::Unlit, Skip::AnyHit, Skip::Beyond],

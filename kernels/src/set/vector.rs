@@ -14,6 +14,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     layout: Layout::Wide,
     tree: (Depth::Auto, BuildMethod::Binned),
     base: None,
+    compared_with: Some(super::KernelSet::Report),
     files: &[
         (Function::Pixel, file!("vector/pixel.s")),
         (Function::RayTree, file!("vector/ray_tree.s")),
@@ -41,6 +42,7 @@ pub(super) static SET: SetAnswers = SetAnswers {
     teams: &[],
     walk: WalkMemory::Boxes,
     walk_alone: WalkMemory::Boxes,
+    loads_ahead: false,
     decisions: Decisions::Wide,
     formulas: Formulas::Vector,
     skips: Skip::ALL,

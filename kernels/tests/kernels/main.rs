@@ -9,4 +9,5 @@ mod machine;
 mod modes;
 mod packed;
 mod packets;
+mod pieces;
 mod ties;

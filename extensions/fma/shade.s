@@ -8,7 +8,14 @@
     first_light
 shade_light:
     load_light
+  .if HAS_FAR_LIGHTS
+    lw    s13, light.scale(s12)             ; the point comes into the light's steps
+    .holds s13, dir
+    vscale v6, point, s13, dir
+    vsub  v26, v26, v6                      ; to the light
+  .else
     vsub  v26, v26, point                   ; to the light
+  .endif
     .holds v26, pos
     wdot  w0, facing, v26
     wextend w1, s0, 0
@@ -33,6 +40,7 @@ shade_facing:
   .endif
     sw    s13, SHADE_COSINE(s0)
     vdot  near_t, v6, v26, dir + pos - t
+    far_light
     shadow_ray shade_next
 ;-    .holds v6, colour
 ;-    vscale v6, v6, s13, dir

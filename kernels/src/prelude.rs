@@ -174,6 +174,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("LIGHTS_BUS", image.region(MemoryKind::Lights).start.into()),
         ("LIGHTS_LOCAL", is_local(image, MemoryKind::Lights).into()),
         ("LIGHTS", image.counts.lights.into()),
+        ("HAS_FAR_LIGHTS", image.has_far_lights().into()),
         ("REFERENCES_AT_ONCE", REFERENCES_AT_ONCE.into()),
         ("AMBIENT", image.ambient.into()),
         ("BOUNCES", features.bounces.into()),

@@ -141,6 +141,16 @@ impl StructureSet {
     pub fn all(&self) -> [&Structure; 6] {
         [&self.node, &self.reference, &self.triangle, &self.material, &self.light, &self.pixel]
     }
+
+    /// The structures with lights that have steps of their own.
+    pub fn with_far_lights(self) -> StructureSet {
+        // In the layout `packed` all numbers of a light have as many bits.
+        let (bits, begins_octet) =
+            self.light.fields.first().map_or((32, true), |field| (field.bits, field.begins_octet));
+        let field = |&field: &Field| Field { bits, begins_octet, ..field };
+        let light = Structure { name: FAR_LIGHT.name, fields: FAR_LIGHT.fields.iter().map(field).collect() };
+        StructureSet { light, ..self }
+    }
 }
 
 /// Layout of triangles and tree in memory.
@@ -321,12 +331,22 @@ pub static MATERIAL: Structure = Structure {
     ]),
 };
 
-/// A light, in all layouts but `packed`.
+/// A light of a scene in which all are near, in all layouts but `packed`.
 pub static LIGHT: Structure = Structure {
     name: "light",
     fields: Cow::Borrowed(&[
         signed("position", 3, 4, "where it stands: position"),
         signed("colour", 3, 4, "red, green, blue: colour"),
+    ]),
+};
+
+/// A light of a scene in which one has steps of its own.
+pub static FAR_LIGHT: Structure = Structure {
+    name: "light",
+    fields: Cow::Borrowed(&[
+        signed("position", 3, 4, "where it stands, in steps of 2^n units: position"),
+        signed("colour", 3, 4, "red, green, blue: colour"),
+        signed("scale", 1, 4, "2^-n, by which a point is multiplied to have such steps: direction"),
     ]),
 };
 
@@ -347,7 +367,7 @@ mod tests {
         assert_eq!(sizes(Layout::Report), [31, 55, 8]);
         assert_eq!(sizes(Layout::Wide), [38, 8, 4]);
         assert_eq!(Layout::ALL.map(Layout::octets_beside_reference), [0, 0, 36, 0]);
-        assert_eq!([&MATERIAL, &LIGHT, &PIXEL].map(Structure::octets), [32, 24, 12]);
+        assert_eq!([&MATERIAL, &LIGHT, &FAR_LIGHT, &PIXEL].map(Structure::octets), [32, 24, 28, 12]);
     }
 
     #[test]

@@ -9,7 +9,14 @@
     first_light
 shade_light:
     load_light
+  .if HAS_FAR_LIGHTS
+    lw    s13, light.scale(s12)         ; the point comes into the light's steps
+    .holds s13, dir
+    scale_vector v6, point, s13, dir
+    subtract v26, v26, v6               ; to the light
+  .else
     subtract v26, v26, point            ; to the light
+  .endif
     .holds v26, pos
     vnorm v6, s13, v26
     call  link_step, unit
@@ -29,6 +36,7 @@ shade_light:
     dot_product v6, v26, dir + pos - t
     .holds s12, t
     mov   near_t, s12
+    far_light
     shadow_ray shade_next
     .holds v6, colour
     .holds s13, dir

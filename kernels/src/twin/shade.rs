@@ -33,7 +33,9 @@ impl<A: Arithmetic> Twin<A> {
     /// The cosine of the angle between the normal and a light that the surface sees.
     fn visible(&self, surface: &Surface, light: &StageLight) -> Result<Option<i32>, Stuck> {
         let (arithmetic, constants) = (&self.arithmetic, &self.constants);
-        let way = arithmetic.difference(light.position, surface.point);
+        let direction_bits = constants.formats.direction;
+        let point = light.scale.map(|scale| arithmetic.scaled(surface.point, scale, direction_bits));
+        let way = arithmetic.difference(light.position, point.unwrap_or(surface.point));
         let formulas = self.profile.formulas();
         let lit = match formulas {
             Formulas::Printed => report::lit,
@@ -45,7 +47,9 @@ impl<A: Arithmetic> Twin<A> {
             Formulas::Vector => A::dot,
         };
         let ray = TwinRay::new(arithmetic, surface.point, direction);
-        let distance = dot(arithmetic, direction, way, constants.across());
+        // Nothing in the box is beyond a light with longer steps.
+        let is_far = light.scale.is_some_and(|scale| scale != 1 << direction_bits);
+        let distance = if is_far { constants.never } else { dot(arithmetic, direction, way, constants.across()) };
         let mut search = TwinSearch { t: distance, triangle: None, takes_any: true };
         if let Some(packet) = self.own_packet(&ray) {
             self.trace(&ray, packet, &mut search)?;

@@ -44,8 +44,10 @@ pub struct StageMaterial {
 /// A point light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageLight {
-    /// Position of the light, raw.
+    /// Position of the light, raw, or in steps of its own.
     pub position: Vector,
+    /// Raw units in its steps as a direction, where it has some of its own.
+    pub scale: Option<i32>,
     /// The light's colour in the colour format.
     pub colour: Vector,
 }
@@ -140,8 +142,9 @@ impl StageMaterial {
 
 impl StageLight {
     fn new(fields: &[i64]) -> Option<StageLight> {
-        let &[x, y, z, r, g, b] = words(fields).first_chunk()?;
-        Some(StageLight { position: [x, y, z], colour: [r, g, b] })
+        let fields = words(fields);
+        let &[x, y, z, r, g, b] = fields.first_chunk()?;
+        Some(StageLight { position: [x, y, z], colour: [r, g, b], scale: fields.get(6).copied() })
     }
 }
 

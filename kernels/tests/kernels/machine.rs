@@ -13,7 +13,7 @@ use kernels::{KernelSet, twin};
 use scenes::generate::{self, GenerateOptions};
 use scenes::image::{self, MemoryKind, MemoryOptions};
 use scenes::layout::PIXEL;
-use scenes::model::{Camera, Scene, View};
+use scenes::model::{Camera, Light, Scene, View};
 
 /// The pixels that the machine draws, and those of the twin.
 fn drawn(scene: &Scene, view: &View, set: KernelSet, word: u32, skips: Skips) -> [Vec<Vector>; 2] {
@@ -62,6 +62,32 @@ fn perspective_rays_are_those_of_the_twin() {
                 let wrong = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
                 assert_eq!(wrong, 0, "{wrong} pixels by {set} in {word} bits from {eye:?}");
                 assert!(number == 4 || expected.iter().any(|pixel| pixel != &expected[0]), "{eye:?} sees nothing");
+            }
+        }
+    }
+}
+
+#[test]
+fn lights_with_steps_of_their_own_are_those_of_the_twin() {
+    let size = (20, 15);
+    let options = GenerateOptions { level: Some(1), size, ..GenerateOptions::default() };
+    let near = generate::scene("sphereflake", &options).expect("a scene of the list");
+    let light = near.lights[0];
+    // One far light beside near ones, and more lights than the buffer holds.
+    for (count, distance) in [(2, 40.0), (2, 1e12), (20, 3e3)] {
+        let mut scene = near.clone();
+        scene.lights = (0..count)
+            .map(|k| {
+                let times = if k % 2 == 0 { distance } else { 1.0 };
+                let colour = light.colour.map(|x| x / f64::from(count));
+                Light { position: light.position.map(|x| x * times * (1.0 + 0.1 * f64::from(k))), colour }
+            })
+            .collect();
+        for &set in KernelSet::ALL {
+            for (word, skips) in [(32, Skips::ALL), (20, Skips::NONE)] {
+                let [found, expected] = drawn(&scene, &View::new(size), set, word, skips);
+                let wrong = found.iter().zip(&expected).filter(|(found, expected)| found != expected).count();
+                assert_eq!(wrong, 0, "{wrong} pixels by {set} in {word} bits, {count} lights at {distance}");
             }
         }
     }

@@ -2,9 +2,10 @@
 //! bits other quantities have is decided in [`crate::cadrage`].
 //!
 //! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles
-//! within |x| <= 2^(word-2) - 4 raw, and the way from any of their points to a light within 2^(word-1) - 8 along each axis: no ray
-//! starts at a light, so a light may stand twice as far away. The eye takes no part: rays start where they enter the triangles' box. Everything is computed relative to the box and relative to the largest coordinate's
-//! power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
+//! within |x| <= 2^(word-2) - 4 raw. The eye takes no part: rays start where they enter the triangles' box. A light is near if its way to all points of the box is within
+//! 2^(word-1) - 8 raw along each axis, since no ray starts at a light; steps are twice as long where that makes all lights near. Where it does not, the
+//! far ones have longer steps of their own ([`Grid::light`]), so lights take one bit from the mesh at most. Everything is computed relative to the box and relative to its largest
+//! coordinate's power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
 //! gives the same raw integers.
 
 use messages::{Diagnostic, Report};
@@ -26,7 +27,7 @@ pub struct Grid {
     pub position: i32,
     /// Box of the triangles, raw: where rays start and end.
     pub reach: Bounds,
-    /// Along each axis the longest way within that box, or from it to a light, raw.
+    /// Along each axis the longest way within that box, or from it to a light without longer steps, raw.
     pub span: [u32; 3],
     /// Box of the triangles in scene units; that of an empty scene is -1 to 1.
     corners: Corners,
@@ -36,17 +37,13 @@ pub struct Grid {
     middle: Vec3,
 }
 
-/// A thing that a grid has to hold, with a name for messages.
-struct GridPoint {
-    name: &'static str,
-    number: usize,
-    at: Vec3,
-}
-
-impl GridPoint {
-    fn is_light(&self) -> bool {
-        self.name == "light"
-    }
+/// Position of a light, in steps of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GridLight {
+    /// The position in steps of 2^exponent raw units.
+    pub position: [i32; 3],
+    /// Length of a step as a power of two, in raw units; 0 for a light near the scene.
+    pub exponent: u32,
 }
 
 impl Grid {
@@ -69,26 +66,13 @@ impl Grid {
             return Err(report);
         }
         let corners = scene.bounds().unwrap_or(([-1.0; 3], [1.0; 3]));
-        let mut points = vec![
-            GridPoint { name: "the scene's corner", number: 1, at: corners.0 },
-            GridPoint { name: "the scene's corner", number: 2, at: corners.1 },
-        ];
-        points.extend(scene.lights.iter().enumerate().map(|(k, light)| GridPoint {
-            name: "light",
-            number: k + 1,
-            at: light.position,
-        }));
-        let unit = points.iter().map(|p| p.at).map(largest).fold(0.0, f64::max);
-        let unit = exponent(unit);
+        let unit = exponent(largest(corners.0).max(largest(corners.1)));
         let down = |p: Vec3| p.map(|x| shifted(x, -unit));
-        for point in &mut points {
-            point.at = down(point.at);
-        }
-        let box_down = (points[0].at, points[1].at);
-        let grid = |power: i32| Grid::with(&points, corners, word, unit, power);
+        let box_down = (down(corners.0), down(corners.1));
+        let grid = |power: i32| Grid::with(box_down, corners, word, unit, power);
         let limit = (1i64 << (word - 2)) - 4;
         let middle = camera::centre(box_down);
-        let far = points.iter().map(|p| largest(sub(p.at, middle))).fold(0.0, f64::max);
+        let far = largest(sub(box_down.0, middle)).max(largest(sub(box_down.1, middle)));
         // Begin a step or two finer than the extent says, and go down: rounding decides which is the finest that fits.
         let mut power = exponent(limit as f64) - if far > 0.0 { exponent(far) } else { 1 } + 2;
         let finest = loop {
@@ -97,43 +81,69 @@ impl Grid {
                 None => power -= 1,
             }
         };
+        let has_near_lights = |grid: &Grid| scene.lights.iter().all(|light| grid.light(light.position).exponent == 0);
+        let coarser = || grid(power - 1).filter(has_near_lights);
+        let best = if has_near_lights(&finest) { finest } else { coarser().unwrap_or(finest) };
         // A format that the user sets may be coarser than the finest, and is refused if it does not fit.
-        let chosen = match position {
+        let mut chosen = match position {
             Some(position) => grid(position.clamp(-5000, 5000) + unit).ok_or_else(|| {
                 Diagnostic::error(format!("positions with {position} fraction bits do not fit a word of {word} bits"))
                     .hint(format!("this scene has room for pos={} or less", finest.position))
             })?,
-            None => finest,
+            None => best,
         };
         let bounds = chosen.bounds();
         let side = AXES.map(|axis| bounds.side(axis)).into_iter().max().unwrap_or(0);
         if corners.0 != corners.1 && side < 1 << FEWEST_BITS.min(word - 4) {
-            return Err(too_coarse(&chosen, &points, side, position.is_some()).into());
+            return Err(too_coarse(&chosen, side, position.is_some()).into());
+        }
+        for light in &scene.lights {
+            if let GridLight { position, exponent: 0 } = chosen.light(light.position) {
+                let way = |k: usize| position[k].abs_diff(bounds.low[k]).max(position[k].abs_diff(bounds.high[k]));
+                chosen.span = AXES.map(|k| chosen.span[k].max(way(k)));
+            }
         }
         Ok(chosen)
     }
 
-    /// The grid with 2^power steps in a unit; `None` when a point does not fit.
-    fn with(points: &[GridPoint], corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
+    /// The grid with 2^power steps in a unit; `None` when the box does not fit.
+    fn with(box_down: Corners, corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
         let limit = ((1i64 << (word - 2)) - 4) as f64;
-        let farthest = ((1i64 << (word - 1)) - 8) as f64;
-        let middle = AXES.map(|k| rounded_middle(points[0].at[k], points[1].at[k], power));
-        let raw = |point: &GridPoint| AXES.map(|k| nearest(shifted(point.at[k] - middle[k], power)));
-        let (lights, others): (Vec<&GridPoint>, Vec<&GridPoint>) = points.iter().partition(|point| point.is_light());
-        // The reach is that of all but the lights, since rays start and end there; a light counts by its way to them.
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for at in others.into_iter().map(raw) {
-            low = AXES.map(|k| low[k].min(at[k]));
-            high = AXES.map(|k| high[k].max(at[k]));
-        }
-        let mut span = AXES.map(|k| high[k] - low[k]);
-        for at in lights.into_iter().map(raw) {
-            span = AXES.map(|k| span[k].max(at[k] - low[k]).max(high[k] - at[k]));
-        }
-        let is_inside = AXES.iter().all(|&k| low[k] >= -limit && high[k] <= limit && span[k] <= farthest);
+        let middle = AXES.map(|k| rounded_middle(box_down.0[k], box_down.1[k], power));
+        let raw = |at: Vec3| AXES.map(|k| nearest(shifted(at[k] - middle[k], power)));
+        let (low, high) = (raw(box_down.0), raw(box_down.1));
+        let is_inside = AXES.iter().all(|&k| low[k] >= -limit && high[k] <= limit);
+        let span = AXES.map(|k| (high[k] - low[k]) as u32);
         let reach = Bounds { low: low.map(|x| x as i32), high: high.map(|x| x as i32) };
-        let span = span.map(|x| x as u32);
         is_inside.then_some(Grid { word, position: power - unit, reach, span, corners, unit, middle })
+    }
+
+    /// A light on the grid, in the finest steps in which the way from any point of the box to it fits: 2^(word-1) - 8 along each axis, since no ray starts
+    /// at a light.
+    ///
+    /// In words of 32 bits a light 3 sizes away from a box of 2^31 raw units has a way of up to 2^33 raw, and steps of 2^2; at 3,000 sizes they are 2^12.
+    /// Each keeps as many bits of its way as a near one.
+    pub fn light(&self, position: Vec3) -> GridLight {
+        let farthest = ((1i64 << (self.word - 1)) - 8) as f64;
+        let bounds = self.bounds();
+        let power = self.position + self.unit;
+        // Both are scaled before they are subtracted, which gives the same: a light may be so far that it leaves double precision in raw units.
+        let place = |exponent: i32| {
+            AXES.map(|k| shifted(position[k], self.position - exponent) - shifted(self.middle[k], power - exponent))
+        };
+        let fits = |exponent: i32| {
+            let at = place(exponent).map(nearest);
+            let end = |x: i32| shifted(f64::from(x), -exponent);
+            // Where steps are longer the point is rounded, too.
+            let slack = if exponent == 0 { 0.0 } else { 1.0 };
+            let is_near = |k: usize| at[k] - end(bounds.low[k]) <= farthest && end(bounds.high[k]) - at[k] <= farthest;
+            let is_short = AXES.iter().all(|&k| is_near(k) && at[k].abs() <= farthest + slack);
+            is_short.then(|| GridLight { position: at.map(|x| x as i32), exponent: exponent as u32 })
+        };
+        let raw = largest(place(0));
+        let bits = if raw.is_finite() { exponent(raw) } else { exponent(largest(position)) + self.position };
+        // A step of one more bit than that never fits, so the search begins below the answer and ends a few steps on.
+        ((bits - self.word as i32).max(0)..).find_map(fits).expect("there are steps that are long enough")
     }
 
     /// A point relative to the grid's origin in raw units, not rounded.
@@ -180,25 +190,14 @@ fn rounded_middle(low: f64, high: f64, power: i32) -> f64 {
     if half.abs() < (1u64 << 52) as f64 { floor + shifted(nearest(half), -power) } else { low / 2.0 + high / 2.0 }
 }
 
-fn too_coarse(grid: &Grid, points: &[GridPoint], side: u32, is_chosen: bool) -> Diagnostic {
+fn too_coarse(grid: &Grid, side: u32, is_chosen: bool) -> Diagnostic {
     let needed = FEWEST_BITS.min(grid.word - 4);
     let message = format!(
         "the scene's box is {side} grid steps long in words of {} bits, which is less than {needed} bits ({} steps)",
         grid.word,
         1 << needed
     );
-    let distance = |p: &GridPoint| largest(sub(p.at, grid.middle)) * if p.is_light() { 0.5 } else { 1.0 };
-    let farthest = points.iter().rev().max_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let hint = match farthest {
-        _ if is_chosen => "choose a larger pos, or leave it out".to_string(),
-        Some(p) if p.is_light() => {
-            format!(
-                "light {} stands far away and sets the scale: move it nearer, or use a longer word with --word",
-                p.number
-            )
-        }
-        _ => "use a longer word with --word".to_string(),
-    };
+    let hint = if is_chosen { "choose a larger pos, or leave it out" } else { "use a longer word with --word" };
     Diagnostic::error(message).hint(hint)
 }
 

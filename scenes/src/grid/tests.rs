@@ -88,16 +88,32 @@ proptest! {
         let longest = AXES.map(|k| grid.span[k]).into_iter().max().unwrap();
         let farthest = (1u32 << (word - 1)) - 8;
         prop_assert!(longest <= farthest);
-        let is_finest = most(&grid.reach) >= limit / 2 - 1 || longest >= farthest / 2 - 1;
+        let is_finest = most(&grid.reach) >= limit / 2 - 1;
+        let lights: Vec<GridLight> = scene.lights.iter().map(|light| grid.light(light.position)).collect();
+        let is_near = |light: &GridLight| light.exponent == 0;
+        // One bit less, where that makes all lights near.
+        let is_finest = is_finest || (most(&grid.reach) >= limit / 4 - 1 && lights.iter().all(is_near));
         prop_assert!(is_finest, "a finer grid fits: {:?}, {longest}", grid.reach);
-        let ways = scene.lights.iter().flat_map(|light| {
+        for (light, on_grid) in scene.lights.iter().zip(&lights) {
+            // Off by half a step of its own, and those are no longer than they have to be.
+            let exact = grid.local(light.position).map(|x| shifted(x, -(on_grid.exponent as i32)));
+            prop_assert!(AXES.iter().all(|&k| (exact[k] - f64::from(on_grid.position[k])).abs() <= 0.501), "{on_grid:?} for {exact:?}");
+            let bounds = grid.bounds();
+            let way = AXES.map(|k| {
+                let end = |x: i32| (exact[k] - shifted(f64::from(x), -(on_grid.exponent as i32))).abs();
+                end(bounds.low[k]).max(end(bounds.high[k]))
+            });
+            prop_assert!(largest(way) <= f64::from(farthest) + 1.0, "{way:?}");
+            prop_assert!(is_near(on_grid) || largest(way) >= f64::from(farthest) / 2.0 - 2.0, "{on_grid:?}: {way:?}");
+        }
+        let ways = scene.lights.iter().filter(|light| is_near(&grid.light(light.position))).flat_map(|light| {
             let light = grid.raw(light.position);
             scene.triangles.iter().flat_map(|t| t.vertices).map(|v| grid.raw(scene.vertices[v as usize])).flat_map(move |v| {
                 AXES.map(|k| (i64::from(light[k]) - i64::from(v[k])).unsigned_abs())
             }).collect::<Vec<_>>()
         });
         prop_assert!(ways.max().unwrap_or(0) <= longest.into());
-        prop_assert!(Grid::new(&scene, &view, word, Some(grid.position + 1)).is_err());
+        prop_assert!(Grid::new(&scene, &view, word, Some(grid.position + 2)).is_err());
         // The middle of the box is within one step of 0 on every axis, and the way back is within half a step.
         let bounds = grid.bounds();
         prop_assert!(AXES.iter().all(|&k| (i64::from(bounds.low[k]) + i64::from(bounds.high[k])).abs() <= 2));
@@ -163,21 +179,19 @@ fn flat_single_and_empty_scenes_are_placed() {
 #[test]
 fn what_sets_the_scale_is_named_when_too_little_is_left() {
     let small = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]];
-    let far_light = scene(small.clone(), vec![[0.0, 1.0, 2.0], [0.0, 1e9, 0.0]]);
-    let message = refusal(&far_light, &View::new((8, 8)), 32);
-    assert!(
-        message.contains("the scene's box is 2 grid steps long") && message.contains("light 2 stands far away"),
-        "{message}"
-    );
-    // An eye sets no scale: rays start where they enter the box.
+    // Neither a light nor an eye sets the scale: the former has steps of its own, and rays start where they enter the box.
     let near = scene(small.clone(), vec![]);
+    for distance in [1e3, 1e9, 1e300] {
+        let far_light = scene(small.clone(), vec![[0.0, 1.0, 2.0], [0.0, distance, 0.0]]);
+        let [with, without] = [&far_light, &near].map(|scene| Grid::new(scene, &View::new((8, 8)), 32, None).unwrap());
+        assert_eq!((with.position, with.reach), (without.position, without.reach));
+        let light = with.light([0.0, distance, 0.0]);
+        assert_eq!(i64::from(light.exponent), i64::from(exponent(distance)) - 1, "{light:?}");
+    }
     let grid = |view: &View| Grid::new(&near, view, 24, None).ok();
     assert_eq!(grid(&perspective(Some([0.0, 0.0, 1e6]))), grid(&View::new((8, 8))));
-    assert!(Grid::new(&scene(small.clone(), vec![[0.0, 120.0, 0.0]]), &View::new((8, 8)), 16, None).is_ok());
-    assert!(
-        refusal(&scene(small, vec![[0.0, 140.0, 0.0]]), &View::new((8, 8)), 16)
-            .contains("less than 8 bits (256 steps)")
-    );
+    let coarse = Grid::new(&near, &View::new((8, 8)), 16, Some(7)).map(|_| ()).map_err(|report| report.render(false));
+    assert!(coarse.is_err_and(|message| message.contains("less than 8 bits (256 steps)")));
 }
 
 #[test]

@@ -39,6 +39,7 @@ pub(super) fn arrange(parts: &ImageParts<impl Triangles>) -> Result<(StructureSe
     };
     loop {
         let structures = parts.layout.structures(&widths);
+        let structures = if parts.tables.has_far_lights { structures.with_far_lights() } else { structures };
         let regions = regions(parts, &structures)?;
         if parts.layout != Layout::Packed {
             return Ok((structures, regions));
@@ -77,7 +78,7 @@ fn measured(parts: &ImageParts<impl Triangles>) -> FieldWidths {
         vertex: signed_bits(coordinates),
         material_id: unsigned_bits(scene.materials.len().saturating_sub(1) as u64),
         material: numbers(tables.materials.as_flattened()),
-        light: numbers(tables.lights.as_flattened()),
+        light: signed_bits(tables.lights().flatten().map(|&x| x.into())),
     }
 }
 
@@ -99,7 +100,7 @@ fn regions(parts: &ImageParts<impl Triangles>, structures: &StructureSet) -> Res
         references,
         triangles.count() as u64 * triangle,
         tables.materials.len() as u64 * material,
-        tables.lights.len() as u64 * light,
+        tables.lights().len() as u64 * light,
         (u64::from(size.0) * u64::from(size.1)).saturating_mul(pixel),
     ];
     // Structures that are named by their numbers, counted from address 0, begin at a multiple of their octets.

@@ -5,7 +5,7 @@ use messages::{Diagnostic, Report};
 use super::arrange::{ImageParts, arrange, packed_octets};
 use super::{Regions, blocks, out_of_range, stored, three};
 use crate::cadrage::{self, Formats};
-use crate::grid::Grid;
+use crate::grid::{Grid, GridLight};
 use crate::kdtree::{Bounds, Content, Node, NumberedNode, Triangles};
 use crate::layout::{Layout, NODE_NAMES, Structure, StructureSet, WIDE_LEAF, packed_link, put_bits};
 use crate::model::Scene;
@@ -13,7 +13,10 @@ use crate::model::Scene;
 /// Materials and lights as raw integers, in the order of their fields.
 pub(super) struct Tables {
     pub materials: Vec<[i32; 8]>,
-    pub lights: Vec<[i32; 6]>,
+    /// With the scale at the end, which only far lights have.
+    lights: Vec<[i32; 7]>,
+    /// True where a light has steps of its own.
+    pub has_far_lights: bool,
 }
 
 impl Tables {
@@ -52,15 +55,24 @@ impl Tables {
             Ok([r, g, b, reflection, intensity, transmission, refraction.max(1), inverse.max(1)])
         });
         let lights = scene.lights.iter().enumerate().map(|(k, light)| {
-            let [x, y, z] = grid.raw(light.position);
+            let GridLight { position: [x, y, z], exponent } = grid.light(light.position);
+            // From so far away that all points are the same it is multiplied by nothing.
+            let scale = if exponent <= formats.direction { 1 << (formats.direction - exponent) } else { 0 };
             let [r, g, b] =
                 three(light.colour, |c| fixed(format!("the colour of light {k}"), c, "colour", formats.colour))?;
-            Ok([x, y, z, r, g, b])
+            Ok([x, y, z, r, g, b, scale])
         });
         Ok(Tables {
             materials: materials.collect::<Result<_, Report>>()?,
             lights: lights.collect::<Result<_, Report>>()?,
+            has_far_lights: scene.lights.iter().any(|light| grid.light(light.position).exponent != 0),
         })
+    }
+
+    /// The fields of the lights, as their structure has them.
+    pub fn lights(&self) -> impl ExactSizeIterator<Item = &[i32]> {
+        let fields = if self.has_far_lights { 7 } else { 6 };
+        self.lights.iter().map(move |light| &light[..fields])
     }
 }
 
@@ -152,8 +164,9 @@ pub(super) fn memory(parts: &ImageParts<impl Triangles>) -> Result<EncodedMemory
     for (number, values) in (0..).zip(&tables.materials) {
         material.write(&mut bytes[(start(4) + number * material.octets()) as usize..], values.map(i64::from));
     }
-    for (number, values) in (0..).zip(&tables.lights) {
-        light.write(&mut bytes[(start(5) + number * light.octets()) as usize..], values.map(i64::from));
+    for (number, values) in (0..).zip(tables.lights()) {
+        let values = values.iter().map(|&value| value.into());
+        light.write(&mut bytes[(start(5) + number * light.octets()) as usize..], values);
     }
     if layout == Layout::Packet {
         for NumberedNode { first: before, node, .. } in tree.nodes() {

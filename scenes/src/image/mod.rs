@@ -16,7 +16,7 @@ use crate::cadrage::{self, Formats, Overrides};
 use crate::camera::{self, RawCamera, Rays};
 use crate::grid::Grid;
 use crate::kdtree::{self, Bounds, Statistics, Triangles};
-use crate::layout::{Layout, StructureSet};
+use crate::layout::{FAR_LIGHT, Layout, StructureSet};
 use crate::model::{Scene, Triangle, Vec3, View};
 pub use decode::{DecodedImage, StoredTriangle};
 
@@ -146,6 +146,11 @@ impl MemoryImage {
     /// The addresses of one kind.
     pub fn region(&self, kind: MemoryKind) -> Range<u32> {
         self.regions.iter().find(|(k, _)| *k == kind).map_or(0..0, |(_, range)| range.clone())
+    }
+
+    /// True where lights have steps of their own.
+    pub fn has_far_lights(&self) -> bool {
+        self.structures.light.fields.len() == FAR_LIGHT.fields.len()
     }
 
     /// The contents of an address, `None` beyond the end and in the gaps between the regions.

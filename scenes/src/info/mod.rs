@@ -125,12 +125,12 @@ impl<T: JsonSchema> JsonSchema for Named<T> {
 }
 
 impl SceneInfo {
-    /// The facts of a scene in memory, with the default view.
+    /// The facts of a scene in memory, as a picture with this view has it.
     ///
     /// # Errors
     /// What [`image::build`] refuses.
-    pub fn new(scene: &Scene, options: &MemoryOptions) -> Result<SceneInfo, Report> {
-        let image = image::build(scene, &View::new(scene.size), options)?;
+    pub fn new(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<SceneInfo, Report> {
+        let image = image::build(scene, view, options)?;
         Ok(SceneInfo::of_image(scene, &image))
     }
 
@@ -196,7 +196,7 @@ mod tests {
 
     fn info(name: &str, options: MemoryOptions) -> SceneInfo {
         let scene = generate::scene(name, &generate::GenerateOptions::default()).unwrap();
-        SceneInfo::new(&scene, &options).unwrap()
+        SceneInfo::new(&scene, &View::new(scene.size), &options).unwrap()
     }
 
     #[test]
@@ -236,7 +236,7 @@ mod tests {
             scene.triangles.push(crate::model::Triangle { vertices, ..first });
         }
         scene.vertices.push([0.25, 0.25, 0.0]);
-        let info = SceneInfo::new(&scene, &MemoryOptions::default()).unwrap();
+        let info = SceneInfo::new(&scene, &View::new(scene.size), &MemoryOptions::default()).unwrap();
         assert_eq!((info.repeated, info.unused_vertices, info.precision.degenerate), (2, 1, 1));
         assert_eq!(info.materials[0].triangles, 4);
     }

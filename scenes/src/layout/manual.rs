@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BLOCK_NODES, Field, LIGHT, Layout, MATERIAL, PIXEL, Structure, StructureSet, TOP_NODES};
+use super::{BLOCK_NODES, FAR_LIGHT, Field, LIGHT, Layout, MATERIAL, PIXEL, Structure, StructureSet, TOP_NODES};
 use crate::generate;
 use crate::image::{HEADER, MemoryKind, MemoryOptions, build};
 use crate::model::View;
@@ -41,7 +41,11 @@ pub fn manual() -> String {
         }
     }
     line(&mut text, "## Structures of all layouts but `packed`\n");
-    for structure in [&MATERIAL, &LIGHT, &PIXEL] {
+    for structure in [&MATERIAL, &LIGHT] {
+        table(&mut text, structure);
+    }
+    line(&mut text, FAR);
+    for structure in [&FAR_LIGHT, &PIXEL] {
         table(&mut text, structure);
     }
     // One line end at the end of the file.
@@ -65,6 +69,12 @@ Structures follow each other without gaps too, in this order; each kind starts a
 
 ";
 
+const FAR: &str = "\
+A light is near if its way to every point of the scene's box is within 2^(w-1) - 8 steps of the grid along each axis. Where one bit less for
+positions does not make all lights of a scene near, all have the longer structure, and the far ones have steps of their own, the finest powers of two in
+which the way fits. So lights take at most one bit from the mesh, and lose none themselves, however far away they stand.
+";
+
 const FORMATS: &str = "
 Kernels know field offsets by name: the assembler's `.struct` definitions come from the same tables. How many fraction
 bits a number has is not part of the layout but chosen for each scene and word length (`lancer scene info` prints it),
@@ -72,7 +82,7 @@ or set with `--format`:
 
 | format | what has it | default in a word of `w` bits |
 | --- | --- | --- |
-| position | coordinates, relative to the middle of the scene's box | the finest power of two with the triangles within 2^(w-2), and the way to each light within 2^(w-1) |
+| position | coordinates, relative to the middle of the scene's box | the finest power of two with the triangles within 2^(w-2), or one bit less where that brings the way to each light within 2^(w-1) |
 | weight | material coefficients and colours, 0 to 1 | w - 2 |
 | colour | light colours and pixels | the most that hold the brightest sum, at most w - 3 |
 | index | indices of refraction | w - 4 |

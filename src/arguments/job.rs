@@ -52,15 +52,12 @@ impl JobArguments {
         let settings = Settings {
             scene: SceneSettings { name: scene.clone(), mesh: mesh.as_deref().map(shown), hash: None },
             view: ViewSettings {
-                camera: view.camera,
-                eye: view.eye,
-                look: view.look,
-                fov: view.fov,
                 size: view.size.map(Into::into),
                 shift: view.shift,
                 crop: crop.or(pixel),
                 ambient: view.ambient,
                 background: view.background,
+                ..view.camera.settings()
             },
             kernels: KernelSettings {
                 profile: kernels.profile,

@@ -21,4 +21,4 @@ pub use machine::{MachineArguments, MachineKeyArguments, SetArguments, SettingsA
 pub use numbers::{ArithmeticArguments, NumberArguments};
 pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, positive, rectangle, setting, size, ungrouped, whole};
-pub use view::ViewArguments;
+pub use view::{CameraArguments, ViewArguments};

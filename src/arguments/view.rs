@@ -3,12 +3,11 @@
 use clap::Args;
 
 use super::value::{self, Rectangle, Size};
-use crate::settings::CameraKind;
+use crate::settings::{CameraKind, ViewSettings};
 
-/// Options of the view.
-#[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "View")]
-pub struct ViewArguments {
+/// Options of the camera.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct CameraArguments {
     /// Camera [default: orthographic, or perspective when --eye, --look or --fov is given].
     #[arg(long, value_enum, value_name = "KIND", hide_possible_values = false)]
     pub camera: Option<CameraKind>,
@@ -21,6 +20,15 @@ pub struct ViewArguments {
     /// Vertical field of view, in degrees [default: 45].
     #[arg(long, value_name = "DEGREES", value_parser = field, allow_hyphen_values = true)]
     pub fov: Option<f64>,
+}
+
+/// Options of the view.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "View")]
+pub struct ViewArguments {
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub camera: CameraArguments,
     /// Size of the picture, in pixels [default: the size in the .dsc, else 320x240].
     #[arg(long, value_name = "WxH", value_parser = value::size)]
     pub size: Option<Size>,
@@ -39,6 +47,14 @@ pub struct ViewArguments {
     /// Colour where a ray hits nothing, components of 0 to 1.
     #[arg(long, value_name = "R,G,B", value_parser = colour, allow_hyphen_values = true, default_value = "0,0,0")]
     pub background: [f64; 3],
+}
+
+impl CameraArguments {
+    /// Settings of the view with this camera, and nothing else that the user chose.
+    pub fn settings(self) -> ViewSettings {
+        let CameraArguments { camera, eye, look, fov } = self;
+        ViewSettings { camera, eye, look, fov, ..ViewSettings::default() }
+    }
 }
 
 fn field(text: &str) -> Result<f64, String> {

@@ -263,7 +263,10 @@ fn crop(view: &ViewSettings, (width, height): (u32, u32)) -> Result<Option<Crop>
 
 impl ViewSettings {
     /// The camera; settings that only a perspective one has imply it.
-    fn camera(&self) -> Result<Camera, Failure> {
+    ///
+    /// # Errors
+    /// Settings of a perspective camera beside an orthographic one.
+    pub fn camera(&self) -> Result<Camera, Failure> {
         let given = [("--eye", self.eye.is_some()), ("--look", self.look.is_some()), ("--fov", self.fov.is_some())];
         let first = given.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name);
         match (self.camera, first) {

@@ -56,6 +56,12 @@ fn facts_of_a_scene_have_their_types() {
     assert_eq!(report["tree"]["depth"], 3);
     let text = session.succeed("scene info cornell");
     assert!(text.contains("676 triangles") && text.contains("kd tree: 1,385 nodes"), "{text}");
+    // The formats are those of a picture with the same camera, whatever the word.
+    for options in ["--word 20", "--word 32 --camera perspective", "--word 24 --eye 900,3,-20 --look 0,0,0 --fov 1"] {
+        let info = session.json(&format!("scene info cornell --size 4x3 {options}"));
+        let picture = session.json(&format!("render cornell --size 4x3 --no-error {options}"));
+        assert_eq!(info["formats"], picture["formats"], "{options}");
+    }
     assert!(session.json("scene info empty")["bounds"].is_null());
 }
 

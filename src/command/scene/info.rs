@@ -8,8 +8,9 @@ use kernels::KernelSet;
 use scenes::image::MemoryOptions;
 use scenes::info::{SceneInfo, StructureInfo};
 use scenes::layout::Layout;
+use scenes::model::View;
 
-use crate::arguments::{SettingsArguments, TreeArguments, overrides};
+use crate::arguments::{self, CameraArguments, SettingsArguments, Size, TreeArguments, overrides};
 use crate::command::invocation::{CommandSettings, scene_hashes};
 use crate::failure::{Exit, Failure};
 use crate::numeral::{count, grouped};
@@ -22,6 +23,7 @@ const EXAMPLES: &str = "\
 Examples:
   lancer scene info cornell
   lancer scene info house.dsc --layout report
+  lancer scene info cornell --camera perspective --fov 60
   lancer scene info bunny.off --word 16 --json";
 
 /// Most materials that are listed one by one.
@@ -39,6 +41,11 @@ pub struct InfoArguments {
     /// Structures of global memory.
     #[arg(long, value_name = "NAME", value_parser = layout(), default_value = Layout::Wide.name())]
     layout: Layout,
+    #[command(flatten)]
+    camera: CameraArguments,
+    /// Size of the picture, in pixels [default: the size in the .dsc, else 320x240].
+    #[arg(long, value_name = "WxH", value_parser = arguments::size)]
+    size: Option<Size>,
     #[command(flatten)]
     tree: TreeArguments,
     /// Bits of a word, 8 to 32.
@@ -65,7 +72,7 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), None)?;
+    let loaded = input::scene(&arguments.scene, arguments.mesh.as_deref(), arguments.size)?;
     terminal.show(&loaded.warnings);
     let kernels = KernelSet::of_layout(arguments.layout);
     let options = MemoryOptions {
@@ -75,7 +82,9 @@ pub(super) fn execute(
         kd_method: arguments.tree.kd_build.unwrap_or(kernels.kd_method()),
         formats: overrides::collect(&arguments.formats),
     };
-    let facts = SceneInfo::new(&loaded.scene, &options)?;
+    let size = arguments.size.unwrap_or(loaded.scene.size);
+    let view = View { camera: arguments.camera.settings().camera()?, ..View::new(size) };
+    let facts = SceneInfo::new(&loaded.scene, &view, &options)?;
     let hashes = scene_hashes(std::slice::from_ref(&arguments.scene), std::slice::from_ref(&loaded.scene));
     match arguments.json {
         true => terminal.print(&result::json(&WithSettings::new(&facts, given.clone().with_scenes(&hashes))))?,

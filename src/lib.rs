@@ -39,6 +39,7 @@ pub mod registers;
 #[cfg(feature = "cli")]
 pub mod report;
 pub mod result;
+pub mod servers;
 pub mod settings;
 pub mod shadow;
 pub mod skips;

@@ -29,6 +29,7 @@ mod run_arguments;
 mod run_result;
 mod scene;
 mod schema;
+mod servers;
 mod skips;
 mod stress;
 mod sweep;
@@ -86,6 +87,7 @@ enum Command {
     Skips(Box<skips::SkipsArguments>),
     Machine(machine::PresetArguments),
     Cores(Box<cores::CoresArguments>),
+    Servers(Box<servers::ServersArguments>),
     Sweep(sweep::SweepArguments),
     Advise(Box<advise::AdviseArguments>),
     Trace(Box<trace::TraceArguments>),
@@ -181,6 +183,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Skips(arguments)) => skips::execute(arguments, terminal),
         Some(Command::Machine(arguments)) => machine::execute(arguments, given, terminal),
         Some(Command::Cores(arguments)) => cores::execute(arguments, terminal),
+        Some(Command::Servers(arguments)) => servers::execute(arguments, given, terminal),
         Some(Command::Sweep(arguments)) => sweep::execute(arguments, terminal),
         Some(Command::Advise(arguments)) => advise::execute(arguments, terminal),
         Some(Command::Trace(arguments)) => trace::execute(arguments, terminal),

@@ -32,6 +32,7 @@ use crate::message::{self, JsonMessage};
 use crate::pixel::{self, PixelExplanation};
 use crate::profiles::{self, Profiles};
 use crate::result::{self, Render, WithSettings};
+use crate::servers::{self, ServersResult};
 use crate::settings::Settings;
 use crate::skips::{self, SkipsResult};
 use crate::terminal::Terminal;
@@ -66,6 +67,7 @@ const SCHEMAS: &[Known] = &[
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: printed::<RunResult, CommandSettings> },
     Known { name: instruction::SCHEMA, command: "lancer run --trace FILE.jsonl", make: schema_of::<TracedInstruction> },
     Known { name: cores::SCHEMA, command: "lancer cores --json", make: printed::<CoresResult, CoresSettings> },
+    Known { name: servers::SCHEMA, command: "lancer servers --json", make: printed::<ServersResult, CommandSettings> },
     Known { name: advise::SCHEMA, command: "lancer advise --json", make: printed::<AdviceResult, Settings> },
     Known { name: profiles::SCHEMA, command: "lancer profiles --json", make: printed::<Profiles, CommandSettings> },
     Known { name: skips::SCHEMA, command: "lancer skips --json", make: printed::<SkipsResult, Settings> },

@@ -22,6 +22,7 @@ mod render;
 mod report;
 mod scene;
 mod schema;
+mod servers;
 pub mod session;
 mod settings;
 mod shadow;

@@ -22,6 +22,7 @@ const RESULTS: &[(&str, &str)] = &[
     ("trace triangle --size 4x4 --pixel 2,2 --instructions - --window steps=0", "lancer-instruction-1"),
     ("cores annex --cores 4", "lancer-cores-1"),
     ("cores triangle --size 4x4 --cores 1,2 --machine node_cache", "lancer-cores-1"),
+    ("servers triangle --size 4x4 --servers 2", "lancer-servers-1"),
     ("advise triangle --size 4x4", "lancer-advise-1"),
     ("profiles triangle --size 4x4", "lancer-profiles-1"),
     ("skips triangle --size 4x4", "lancer-skips-1"),

@@ -2,8 +2,14 @@
 //! driver, and on scenes. Nothing here prints.
 
 pub mod figures;
+pub mod parts;
+pub mod paths;
+pub mod rates;
 pub mod result;
 pub mod scene;
+pub mod storage;
+#[cfg(feature = "cli")]
+mod tables;
 #[cfg(feature = "cli")]
 pub mod text;
 
@@ -12,11 +18,15 @@ use emu::machine::one_core::{self, OneCore};
 use emu::octets::Memory;
 use emu::profile::{Profile, ProfileLevel, RegionProfile};
 use isa::{Class, Counts, Isa, Program};
+use kernels::Function;
 use kernels::annex::{Row, rows};
 use messages::{Diagnostic, Report};
 
 use crate::failure::Failure;
+use parts::CountedPart;
+use paths::PathRange;
 use result::Try;
+use storage::Storage;
 
 /// A row with what its region's calls took under its assumptions.
 #[derive(Clone, Debug)]
@@ -31,8 +41,43 @@ pub struct Measurement {
     pub least: Counts,
     /// Most of each class in a call.
     pub most: Counts,
+    /// Sum over all calls.
+    pub inclusive: Counts,
+    /// Searches for a hit in the driver's run.
+    pub searches: u64,
     /// Tries of the row's search; the last one met the row's assumption.
     pub tried: Vec<Try>,
+}
+
+/// Lines of the rows, ways down the tree and structures in memory, beside the counts of the rows.
+#[derive(Clone, Debug)]
+pub struct AnnexDetail {
+    /// Lines of each row, in the order of the rows.
+    pub parts: Vec<Vec<CountedPart>>,
+    /// Other ways of each row, in the order of the rows; `None` for a row without.
+    pub paths: Vec<Option<PathRange>>,
+    /// Structures in memory.
+    pub storage: Storage,
+}
+
+impl AnnexDetail {
+    /// Counts and measures all of it.
+    ///
+    /// # Errors
+    /// As [`measure`].
+    pub fn new(measured: &[Measurement]) -> Result<AnnexDetail, Failure> {
+        let isa = Isa::base();
+        let parts = measured.iter().map(|Measurement { row, program, tried, .. }| {
+            let number = tried.last().map_or(1, |last| last.number);
+            parts::count(row, program, row.program(number, &isa)?.1, &isa)
+        });
+        let paths = measured.iter().map(|measurement| paths::range(measurement.row, &isa));
+        Ok(AnnexDetail {
+            parts: parts.collect::<Result<_, Failure>>()?,
+            paths: paths.collect::<Result<_, Failure>>()?,
+            storage: Storage::measure()?,
+        })
+    }
 }
 
 impl Measurement {
@@ -71,24 +116,28 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
         // Run the driver with this number, and look at its regions.
         let (program, memory) = row.program(number, isa)?;
         let regions = run(&program, memory, isa)?.regions;
-        let find = |name: &str| {
-            let missing = || Report::from(Diagnostic::error(format!("the row `{}` has no region `{name}`", row.id)));
-            regions.iter().find(|region| region.name == name).ok_or_else(missing)
-        };
         let calls = match &row.search {
-            Some(search) => find(&search.region)?.calls,
+            Some(search) => region(row, &regions, &search.region)?.calls,
             None => 0,
         };
         // A row without a search is met by its first run.
         tried.push(Try { number, calls });
         if row.search.as_ref().is_none_or(|search| search.calls == calls) {
-            let RegionProfile { calls, extremes, .. } = *find(&row.region)?;
+            let RegionProfile { calls, extremes, inclusive, .. } = *region(row, &regions, &row.region)?;
             let (least, most) = extremes.map_or((Counts::ZERO, Counts::ZERO), |found| (found.least, found.most));
-            return Ok(Measurement { row, calls, least, most, program, tried });
+            let searches =
+                regions.iter().find(|region| region.name == Function::Trace.name()).map_or(0, |trace| trace.calls);
+            return Ok(Measurement { row, calls, least, most, inclusive, searches, program, tried });
         }
     }
     let message = format!("the driver of the row `{}` does not meet its assumption with any number: {tried:?}", row.id);
     Err(Diagnostic::error(message).into())
+}
+
+/// A region of a driver's run by its name.
+fn region<'r>(row: &Row, regions: &'r [RegionProfile], name: &str) -> Result<&'r RegionProfile, Failure> {
+    let missing = || Report::from(Diagnostic::error(format!("the row `{}` has no region `{name}`", row.id)));
+    Ok(regions.iter().find(|region| region.name == name).ok_or_else(missing)?)
 }
 
 /// Runs a driver.
@@ -104,6 +153,8 @@ fn run(program: &Program, memory: Vec<u8>, isa: &Isa) -> Result<Profile, Failure
 
 #[cfg(test)]
 mod tests {
+    use kernels::annex::PartKind;
+
     use super::*;
 
     #[test]
@@ -115,6 +166,43 @@ mod tests {
         assert_eq!(sums, [("rt.sqrt", 292), ("rt.triangle", 61), ("rt.packet", 2561)]);
         #[cfg(feature = "cli")]
         assert_eq!(text::demo(&measured).matches("equal").count(), 3);
+    }
+
+    /// Lines add up to the rows: the stepper that tells lines apart and the profile that counts rows have nothing in common.
+    #[test]
+    fn lines_add_up_to_the_rows() {
+        let measured = measure().unwrap();
+        let detail = AnnexDetail::new(&measured).unwrap();
+        for (measurement, parts) in measured.iter().zip(&detail.parts) {
+            let elementary = parts.iter().filter(|part| part.kind != PartKind::Class(Class::Mem));
+            let sum: u64 = elementary.map(|part| part.operations).sum();
+            assert_eq!(sum, measurement.most.elementary(), "{}: {parts:?}", measurement.row.id);
+            for part in parts {
+                let each = match &part.kind {
+                    PartKind::Vector(operation) => operation.operations(),
+                    PartKind::Class(_) => 1,
+                    PartKind::Row(_) => continue,
+                };
+                assert_eq!(part.times * each, part.operations, "{}: {part:?}", measurement.row.id);
+            }
+        }
+    }
+
+    /// A walk reads the root and at each level the left child, whose face divides the node; to go to the right it reads that one too.
+    #[test]
+    fn each_step_to_the_right_is_a_read_more() {
+        let measured = measure().unwrap();
+        let detail = AnnexDetail::new(&measured).unwrap();
+        let reads: Vec<_> = measured
+            .iter()
+            .zip(&detail.paths)
+            .filter_map(|(measurement, range)| {
+                let range = range.as_ref()?;
+                assert_eq!(range.least, measurement.most, "{}: it is counted on the cheapest way", measurement.row.id);
+                Some((range.least[Class::Mem], range.mean_of(Class::Mem), range.most[Class::Mem]))
+            })
+            .collect();
+        assert_eq!(reads, [(17, 25.0, 33); 3]);
     }
 
     #[test]

@@ -2,14 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use isa::Class;
-use kernels::annex::{self as printed, Peer, Term};
+use isa::{Class, Counts};
+use kernels::annex::{self as printed, PartKind, Peer, Term};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::figures::{Pixel, derive};
+use super::parts::CountedPart;
+use super::paths::PathRange;
+use super::rates::{CoreRate, core_rates};
 use super::scene::OnScene;
-use super::{Measurement, figures};
+use super::storage::Storage;
+use super::{AnnexDetail, Measurement, figures};
 
 /// Version of [`Annexes`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-annex-1";
@@ -25,6 +29,8 @@ pub struct Annexes {
     pub schema: &'static str,
     /// The rows.
     pub rows: Vec<RowResult>,
+    /// Structures in memory.
+    pub storage: Storage,
     /// Figures that the report derives from them.
     pub derived: Derivation,
     /// Errata of the printed figures.
@@ -59,6 +65,10 @@ pub struct RowResult {
     pub region: &'static str,
     /// The driver that sets the assumptions.
     pub driver: String,
+    /// The path that the driver makes the region go.
+    pub path: &'static str,
+    /// Other paths of the same walk; null where there are none that take more.
+    pub paths: Option<PathResult>,
     /// The constant of the driver that was searched for what the row assumes; null where nothing was.
     pub search: Option<SearchResult>,
     /// As printed, by class.
@@ -69,12 +79,50 @@ pub struct RowResult {
     pub assumed: ByName<u64>,
     /// Sum of the elementary operations counted.
     pub assumed_total: u64,
+    /// Work that the annexes do not count, by class: moves and constants, logic and shifts, jumps, the local buffer, addresses. Mean of a call.
+    pub free: ByName<f64>,
+    /// Lines of the row: those that are printed, in their order, then those that are counted alone.
+    pub parts: Vec<PartResult>,
     /// On scenes.
     pub scenes: Vec<SceneRow>,
     /// Counted less printed, by class.
     pub difference: ByName<i64>,
     /// Sources of the difference.
     pub terms: Vec<TermResult>,
+}
+
+/// A line of a row.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct PartResult {
+    /// A class, `vector_add`, `vector_sub`, `dot` or `scale` for an operation on vectors, or the name of a row that is called.
+    pub kind: String,
+    /// Label as printed.
+    pub label: String,
+    /// Operations of one, as printed; null where the line is not printed.
+    pub printed_each: Option<u64>,
+    /// Number of them, as printed.
+    pub printed_times: u64,
+    /// Operations of all of them, as printed.
+    pub printed_total: u64,
+    /// Number of them that was counted.
+    pub counted_times: u64,
+    /// Operations of all of them, counted.
+    pub counted_total: u64,
+}
+
+/// Ways down the tree, each as likely as another.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct PathResult {
+    /// Constant of the driver that chooses the way: levels at which the walk goes to the right.
+    pub constant: &'static str,
+    /// The most of these levels.
+    pub levels: u32,
+    /// Least of a way, by class.
+    pub least: ByName<u64>,
+    /// Mean of all ways, by class.
+    pub mean: ByName<f64>,
+    /// Most of a way, by class.
+    pub most: ByName<u64>,
 }
 
 /// A constant that was searched.
@@ -110,6 +158,8 @@ pub struct SceneRow {
     pub least: u64,
     /// Most elementary operations of a call.
     pub most: u64,
+    /// Work that the annexes do not count, by class. Mean of a call.
+    pub free: ByName<f64>,
 }
 
 /// A part of a difference, of one class.
@@ -134,6 +184,8 @@ pub struct Derivation {
     pub scenes: Vec<SceneFigures>,
     /// Table 3.
     pub table_3: Vec<Peer>,
+    /// Rays a second and memory of one core, of other machines and ours.
+    pub cores: Vec<CoreRate>,
 }
 
 /// A figure.
@@ -177,16 +229,61 @@ fn by_name<N>(measurement: &Measurement, value: impl Fn(Class) -> N) -> ByName<N
     measurement.row.classes().map(|class| (class.name(), value(class))).collect()
 }
 
+/// Classes that the annexes do not count: what kernels do beside their operations.
+const FREE: [Class; 5] = [Class::Move, Class::Logic, Class::Jump, Class::Local, Class::Address];
+
+/// Work that the annexes do not count, a call.
+fn free(inclusive: &Counts, calls: u64) -> ByName<f64> {
+    FREE.iter().map(|&class| (class.name(), inclusive[class] as f64 / calls.max(1) as f64)).collect()
+}
+
 impl Annexes {
     /// The results of measurements.
-    pub fn new(measured: &[Measurement], scenes: &[OnScene]) -> Annexes {
-        let rows = measured.iter().enumerate().map(|(number, measurement)| RowResult::new(measurement, number, scenes));
+    pub fn new(measured: &[Measurement], detail: &AnnexDetail, scenes: &[OnScene]) -> Annexes {
+        let rows = (0..).zip(measured).zip(detail.parts.iter().zip(&detail.paths));
+        let rows = rows.map(|((number, measurement), (parts, paths))| RowResult {
+            parts: part_results(measurement.row, parts),
+            paths: paths.as_ref().and_then(|range| PathResult::new(measurement, range)),
+            ..RowResult::new(measurement, number, scenes)
+        });
         Annexes {
             schema: SCHEMA,
             rows: rows.collect(),
+            storage: detail.storage.clone(),
             derived: Derivation::new(measured, scenes),
             errata: printed::errata().iter().map(Erratum::new).collect(),
         }
+    }
+}
+
+/// Printed and counted lines of a row, those of one kind together.
+fn part_results(row: &printed::Row, counted: &[CountedPart]) -> Vec<PartResult> {
+    let of = |kind: &PartKind| counted.iter().find(|part| part.kind == *kind);
+    let line = |kind: &PartKind, printed: Option<&printed::PrintedPart>| PartResult {
+        kind: kind.name().to_owned(),
+        label: kind.label().to_owned(),
+        printed_each: printed.map(|part| part.each),
+        printed_times: printed.map_or(0, |part| part.times),
+        printed_total: printed.map_or(0, |part| part.each * part.times),
+        counted_times: of(kind).map_or(0, |part| part.times),
+        counted_total: of(kind).map_or(0, |part| part.operations),
+    };
+    let printed = row.parts.iter().map(|part| line(&part.kind, Some(part)));
+    let is_printed = |part: &&CountedPart| row.parts.iter().any(|printed| printed.kind == part.kind);
+    let others = counted.iter().filter(|part| !is_printed(part)).map(|part| line(&part.kind, None));
+    printed.chain(others).collect()
+}
+
+impl PathResult {
+    fn new(measurement: &Measurement, range: &PathRange) -> Option<PathResult> {
+        let spread = measurement.row.spread.as_ref()?;
+        Some(PathResult {
+            constant: &spread.constant,
+            levels: spread.most,
+            least: by_name(measurement, |class| range.least[class]),
+            mean: by_name(measurement, |class| range.mean_of(class)),
+            most: by_name(measurement, |class| range.most[class]),
+        })
     }
 }
 
@@ -211,6 +308,7 @@ impl RowResult {
                 mean: by_name(measurement, mean),
                 least: extremes.least_elementary,
                 most: extremes.most_elementary,
+                free: free(&region.inclusive, region.calls),
             })
         };
         let search = row.search.as_ref().map(|search| SearchResult {
@@ -225,6 +323,10 @@ impl RowResult {
             source: &row.source,
             region: &row.region,
             driver: format!("kernels/asm/annex/{}.s", row.driver),
+            path: &row.path,
+            paths: None,
+            free: free(&measurement.inclusive, measurement.calls),
+            parts: Vec::new(),
             printed: by_name(measurement, |class| row.printed[class]),
             printed_total: row.printed.elementary(),
             assumed: by_name(measurement, |class| most[class]),
@@ -247,7 +349,9 @@ fn term(term: &Term) -> impl Iterator<Item = TermResult> {
 
 impl Derivation {
     fn new(measured: &[Measurement], scenes: &[OnScene]) -> Derivation {
-        let figures = derive(measured).into_iter().map(|figures::Derived { figure, counted }| {
+        let derived = derive(measured);
+        let cores = core_rates(measured, &derived, scenes);
+        let figures = derived.into_iter().map(|figures::Derived { figure, counted }| {
             let result = FigureResult {
                 label: &figure.label,
                 source: &figure.source,
@@ -269,7 +373,7 @@ impl Derivation {
             pixel_us,
         });
         let others = printed::peers().iter().cloned();
-        Derivation { figures: figures.collect(), table_3: others.chain(ours).collect(), scenes: scene_figures }
+        Derivation { figures: figures.collect(), table_3: others.chain(ours).collect(), scenes: scene_figures, cores }
     }
 }
 

@@ -6,6 +6,7 @@ use kernels::annex::rows;
 
 use crate::drawing::Drawing;
 use crate::job::{Detail, Job, result_name};
+use crate::result::Render;
 use scenes::model::Scene;
 
 /// The rows' regions on a scene, and what a pixel took.
@@ -23,6 +24,14 @@ pub struct OnScene {
     pub octets: u64,
     /// Clocks of the frame.
     pub clocks: u64,
+    /// Clocks of the machine a second.
+    pub clock_hz: u64,
+    /// Cores of the machine.
+    pub cores: u32,
+    /// Rays of all kinds.
+    pub rays: u64,
+    /// Octets of the local buffer that the cores' program uses.
+    pub buffer_octets: u64,
     /// Triangles, nodes of the kd tree and references.
     pub stored: [u64; 3],
 }
@@ -37,6 +46,11 @@ pub fn job(scene: Scene, size: (u32, u32)) -> Job {
 }
 
 impl OnScene {
+    /// Seconds of the frame.
+    pub fn seconds(&self) -> f64 {
+        self.clocks as f64 / self.clock_hz as f64
+    }
+
     /// Figures from a drawing of such a job.
     pub fn new(job: &Job, drawing: &Drawing) -> OnScene {
         let frame = &drawing.frame;
@@ -53,6 +67,10 @@ impl OnScene {
             operations: frame.profile.as_ref().map(Profile::total).unwrap_or_default().elementary(),
             octets: frame.processors.iter().take(job.machine.cores as usize).map(|core| core.octets.0).sum(),
             clocks: frame.clocks.0,
+            clock_hz: job.machine.clock_hz,
+            cores: job.machine.cores,
+            rays: Render::new(job, drawing).rays.all(),
+            buffer_octets: drawing.build.cores.buffer.len() as u64,
             stored: [drawing.image.counts.triangles.into(), tree.nodes as u64, tree.references as u64],
         }
     }

@@ -1,15 +1,18 @@
 //! The annexes as tables for people, in text or in Markdown, and as CSV. All of it is in the JSON too.
 
+use std::collections::BTreeMap;
+
 use isa::{Class, Counts};
 use kernels::annex as printed;
 
 use super::Measurement;
 use super::result::{Annexes, RowResult, SearchResult, Try};
+use super::tables;
 use crate::numeral::grouped;
 use crate::table::{row, table};
 
 /// The classes that the annexes print, in the order of Annex II and then Annex I.
-const COLUMNS: [&str; 6] = ["add", "sub", "mul", "div", "cmp", "mem"];
+pub(super) const COLUMNS: [&str; 6] = ["add", "sub", "mul", "div", "cmp", "mem"];
 
 /// The elementary ones.
 const ELEMENTARY: [Class; 5] = [Class::Add, Class::Sub, Class::Mul, Class::Div, Class::Cmp];
@@ -24,7 +27,7 @@ pub enum Style {
 }
 
 impl Style {
-    fn table(self, rows: Vec<Vec<String>>) -> String {
+    pub(super) fn table(self, rows: Vec<Vec<String>>) -> String {
         match self {
             Style::Text => table(rows),
             Style::Markdown => {
@@ -36,7 +39,7 @@ impl Style {
         }
     }
 
-    fn heading(self, text: &str) -> String {
+    pub(super) fn heading(self, text: &str) -> String {
         match self {
             Style::Text => format!("{text}\n"),
             Style::Markdown => format!("### {text}\n\n"),
@@ -69,12 +72,21 @@ pub fn demo(measurements: &[Measurement]) -> String {
 
 /// Everything but the errata.
 pub fn annexes(annexes: &Annexes, style: Style) -> String {
-    let parts = [rows(annexes, style), terms(annexes, style), figures(annexes, style), peers(annexes, style)];
+    let parts = [
+        rows(annexes, style),
+        terms(annexes, style),
+        tables::paths(annexes, style),
+        tables::parts(annexes, style),
+        tables::storage(annexes, style),
+        figures(annexes, style),
+        peers(annexes, style),
+        tables::cores(annexes, style),
+    ];
     parts.join("\n")
 }
 
 /// A number with a sign.
-fn signed(number: i64) -> String {
+pub(super) fn signed(number: i64) -> String {
     match number {
         0 => "0".to_owned(),
         _ => format!("{}{}", if number < 0 { "-" } else { "+" }, grouped(number.unsigned_abs())),
@@ -82,7 +94,7 @@ fn signed(number: i64) -> String {
 }
 
 /// A number with as many decimals as its size asks for.
-fn decimal(number: f64) -> String {
+pub(super) fn decimal(number: f64) -> String {
     match number.abs() {
         size if size >= 1000.0 => grouped(number.round() as u64),
         size if size >= 100.0 => format!("{number:.1}"),
@@ -92,34 +104,40 @@ fn decimal(number: f64) -> String {
 }
 
 fn rows(annexes: &Annexes, style: Style) -> String {
-    let head = ["row", "", "calls"].into_iter().chain(COLUMNS).chain(["sum", "least", "most"]);
+    let head = ["row", "", "calls"].into_iter().chain(COLUMNS).chain(["sum", "least", "most", "free"]);
     let mut cells: Vec<Vec<String>> = vec![head.map(str::to_owned).collect()];
     for result in &annexes.rows {
         let numbers = |of: &dyn Fn(&str) -> Option<String>| {
             COLUMNS.map(|class| of(class).unwrap_or_default()).into_iter().collect::<Vec<_>>()
         };
-        let mut add = |name: &str, what: &str, calls: String, classes: Vec<String>, rest: [String; 3]| {
+        let mut add = |name: &str, what: &str, calls: String, classes: Vec<String>, rest: [String; 4]| {
             let start = [name.to_owned(), what.to_owned(), calls];
             cells.push(start.into_iter().chain(classes).chain(rest).collect());
         };
         let none = String::new;
-        let whole = |of: &std::collections::BTreeMap<&'static str, u64>| {
-            numbers(&|class| of.get(class).map(|&count| grouped(count)))
-        };
-        add(result.id, "printed", none(), whole(&result.printed), [grouped(result.printed_total), none(), none()]);
-        add("", "counted", none(), whole(&result.assumed), [grouped(result.assumed_total), none(), none()]);
+        let whole = |of: &BTreeMap<&'static str, u64>| numbers(&|class| of.get(class).map(|&count| grouped(count)));
+        let free = |by_class: &BTreeMap<&'static str, f64>| decimal(by_class.values().sum());
+        add(
+            result.id,
+            "printed",
+            none(),
+            whole(&result.printed),
+            [grouped(result.printed_total), none(), none(), none()],
+        );
+        let rest = [grouped(result.assumed_total), none(), none(), free(&result.free)];
+        add("", "counted", none(), whole(&result.assumed), rest);
         let difference = result.assumed_total as i64 - result.printed_total as i64;
         let by_class = numbers(&|class| result.difference.get(class).map(|&n| signed(n)));
-        add("", "difference", none(), by_class, [signed(difference), none(), none()]);
+        add("", "difference", none(), by_class, [signed(difference), none(), none(), none()]);
         for scene in &result.scenes {
             let mean = numbers(&|class| scene.mean.get(class).map(|&mean| decimal(mean)));
             let sum = ELEMENTARY.iter().filter_map(|class| scene.mean.get(class.name())).sum();
-            let rest = [decimal(sum), grouped(scene.least), grouped(scene.most)];
+            let rest = [decimal(sum), grouped(scene.least), grouped(scene.most), free(&scene.free)];
             add("", &scene.scene, grouped(scene.calls), mean, rest);
         }
     }
     let searches: String = annexes.rows.iter().filter_map(search).collect();
-    style.heading("Operations of a call: printed, counted under the same assumptions, and the mean on scenes")
+    style.heading("Operations of a call: printed, counted under the same assumptions, and the mean on scenes; free is work that no annex counts")
         + &style.table(cells)
         + &searches
 }
@@ -224,7 +242,7 @@ pub fn csv(annexes: &Annexes) -> String {
         let line = |what: &str, calls: String, numbers: [String; 6], rest: [String; 3]| {
             format!("{},{what},{calls},{},{}\n", result.id, numbers.join(","), rest.join(","))
         };
-        let whole = |of: &std::collections::BTreeMap<&'static str, u64>| {
+        let whole = |of: &BTreeMap<&'static str, u64>| {
             COLUMNS.map(|class| of.get(class).map(u64::to_string).unwrap_or_default())
         };
         let sums = |sum: String| [sum, String::new(), String::new()];

@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::invocation::{CommandSettings, scene_hashes};
 use super::render;
+use crate::annex::AnnexDetail;
 use crate::annex::result::Annexes;
 use crate::annex::scene::{OnScene, job};
 use crate::annex::text::{self, Style};
@@ -72,7 +73,7 @@ pub(super) fn execute(
         let drawing = render::draw(&job, Comparison::None, terminal)?;
         scenes.push(OnScene::new(&job, &drawing));
     }
-    let annexes = Annexes::new(&measured, &scenes);
+    let annexes = Annexes::new(&measured, &AnnexDetail::new(&measured)?, &scenes);
     let style = if arguments.markdown { Style::Markdown } else { Style::Text };
     match arguments {
         AnnexArguments { json: true, .. } => {

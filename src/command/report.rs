@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::render;
+use crate::annex::AnnexDetail;
 use crate::annex::result::Annexes;
 use crate::annex::scene::OnScene;
 use crate::arguments::JobArguments;
@@ -67,7 +68,10 @@ pub(super) fn execute(arguments: &ReportArguments, terminal: &mut Terminal) -> R
     };
     let annexes = match arguments.no_annex {
         true => None,
-        false => Some(Annexes::new(&annex::measure()?, &[OnScene::new(&job, &drawing)])),
+        false => {
+            let measured = annex::measure()?;
+            Some(Annexes::new(&measured, &AnnexDetail::new(&measured)?, &[OnScene::new(&job, &drawing)]))
+        }
     };
     let page = report::page(&job, &drawing, &result, advice.as_ref(), annexes.as_ref());
     files::write_all(&[(output.as_path(), page)])?;

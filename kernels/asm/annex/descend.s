@@ -1,4 +1,4 @@
-; Driver for the walk down the tree: 16 levels, to the left at each.
+; Driver for the walk down the tree: 16 levels, to the right at the first RIGHTS and then to the left.
 .entry driver
 .func driver
     .holds origin, pos
@@ -12,7 +12,5 @@
 .buffer
 START: .fixed pos, -0.25, 0.125, 0.5
 WAY:   .fixed dir, 0.28571428571, 0.42857142857, 0.85714285714
-PATH_NODE: .space node.x1
-       .half 9 * ONE / 10
-       .space sizeof(node) - node.x1 - 2
+PATH_NODE: .space sizeof(node)
 .text

@@ -1,4 +1,5 @@
-; Driver for the first packet: a camera ray from outside the scene's box, a tree of 16 levels.
+; Driver for the first packet: a camera ray from outside the scene's box, a tree of 16 levels, to the right at the
+; first RIGHTS and then to the left.
 .entry driver
 .func driver
     .holds origin, pos
@@ -12,7 +13,5 @@
 .buffer
 START: .fixed pos, -0.5, -0.25, 1.25
 WAY:   .fixed dir, 0.28571428571, 0.42857142857, -0.85714285714
-PATH_NODE: .space node.x1
-       .half 9 * ONE / 10
-       .space sizeof(node) - node.x1 - 2
+PATH_NODE: .space sizeof(node)
 .text

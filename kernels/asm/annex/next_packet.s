@@ -1,4 +1,5 @@
-; Driver for the next packet: the ray has hit nothing yet and does not leave the scene, a tree of 16 levels.
+; Driver for the next packet: the ray has hit nothing yet and does not leave the scene, a tree of 16 levels, to the right at the
+; first RIGHTS and then to the left.
 .entry driver
 .func driver
     .holds origin, pos
@@ -18,7 +19,5 @@ LOW:   .fixed pos, -0.5, -0.25, -0.75
 HIGH:  .fixed pos, 0.5, 0.75, 0.25
 START: .fixed pos, -0.125, 0.0625, -0.3125
 WAY:   .fixed dir, 0.28571428571, 0.42857142857, 0.85714285714
-PATH_NODE: .space node.x1
-       .half 9 * ONE / 10
-       .space sizeof(node) - node.x1 - 2
+PATH_NODE: .space sizeof(node)
 .text

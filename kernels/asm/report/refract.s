@@ -1,5 +1,5 @@
-; The refracted ray, T = eta (D + c N) - sqrt(k) N with eta = ni / nt, c = N . I and k = 1 - eta^2 (1 - c^2): as the third line of 4.2
-; has it, the last one corrected. k < 0 is total reflection: there is no ray.
+; The refracted ray, T = eta (D + c N) - sqrt(k) N with eta = ni / nt, c = N . I and k = 1 - eta^2 (1 - c^2): the third line of 4.2 with
+; the cosine sqrt(k) of the refracted ray, where the incident one's is printed. k < 0 is total reflection: there is no ray.
 ; In: the ray, its hit (near_t, near_slot) and inside. Out: s12 = k or, when k >= 0, something positive; then origin and direction.
 ; Returns by link_node. Scratch: what surface needs, v9.
 .func refract

@@ -6,6 +6,7 @@ use isa::{Class, Counts};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::part::{PartKind, PrintedPart};
 use super::{Row, Term, world};
 
 /// A figure that the report derives.
@@ -37,6 +38,50 @@ pub struct PixelSearch {
     pub region: String,
     /// Number of calls that the row assumes.
     pub calls: u64,
+}
+
+/// Range of a driver's constant, over which the path of its walk varies.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathSpread {
+    /// The constant: levels of the tree at which the walk goes to the right, the first ones. It is 0 where the row is counted.
+    pub constant: String,
+    /// Levels of the tree.
+    pub most: u32,
+}
+
+/// A structure of Annex I, as it is printed.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrintedStructure {
+    /// Name of the structure in the layouts.
+    pub structure: String,
+    /// The label as printed.
+    pub label: String,
+    /// Fields: the printed name, the printed bits, and the names in the layouts `report` and `wide`; empty where that does without.
+    pub fields: Vec<(String, u32, String, String)>,
+    /// Bits in all.
+    pub bits: u32,
+    /// Octets in all.
+    pub octets: u32,
+    /// Number of such structures.
+    pub count: u64,
+    /// Octets of all of them, in units of 2^20.
+    pub megabytes: f64,
+}
+
+/// A core of another machine (6.3).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PrintedCore {
+    /// The machine's name.
+    pub name: String,
+    /// Place in the report.
+    pub source: String,
+    /// Rays a second of one core, least and most.
+    pub rays_per_second: [f64; 2],
+    /// Octets of memory inside it.
+    pub memory_octets: u64,
 }
 
 /// Something odd in the printed figures.
@@ -77,6 +122,8 @@ struct AnnexFile {
     figure: Vec<Figure>,
     erratum: Vec<PrintedErratum>,
     peer: Vec<Peer>,
+    storage: Vec<PrintedStructure>,
+    core: Vec<PrintedCore>,
 }
 
 #[derive(Deserialize)]
@@ -88,7 +135,11 @@ struct RawRow {
     printed: BTreeMap<String, u64>,
     driver: String,
     region: String,
+    path: String,
     search: Option<PixelSearch>,
+    spread: Option<PathSpread>,
+    #[serde(default)]
+    parts: Vec<(String, u64, u64)>,
     #[serde(default)]
     term: Vec<RawTerm>,
 }
@@ -110,6 +161,8 @@ pub(super) struct Data {
     pub figures: Vec<Figure>,
     pub errata: Vec<PrintedErratum>,
     pub peers: Vec<Peer>,
+    pub structures: Vec<PrintedStructure>,
+    pub cores: Vec<PrintedCore>,
 }
 
 impl Data {
@@ -122,6 +175,8 @@ impl Data {
             figures: file.figure,
             errata: file.erratum,
             peers: file.peer,
+            structures: file.storage,
+            cores: file.core,
         }
     }
 }
@@ -137,8 +192,18 @@ fn row(mut raw: RawRow) -> Row {
     }
     // A term is looked up by the row's name in messages, so the terms are taken out before the row is.
     let terms = std::mem::take(&mut raw.term).into_iter().map(|term| self::term(&raw.id, term)).collect();
-    let RawRow { id, label, source, driver, region, search, .. } = raw;
-    Row { id, label, source, printed, driver, region, search, terms }
+    let RawRow { id, label, source, driver, region, path, search, spread, parts, .. } = raw;
+    let mut parts: Vec<PrintedPart> = parts.into_iter().map(|part| self::part(&id, part)).collect();
+    if parts.is_empty() {
+        let printed = printed.iter().filter(|(_, times)| *times != 0);
+        parts.extend(printed.map(|(class, times)| PrintedPart { kind: PartKind::Class(class), each: 1, times }));
+    }
+    Row { id, label, source, printed, parts, driver, region, path, search, spread, terms }
+}
+
+fn part(row: &str, (name, each, times): (String, u64, u64)) -> PrintedPart {
+    let kind = PartKind::named(&name).unwrap_or_else(|| panic!("annex.toml, {row}: `{name}` is no part of a row"));
+    PrintedPart { kind, each, times }
 }
 
 fn term(row: &str, raw: RawTerm) -> Term {

@@ -3,13 +3,15 @@
 
 mod data;
 pub mod load;
+mod part;
 mod world;
 
 use std::sync::LazyLock;
 
 use isa::{Class, Counts};
 
-pub use data::{Figure, Peer, PixelSearch, PrintedErratum};
+pub use data::{Figure, PathSpread, Peer, PixelSearch, PrintedCore, PrintedErratum, PrintedStructure};
+pub use part::{PartKind, PrintedPart, VectorOperation};
 pub use world::MEMORY;
 
 use data::Data;
@@ -25,12 +27,18 @@ pub struct Row {
     pub source: String,
     /// Operations as printed, those of called rows included.
     pub printed: Counts,
+    /// Lines as printed; of a row that is printed without them a line for each class.
+    pub parts: Vec<PrintedPart>,
     /// Name of the driver, a file of `kernels/asm/annex`.
     pub driver: String,
     /// The function or region of the kernels that is measured: its calls' inclusive counts.
     pub region: String,
+    /// The path that the driver makes the region go.
+    pub path: String,
     /// The search for the driver's assumptions, where they are not given.
     pub search: Option<PixelSearch>,
+    /// Other paths that its walk may go, where these take more.
+    pub spread: Option<PathSpread>,
     /// Differences of the kernels from what is printed; by class the terms sum to the difference.
     pub terms: Vec<Term>,
 }
@@ -80,6 +88,16 @@ pub fn figures() -> &'static [Figure] {
 /// A derived figure as it is printed, by its name; `None` where the report leaves it out.
 pub fn printed(figure: &str) -> Option<f64> {
     figures().iter().find(|other| other.id == figure)?.printed
+}
+
+/// Structures in memory, as Annex I prints them.
+pub fn structures() -> &'static [PrintedStructure] {
+    &DATA.structures
+}
+
+/// Cores of other machines.
+pub fn cores() -> &'static [PrintedCore] {
+    &DATA.cores
 }
 
 /// Oddities in the printed figures.

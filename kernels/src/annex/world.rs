@@ -84,6 +84,18 @@ impl Row {
     /// # Errors
     /// What the assembler finds; our own kernels have no errors.
     pub fn program(&self, number: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
+        self.program_of(number, 0, isa)
+    }
+
+    /// The program of a row with a spread whose walk goes to the right at so many levels, the first ones.
+    ///
+    /// # Errors
+    /// As [`Row::program`].
+    pub fn program_to_the_right(&self, levels: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
+        self.program_of(1, levels, isa)
+    }
+
+    fn program_of(&self, number: u32, rights: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
@@ -92,8 +104,10 @@ impl Row {
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
         // The prelude of a core with the whole scene, then the number that is tried: a driver knows it as a constant.
         let mut text = prelude::text(&image, &features, &crop, KernelSet::Report.walk(&[]), false);
-        if let Some(search) = &self.search {
-            text += &format!(".equ {}, {number}\n", search.constant);
+        let searched = self.search.as_ref().map(|search| (&search.constant, number));
+        let spread = self.spread.as_ref().map(|spread| (&spread.constant, rights));
+        for (constant, value) in searched.into_iter().chain(spread) {
+            text += &format!(".equ {constant}, {value}\n");
         }
         let mut files: Vec<Arc<Source>> = vec![Source::new("<assumptions>", text)];
         files.extend(prelude::included(Layout::Report));

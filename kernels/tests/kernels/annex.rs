@@ -245,3 +245,28 @@ fn the_pixel_has_22_nodes() {
     // Between surfaces without end there are 1 + 1 + 2 + 3 + 6 + 10 ways; one of them meets six.
     assert_eq!(nodes, [1, 6, 14, 20, 22, 23, 23, 23]);
 }
+
+/// Comparisons of the first packet, as the reason in annex.toml has them: of the six crossings two lie behind the ray, and beyond those that all take, the
+/// four ahead take 5, 5, 2 and 1.
+#[test]
+fn crossings_ahead_take_as_many_comparisons_as_the_reason_says() {
+    let isa = Isa::base();
+    let row = rows().iter().find(|row| row.id == "kd.first_packet").expect("there is such a row");
+    let (program, memory) = assembled(row, 1, &isa);
+    let mut crossings: Vec<u64> = Vec::new();
+    for step in traced(&program, &memory, &isa) {
+        let line = program.lines[step.pc as usize];
+        let source = &program.sources[line.source as usize];
+        let text = source.text.lines().nth(line.line as usize - 1).unwrap_or_default();
+        if source.name == "kernels/asm/scalar.inc" && text.contains("vmov  v6, zero_vector") {
+            crossings.push(0);
+        }
+        let is_of_crossing = source.name == "kernels/asm/report/first_packet.s" && text.contains("beside_");
+        if is_of_crossing && !text.contains("blez") {
+            *crossings.last_mut().expect("a crossing has begun") += step.cost[Class::Cmp];
+        }
+    }
+    assert_eq!(crossings.len(), 6, "{crossings:?}");
+    crossings.sort_unstable();
+    assert_eq!(crossings, [0, 0, 1, 2, 5, 5]);
+}

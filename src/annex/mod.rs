@@ -1,6 +1,9 @@
 //! The rows of the report's annexes, measured: the kernels of the `report` profile under the assumptions of each row's
 //! driver, and on scenes. Nothing here prints.
 
+pub mod as_printed;
+#[cfg(feature = "cli")]
+pub mod erratum_text;
 pub mod figures;
 pub mod parts;
 pub mod paths;
@@ -198,7 +201,8 @@ mod tests {
             .zip(&detail.paths)
             .filter_map(|(measurement, range)| {
                 let range = range.as_ref()?;
-                assert_eq!(range.least, measurement.most, "{}: it is counted on the cheapest way", measurement.row.id);
+                let is_cheapest = |class| range.least[class] == measurement.most[class];
+                assert!(measurement.row.classes().all(is_cheapest), "{}: not on the cheapest way", measurement.row.id);
                 Some((range.least[Class::Mem], range.mean_of(Class::Mem), range.most[Class::Mem]))
             })
             .collect();

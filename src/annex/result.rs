@@ -42,6 +42,8 @@ pub struct Annexes {
 pub struct Erratum {
     /// Name of the erratum.
     pub id: &'static str,
+    /// Name by which `lancer annex --as-printed` knows it.
+    pub name: String,
     /// Place in the report.
     pub source: &'static str,
     /// Printed text.
@@ -289,8 +291,8 @@ impl PathResult {
 
 impl Erratum {
     fn new(erratum: &'static printed::PrintedErratum) -> Erratum {
-        let printed::PrintedErratum { id, source, printed, correct, effect } = erratum;
-        Erratum { id, source, printed, correct, effect }
+        let printed::PrintedErratum { id, source, printed, correct, effect, .. } = erratum;
+        Erratum { id, name: erratum.name(), source, printed, correct, effect }
     }
 }
 
@@ -367,7 +369,8 @@ impl Derivation {
         let on_scenes = scene_figures.iter().map(|of| (of.scene.clone(), of.pixel_ms * 1e3));
         let ours = ours.into_iter().chain(on_scenes).map(|(name, pixel_us)| Peer {
             name,
-            servers: 0,
+            // One machine, where the report prints 0 for its own.
+            servers: 1,
             resolution: [640, 480],
             primitive: "triangles".to_owned(),
             pixel_us,

@@ -228,8 +228,8 @@ pub fn errata(annexes: &Annexes, style: Style) -> String {
     let mut text = style.heading("Errata of the report");
     for erratum in &annexes.errata {
         text += &format!(
-            "- {}: {}.\n  Correct: {}.\n  Effect: {}.\n",
-            erratum.source, erratum.printed, erratum.correct, erratum.effect
+            "- {} ({}): {}.\n  Correct: {}.\n  Effect: {}.\n",
+            erratum.source, erratum.name, erratum.printed, erratum.correct, erratum.effect
         );
     }
     text

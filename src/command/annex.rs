@@ -1,19 +1,25 @@
 //! `lancer annex`: the rows of the report's annexes, printed and measured.
 
+use std::path::PathBuf;
+
 use clap::Args;
+use kernels::annex::PrintedErratum;
+use messages::Diagnostic;
 
 use super::invocation::{CommandSettings, scene_hashes};
 use super::render;
-use crate::annex::AnnexDetail;
+use crate::annex::as_printed::{self, ErratumDrawings, ErratumResult};
 use crate::annex::result::Annexes;
 use crate::annex::scene::{OnScene, job};
 use crate::annex::text::{self, Style};
+use crate::annex::{AnnexDetail, erratum_text};
 use crate::arguments::{self, SettingsArguments, Size, TreeArguments};
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
+use crate::files::picture::PictureFormat;
 use crate::result::WithSettings;
 use crate::terminal::Terminal;
-use crate::{annex, input, result};
+use crate::{annex, files, input, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -21,6 +27,8 @@ Examples:
   lancer annex cornell sphereflake                and what a call takes on two scenes
   lancer annex terrain --size 320x240 --json > annex.json
   lancer annex --errata
+  lancer annex --as-printed list                  the names of the errata
+  lancer annex --as-printed first-hit -o as-printed.png
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 4 a difference that its terms do not explain.";
 
@@ -51,9 +59,40 @@ pub struct AnnexArguments {
     /// Prints tables in Markdown.
     #[arg(long)]
     markdown: bool,
-    /// Prints what is odd in the report's figures, with what it changes, instead of the rows.
+    /// Prints what is odd in the report, with what it changes, instead of the rows.
     #[arg(long, conflicts_with_all = ["json", "csv"])]
     errata: bool,
+    /// Shows one erratum: the report's mistake beside its correction, by a picture of its own scene or of each SCENE, or by its number; `list` names
+    /// all of them.
+    #[arg(long, value_name = "NAME", value_parser = erratum, conflicts_with_all = ["csv", "markdown", "errata"])]
+    as_printed: Option<Shown>,
+    /// Picture as printed: .png, .ppm or .pfm.
+    #[arg(short, long, value_name = "FILE", value_parser = picture, requires = "as_printed")]
+    output: Option<PathBuf>,
+    /// The corrected picture: .png, .ppm or .pfm.
+    #[arg(long, value_name = "FILE", value_parser = picture, requires = "as_printed")]
+    corrected: Option<PathBuf>,
+}
+
+/// Choice of --as-printed.
+#[derive(Clone, Copy, Debug)]
+enum Shown {
+    /// The names.
+    List,
+    /// One erratum.
+    One(&'static PrintedErratum),
+}
+
+fn erratum(name: &str) -> Result<Shown, String> {
+    match name {
+        "list" => Ok(Shown::List),
+        _ => PrintedErratum::named(name).map(Shown::One).map_err(|message| arguments::plain(&message)),
+    }
+}
+
+fn picture(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    PictureFormat::of(&path).map(|_| path)
 }
 
 /// Measures and prints.
@@ -62,6 +101,11 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
+    match arguments.as_printed {
+        Some(Shown::List) => return terminal.tell(&erratum_text::list()).map(|()| Exit::Done),
+        Some(Shown::One(erratum)) => return show(erratum, arguments, given, terminal),
+        None => {}
+    }
     let measured = annex::measure()?;
     let (mut scenes, mut read) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
@@ -90,4 +134,73 @@ pub(super) fn execute(
         true => Ok(Exit::Done),
         false => Ok(Exit::Tolerance),
     }
+}
+
+/// Shows an erratum on its scene, or on those that are named.
+fn show(
+    erratum: &'static PrintedErratum,
+    arguments: &AnnexArguments,
+    given: &CommandSettings,
+    terminal: &mut Terminal,
+) -> Result<Exit, Failure> {
+    let is_figure = erratum.scene.is_none();
+    let names = match arguments.scenes.is_empty() {
+        true => erratum.scene.iter().cloned().collect(),
+        false => arguments.scenes.clone(),
+    };
+    let targets = [arguments.output.as_deref(), arguments.corrected.as_deref()];
+    if is_figure && (targets.iter().any(Option::is_some) || !arguments.scenes.is_empty()) {
+        let message = format!("`{}` is a number: no picture shows it", erratum.name());
+        return Err(Failure::usage(Diagnostic::error(message).hint("leave out scenes and files")));
+    }
+    if names.len() > 1 && targets.iter().any(Option::is_some) {
+        let message = Diagnostic::error("a file holds the picture of one scene");
+        return Err(Failure::usage(message.hint("name one scene")));
+    }
+    files::check_distinct(targets.into_iter().flatten()).map_err(Failure::usage)?;
+    let is_taken = files::takes_output(targets.into_iter().flatten(), arguments.json).map_err(Failure::usage)?;
+    for target in targets.into_iter().flatten() {
+        files::check_target(target)?;
+    }
+    let (mut pairs, mut read) = (Vec::new(), Vec::new());
+    for name in &names {
+        let loaded = input::scene(name, None, Some(arguments.size))?;
+        terminal.show(&loaded.warnings);
+        let Some(mut jobs) = as_printed::jobs(erratum, &loaded.scene, arguments.size) else { continue };
+        read.push(loaded.scene);
+        // A tree that is shown is not chosen.
+        let tree = arguments.tree.settings();
+        jobs[1].kd_depth = tree.depth.or(jobs[1].kd_depth);
+        jobs[1].kd_method = tree.build.or(jobs[1].kd_method);
+        jobs[0].kd_depth = jobs[1].kd_depth;
+        jobs[0].kd_method = jobs[0].kd_method.or(jobs[1].kd_method);
+        let (pair, drawings) =
+            as_printed::compare(&jobs, &mut |job, comparison| render::draw(job, comparison, terminal))?;
+        write(targets, &drawings)?;
+        pairs.push(pair);
+    }
+    let shown = ErratumResult::new(erratum, pairs);
+    match (is_taken, arguments.json) {
+        (true, _) => {}
+        (false, true) => {
+            let settings = given.clone().with_scenes(&scene_hashes(&names, &read));
+            terminal.print(&result::json(&WithSettings::new(&shown, settings)))?
+        }
+        (false, false) => terminal.tell(&erratum_text::text(&shown))?,
+    }
+    Ok(Exit::Done)
+}
+
+/// Writes the pictures that are asked for.
+fn write([printed, correct]: [Option<&std::path::Path>; 2], drawings: &ErratumDrawings) -> Result<(), Failure> {
+    let mut written = Vec::new();
+    for (path, picture) in [(printed, &drawings.printed), (correct, &drawings.correct)] {
+        let Some(path) = path else { continue };
+        let Some(picture) = picture else {
+            let message = format!("there is no picture for {}: the kernels as printed end in a trap", path.display());
+            return Err(Diagnostic::error(message).into());
+        };
+        written.push((path, PictureFormat::of(path).expect("the parser lets only such names pass").encode(picture)));
+    }
+    Ok(files::write_all(&written)?)
 }

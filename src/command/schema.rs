@@ -22,6 +22,7 @@ use super::stress::{self, Catalogue};
 use super::trace::{self, TraceResult};
 use crate::advise::{self, AdviceResult};
 use crate::annex;
+use crate::annex::as_printed::{self, ErratumResult};
 use crate::annex::result::Annexes;
 use crate::cores::{self, CoresResult};
 use crate::difference::{self, DiffResult};
@@ -63,6 +64,11 @@ struct Known {
 
 const SCHEMAS: &[Known] = &[
     Known { name: annex::result::SCHEMA, command: "lancer annex --json", make: printed::<Annexes, CommandSettings> },
+    Known {
+        name: as_printed::SCHEMA,
+        command: "lancer annex --as-printed --json",
+        make: printed::<ErratumResult, CommandSettings>,
+    },
     Known { name: result::SCHEMA, command: "lancer render --json", make: schema_of::<Render> },
     Known { name: run_result::SCHEMA, command: "lancer run --json", make: printed::<RunResult, CommandSettings> },
     Known { name: instruction::SCHEMA, command: "lancer run --trace FILE.jsonl", make: schema_of::<TracedInstruction> },

@@ -197,3 +197,34 @@ fn cores_of_others_stand_beside_ours() {
     let ours = cores[2]["rays_per_second"][0].as_f64().unwrap();
     assert!((7_000.0..8_000.0).contains(&ours), "{ours}");
 }
+
+#[test]
+fn an_erratum_is_shown_beside_its_correction() {
+    let session = Session::new();
+    let list = session.succeed("annex --as-printed list");
+    for name in ["first-hit", "refraction-root", "strict-sides", "light-position", "servers"] {
+        assert!(list.contains(name), "{name} is not in\n{list}");
+    }
+    // Kernels: the picture as printed is another one, and is written.
+    let result = session.json("annex --as-printed refraction-root --size 24x18 -o printed.png --corrected right.png");
+    assert_eq!((&result["name"], &result["way"]), (&"refraction-root".into(), &"kernels".into()));
+    let pair = &result["pictures"][0];
+    let ratio = |side: &str| pair[side]["psnr_db"].as_f64().unwrap();
+    assert!(ratio("printed") + 5.0 < ratio("correct"), "{pair}");
+    assert!(pair["differing_pixels"].as_u64().unwrap() > 0);
+    assert_eq!(result["edits"][0]["file"], "kernels/asm/report/refract.s");
+    assert_ne!(session.read("printed.png"), session.read("right.png"));
+    // A tree: all triangles are there, and a ray does more work to find them.
+    let pair = &session.json("annex --as-printed best-plane mirrors --size 8x6")["pictures"][0];
+    assert_eq!(pair["scene"], "mirrors");
+    assert!(pair["printed"]["octets"].as_u64() > pair["correct"]["octets"].as_u64(), "{pair}");
+    // A number.
+    let figure = session.json("annex --as-printed normal");
+    assert_eq!(figure["figure"], serde_json::json!({ "printed": 308.0, "correct": 316.0, "unit": "operations" }));
+    assert!(session.succeed("annex --as-printed normal").contains("316"));
+    // Mistakes of the user.
+    let unknown = session.run("annex --as-printed frist-hit");
+    assert!(unknown.messages.contains("did you mean `first-hit`?"), "{}", unknown.messages);
+    let useless = session.run("annex --as-printed normal -o n.png");
+    assert!(useless.messages.contains("no picture shows it"), "{}", useless.messages);
+}

@@ -13,6 +13,8 @@ const BLESS: &str = "LANCER_BLESS";
 /// A command line for each command that prints JSON, and the schema of what it prints.
 const RESULTS: &[(&str, &str)] = &[
     ("annex triangle --size 8x6", "lancer-annex-1"),
+    ("annex --as-printed first-hit --size 8x6", "lancer-erratum-1"),
+    ("annex --as-printed servers", "lancer-erratum-1"),
     ("render cornell --size 8x6 --shift 0.137,0.071 --timing", "lancer-render-1"),
     ("render triangle --size 4x4 --no-error --crop 1,1,2,2", "lancer-render-1"),
     ("render empty --size 4x4", "lancer-render-1"),

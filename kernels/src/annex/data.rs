@@ -6,6 +6,7 @@ use isa::{Class, Counts};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::erratum::PrintedErratum;
 use super::part::{PartKind, PrintedPart};
 use super::{Row, Term, world};
 
@@ -82,22 +83,6 @@ pub struct PrintedCore {
     pub rays_per_second: [f64; 2],
     /// Octets of memory inside it.
     pub memory_octets: u64,
-}
-
-/// Something odd in the printed figures.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PrintedErratum {
-    /// Short name.
-    pub id: String,
-    /// Place in the report where it is printed.
-    pub source: String,
-    /// The printed text.
-    pub printed: String,
-    /// The correct text.
-    pub correct: String,
-    /// The consequence of the mistake.
-    pub effect: String,
 }
 
 /// A machine of table 3.

@@ -2,6 +2,7 @@
 //! the terms that the kernels differ by. What is printed and why it differs are data, in `annex.toml`; running the drivers is the caller's.
 
 mod data;
+mod erratum;
 pub mod load;
 mod part;
 mod world;
@@ -10,7 +11,8 @@ use std::sync::LazyLock;
 
 use isa::{Class, Counts};
 
-pub use data::{Figure, PathSpread, Peer, PixelSearch, PrintedCore, PrintedErratum, PrintedStructure};
+pub use data::{Figure, PathSpread, Peer, PixelSearch, PrintedCore, PrintedStructure};
+pub use erratum::{KernelEdit, PrintedErratum, PrintedFigure, PrintedReading, Reproduction};
 pub use part::{PartKind, PrintedPart, VectorOperation};
 pub use world::MEMORY;
 

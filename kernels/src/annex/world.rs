@@ -58,7 +58,7 @@ pub(super) fn file(path: &str) -> Option<(&'static str, &'static str)> {
 
 /// One light, one material that reflects and lets light through, a triangle that fills the box from -1 to 1: its coordinates have 29
 /// fraction bits, of which 13 are stored.
-fn scene() -> Scene {
+pub(super) fn scene() -> Scene {
     Scene {
         name: "annex".into(),
         size: (1, 1),

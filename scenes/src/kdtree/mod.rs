@@ -8,6 +8,7 @@ mod built;
 mod clip;
 mod cut;
 mod membership;
+mod printed;
 pub mod split;
 mod statistics;
 #[cfg(test)]
@@ -19,6 +20,8 @@ use messages::{Diagnostic, Report};
 use builder::TooManyReferences;
 pub(crate) use built::{BuiltTree, NumberedNode};
 use membership::{ByBox, ByPart};
+use printed::ByPrint;
+pub use printed::PrintedTree;
 pub use statistics::Statistics;
 pub(crate) use tree::UnlinkedNode;
 pub use tree::{Content, KdTree, Node};
@@ -121,10 +124,12 @@ pub enum BuildMethod {
     Exact,
     /// As `Exact`, with planes from bins and a bound on the references: trees nearly as cheap, in the time of the report's, for any triangles.
     Binned,
+    /// The report's with one of its slips taken at its word: to show what the slip does, in time quadratic in a node's triangles.
+    Printed(PrintedTree),
 }
 
 impl BuildMethod {
-    /// Every method.
+    /// Every method that a tree can be asked for with.
     pub const ALL: [BuildMethod; 3] = [BuildMethod::Report, BuildMethod::Exact, BuildMethod::Binned];
 
     /// Name on the command line.
@@ -133,6 +138,7 @@ impl BuildMethod {
             BuildMethod::Report => "report",
             BuildMethod::Exact => "exact",
             BuildMethod::Binned => "binned",
+            BuildMethod::Printed(slip) => slip.name(),
         }
     }
 }
@@ -189,6 +195,11 @@ pub(crate) fn build_in_order(
         BuildMethod::Report => {
             let boxes: Vec<Bounds> = (0..count).map(|index| Bounds::of_triangle(&triangles.vertices(index))).collect();
             builder::build(&ByBox { triangles: &boxes }, (0..count as u32).collect(), root, levels)
+        }
+        BuildMethod::Printed(slip) => {
+            let boxes: Vec<Bounds> = (0..count).map(|index| Bounds::of_triangle(&triangles.vertices(index))).collect();
+            let membership = ByPrint { triangles, boxes: &boxes, slip };
+            builder::build(&membership, (0..count as u32).collect(), root, levels)
         }
         BuildMethod::Binned => {
             let membership = ByPart { triangles };

@@ -61,11 +61,11 @@ pub fn change(settings: &mut Value, key: &str, value: Value) -> Result<(), Repor
     let is_scene = key.starts_with("scene") && key != "scene.hash";
     let is_kernels = ["kernels", "layout"].iter().any(|group| key.starts_with(group)) && key != "kernels.hash";
     put(settings, key, value)?;
-    if is_scene {
-        settings["scene"]["hash"] = Value::Null;
-    }
-    if is_kernels {
-        settings["kernels"]["hash"] = Value::Null;
+    for (group, is_other) in [("scene", is_scene), ("kernels", is_kernels)] {
+        // A list in the place of the group is refused when the settings are read, and has no hash.
+        if let Some(keys) = settings[group].as_object_mut().filter(|_| is_other) {
+            keys.insert("hash".to_owned(), Value::Null);
+        }
     }
     Ok(())
 }
@@ -279,6 +279,7 @@ mod tests {
             ("machine=raport", "did you mean `report`?"),
             ("bounces=31", "`effort.bounces` is out of its range"),
             ("cores", "sets no key"),
+            ("kernels=[1]", "--set kernels=[1]: "),
         ] {
             let error = Settings::default().with(&[set.to_owned()]).expect_err(set).render(false);
             assert!(error.contains(message), "{set}: {error}");

@@ -265,4 +265,11 @@ mod tests {
             assert!(shown.contains(part), "{part}\n{shown}");
         }
     }
+    #[test]
+    fn a_list_in_the_place_of_a_group_is_refused() {
+        for text in ["[[list]]\nscene = [1]\n", "[settings]\nkernels = [1]\n", "[product]\nscene = [[1]]\n"] {
+            let shown = study(text).expect_err(text);
+            assert!(shown.contains("error"), "{text}: {shown}");
+        }
+    }
 }

@@ -18,7 +18,7 @@ use crate::extension::Template;
 use crate::frame::OpenText;
 use crate::holding::{AliasSpan, OpenHolding};
 use crate::instruction::Argument;
-use crate::limits::{FRACTION_BITS, TEXT_OCTETS, WORDS};
+use crate::limits::{FRACTION_BITS, TEXT_OCTETS};
 use crate::line::OriginLine;
 use crate::listing::Record;
 use crate::live_name::NameUse;
@@ -87,7 +87,7 @@ pub(crate) struct Assembler<'a> {
     pub expansions: usize,
     pub lines_read: usize,
     pub octets_read: usize,
-    /// Octets that count towards [`crate::limits::EXPANDED_OCTETS`].
+    /// Octets that count towards [`crate::limits::SourceLimits::expanded_octets`].
     pub octets_expanded: usize,
     /// Some text could not be read, so that missing names say nothing.
     pub is_incomplete: bool,
@@ -209,8 +209,9 @@ impl Assembler<'_> {
             return;
         }
         // A repetition can ask for more words than any machine has.
-        if self.program.words.len() >= WORDS {
-            let message = format!("the program has more than {WORDS} words");
+        let most = self.options.limits.words;
+        if self.program.words.len() >= most {
+            let message = format!("the program has more than {most} words");
             self.give_up(Problem::new(explain::SIZE, message, line.at_all(), "one too many"));
             return;
         }
@@ -303,7 +304,7 @@ impl Assembler<'_> {
             }
         };
         let messages = std::mem::take(&mut self.messages);
-        let report = messages.report(&self.program.sources, known);
+        let report = messages.report(&self.program.sources, self.options.limits.compared_names, known);
         Attempt { program: self.program, report, symbols, records: self.records }
     }
 }

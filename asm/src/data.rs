@@ -5,7 +5,7 @@ use crate::cursor::Cursor;
 use crate::evaluation::EvaluationFailure;
 use crate::explain;
 use crate::expression::Expression;
-use crate::limits::{BUFFER, WORDS};
+use crate::limits::BUFFER;
 use crate::message::{Among, At, Parsed, Problem};
 use crate::token::{TokenKind, text_octets};
 
@@ -118,8 +118,9 @@ impl Assembler<'_> {
     }
 
     fn check_buffer(&mut self, octets: i64, at: At) -> Parsed<()> {
-        if (self.program.buffer.len() as i64).checked_add(octets).is_none_or(|size| size > BUFFER as i64) {
-            let message = format!("the buffer has more than {BUFFER} octets");
+        let most = self.options.limits.buffer;
+        if (self.program.buffer.len() as i64).checked_add(octets).is_none_or(|size| size > most as i64) {
+            let message = format!("the buffer has more than {most} octets");
             return Err(Problem::new(explain::BUFFER, message, at, "this does not fit"));
         }
         Ok(())
@@ -262,8 +263,9 @@ impl Assembler<'_> {
 
     /// Fills the code with `nop` up to a word address.
     fn fill_code(&mut self, target: i64, at: At, cursor: &Cursor) -> Parsed<()> {
-        if target > WORDS as i64 {
-            return Err(Problem::new(explain::SIZE, format!("the program has more than {WORDS} words"), at, "too far"));
+        let most = self.options.limits.words;
+        if target > most as i64 {
+            return Err(Problem::new(explain::SIZE, format!("the program has more than {most} words"), at, "too far"));
         }
         let nop = self.nop;
         while (self.program.words.len() as i64) < target {

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::assembler::Assembler;
 use crate::conditional::Condition;
 use crate::explain;
-use crate::limits::{EXPANDED_LINE, EXPANDED_OCTETS, EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, LINES, TEXT_OCTETS};
+use crate::limits::{EXPANDED_LINE, EXPANSION_DEPTH, INCLUDE_DEPTH, LINE_OCTETS, SourceLimits, TEXT_OCTETS};
 use crate::line::{OriginLine, Substitution};
 use crate::message::{At, MacroCall, Problem, Via};
 use crate::symbol::{Name, SymbolValue};
@@ -175,12 +175,13 @@ impl Assembler<'_> {
             false => line.text.len().saturating_sub(written),
         };
         // Count what was read, expansions included: a short text can ask for endless lines.
-        let excess = if self.lines_read > LINES {
-            Some(format!("the program has more than {LINES} lines with all its expansions"))
+        let SourceLimits { lines, expanded_octets, .. } = self.options.limits;
+        let excess = if self.lines_read > lines {
+            Some(format!("the program has more than {lines} lines with all its expansions"))
         } else if self.octets_read > TEXT_OCTETS {
             Some(format!("the program has more than {TEXT_OCTETS} octets of text with all its expansions"))
-        } else if self.octets_expanded > EXPANDED_OCTETS {
-            Some(format!("macro calls and repetitions inside others make more than {EXPANDED_OCTETS} octets of text"))
+        } else if self.octets_expanded > expanded_octets {
+            Some(format!("macro calls and repetitions inside others make more than {expanded_octets} octets of text"))
         } else if line.text.len() > LINE_OCTETS {
             Some(format!("the line is longer than {LINE_OCTETS} octets"))
         } else {
@@ -289,7 +290,7 @@ impl Assembler<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::EXPANDED_TOKEN;
+    use crate::limits::{EXPANDED_OCTETS, EXPANDED_TOKEN};
 
     #[test]
     fn a_short_text_can_ask_for_so_much_work_only() {

@@ -44,6 +44,7 @@ mod token;
 use std::sync::Arc;
 
 use isa::{Isa, Program};
+use limits::SourceLimits;
 use messages::{Report, Source};
 
 pub use disassembly::{disassemble, disassemble_program};
@@ -65,12 +66,19 @@ pub struct Options<'a> {
     pub defines: Vec<(String, i64)>,
     /// Number formats that are known before the first line, with their fraction bits.
     pub formats: Vec<(String, i64)>,
+    /// Work that the source may ask for.
+    pub limits: SourceLimits,
 }
 
 impl Default for Options<'_> {
-    /// No constants, no formats, and no file can be included.
+    /// No constants, no formats, no file can be included, and the largest limits.
     fn default() -> Self {
-        Options { include: &|_, _| Err("there are no files here".into()), defines: Vec::new(), formats: Vec::new() }
+        Options {
+            include: &|_, _| Err("there are no files here".into()),
+            defines: Vec::new(),
+            formats: Vec::new(),
+            limits: SourceLimits::default(),
+        }
     }
 }
 

@@ -1,5 +1,33 @@
 //! Limits of what one source may ask for. Beyond one there is an error with a place, never a long wait or a lack of memory.
 
+/// Work that one source may ask for: the most that there is, or less where a caller assembles many sources that it has not written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceLimits {
+    /// Words of a program.
+    pub words: usize,
+    /// Octets of the initial buffer.
+    pub buffer: usize,
+    /// Lines of all files, expansions and repetitions together.
+    pub lines: usize,
+    /// Octets that expansions make.
+    pub expanded_octets: usize,
+    /// Names that the suggestions of all messages are sought among, together.
+    pub compared_names: usize,
+}
+
+impl Default for SourceLimits {
+    /// The constants of this module.
+    fn default() -> SourceLimits {
+        SourceLimits {
+            words: WORDS,
+            buffer: BUFFER,
+            lines: LINES,
+            expanded_octets: EXPANDED_OCTETS,
+            compared_names: COMPARED_NAMES,
+        }
+    }
+}
+
 /// Words of a program.
 pub const WORDS: usize = 1 << 20;
 /// Octets of the initial buffer.

@@ -6,7 +6,7 @@ use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
 use crate::frame::{OpenText, Origin, Repeat, leading_directive};
-use crate::limits::{LINES, PARAMETERS};
+use crate::limits::PARAMETERS;
 use crate::line::{OriginLine, Substitution};
 use crate::message::{At, MacroCall, Parsed, Problem, Via};
 use crate::symbol::SymbolValue;
@@ -309,8 +309,9 @@ impl Assembler<'_> {
         if count < 0 {
             return Err(Problem::new(explain::RANGE, format!("{count} repetitions"), count_at, "negative"));
         }
-        if count.saturating_mul(lines.len() as i64) > LINES as i64 {
-            let message = format!("{count} repetitions of {} lines make more than {LINES} lines", lines.len());
+        let most = self.options.limits.lines;
+        if count.saturating_mul(lines.len() as i64) > most as i64 {
+            let message = format!("{count} repetitions of {} lines make more than {most} lines", lines.len());
             return Err(Problem::new(explain::SIZE, message, count_at, "too many"));
         }
         if count == 0 || lines.is_empty() {

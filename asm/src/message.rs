@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use messages::{Diagnostic, Place, Report, Severity, Source, nearest, question};
 
-use crate::limits::{COMPARED_NAMES, COMPARED_OCTETS, KEPT_MESSAGES, MESSAGES};
+use crate::limits::{COMPARED_OCTETS, KEPT_MESSAGES, MESSAGES};
 
 /// A place: octets of a file, and the chain of macro calls through which the text was reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -152,8 +152,8 @@ impl Messages {
         }
     }
 
-    /// The report; `known` gives the names that a suggestion may come from.
-    pub fn report<'a>(mut self, sources: &[Arc<Source>], known: impl Fn(Among) -> Vec<&'a str>) -> Report {
+    /// The report; `known` gives the names that a suggestion may come from, of which `most` are looked at.
+    pub fn report<'a>(mut self, sources: &[Arc<Source>], most: usize, known: impl Fn(Among) -> Vec<&'a str>) -> Report {
         // Messages come from two passes; people read them in the order of the text.
         self.kept.sort_by_key(|problem| problem.at.map(|at| (at.source, at.start, at.end)));
         let calls = std::mem::take(&mut self.calls);
@@ -163,12 +163,12 @@ impl Messages {
         // Every message may seek a name among all that there are: the first ones do until that becomes long.
         let mut compared = 0;
         let mut similar = |name: &str, among: Among| {
-            if compared > COMPARED_NAMES || name.len() > COMPARED_OCTETS {
+            if compared > most || name.len() > COMPARED_OCTETS {
                 return None;
             }
             let names = known(among);
             compared += names.len();
-            if compared > COMPARED_NAMES {
+            if compared > most {
                 return None;
             }
             nearest(name, names.into_iter().filter(|word| word.len() <= COMPARED_OCTETS))

@@ -102,7 +102,7 @@ pub(super) fn assembled(
 pub(super) fn attempted(source: &Arc<Source>, arguments: &SourceArguments, isa: &Isa) -> Attempt {
     let include = |wanted: &str, from: &str| included(wanted, from, &arguments.folders);
     let (defines, formats) = (arguments.defines.clone(), arguments.formats.clone());
-    asm::attempt(source, isa, &asm::Options { include: &include, defines, formats })
+    asm::attempt(source, isa, &asm::Options { include: &include, defines, formats, ..asm::Options::default() })
 }
 
 /// The file that `.include` means: beside the including one, else in the folders in their order.

@@ -68,6 +68,28 @@ fn what_is_too_large_is_one_error() {
 }
 
 #[test]
+fn limits_can_be_lowered() {
+    let limits = limits::SourceLimits { words: 2, buffer: 3, lines: 60, expanded_octets: 100, compared_names: 0 };
+    let options = Options { limits, ..Options::default() };
+    let found = |text: &str| match assemble(&Source::new("t.s", text), &Isa::base(), &options) {
+        Ok(_) => String::new(),
+        Err(report) => report.render(false),
+    };
+    assert_eq!(found("nop\nnop\n.buffer\n.space 3\n.align 1\n"), "");
+    for (text, says) in [
+        ("nop\nnop\nnop\n", "more than 2 words"),
+        (".org 3\n", "more than 2 words"),
+        (".buffer\n.space 4\n", "more than 3 octets"),
+        (&"\n".repeat(61), "more than 60 lines"),
+        (".rept 61\n;\n.endr\n", "more than 60 lines"),
+        (".rept 1\n.rept 50\n; 5 octets\n.endr\n.endr\n", "more than 100 octets"),
+    ] {
+        assert!(found(text).contains(says), "{text}: {}", found(text));
+    }
+    assert!(!found("label1: nop\nj label2\n").contains("did you mean"));
+}
+
+#[test]
 fn similar_names_are_sought_among_so_many_only() {
     let hints = |labels: usize, name: &str| {
         let text: String = (0..labels).map(|n| format!("{name}{n}: nop\n")).collect();

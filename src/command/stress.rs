@@ -1,19 +1,19 @@
 //! `lancer stress`: the catalogue of what fixed-point ray tracers get wrong, tried.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use messages::{Diagnostic, Report};
+use messages::Diagnostic;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::invocation::CommandSettings;
 use crate::arguments::SettingsArguments;
 use crate::failure::{Exit, Failure};
 use crate::numeral::grouped;
 use crate::result::WithSettings;
+use crate::stress::progress::{CaseProgress, RunProgress};
 use crate::stress::{self, CASES, Case, CatalogueSize, TrialTally};
 use crate::table::{row, table};
 use crate::terminal::Terminal;
@@ -21,9 +21,6 @@ use crate::{files, result};
 
 /// Version of what `--json` prints.
 pub(super) const SCHEMA: &str = "lancer-stress-1";
-
-/// Version of the file that a run is taken up from.
-const STATE: &str = "lancer-stress-state-1";
 
 /// Parts of a case after which progress is shown and kept.
 const PARTS: u64 = 200;
@@ -79,23 +76,6 @@ fn size() -> impl TypedValueParser<Value = CatalogueSize> {
     names.map(|name| {
         CatalogueSize::ALL.into_iter().find(|size| size.name() == name).expect("the parser lets only names pass")
     })
-}
-
-/// Progress of a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RunProgress {
-    schema: String,
-    size: CatalogueSize,
-    cases: BTreeMap<String, CaseProgress>,
-}
-
-/// Progress of a case: its first trials are done.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CaseProgress {
-    seed: u64,
-    tally: TrialTally,
 }
 
 /// Outcome of a case.
@@ -168,8 +148,8 @@ pub(super) fn execute(
         return Err(Failure::usage(message.hint("choose a name: `--resume stress.json`")));
     }
     let mut state = match file.filter(|path| path.exists()) {
-        Some(path) => read(path, size)?,
-        None => RunProgress { schema: STATE.to_owned(), size, cases: BTreeMap::new() },
+        Some(path) => RunProgress::parse(&files::source(path)?, size)?,
+        None => RunProgress::new(size),
     };
     if let Some(path) = file {
         files::check_target(path)?;
@@ -219,23 +199,6 @@ fn try_case(
     bar.finish_and_clear();
     state.cases.insert(case.name.to_owned(), done.clone());
     Ok(done.tally)
-}
-
-/// The state that a former run has left.
-fn read(path: &Path, size: CatalogueSize) -> Result<RunProgress, Report> {
-    let shown = path.display();
-    let source = files::source(path)?;
-    let state: RunProgress = serde_json::from_str(&source.text)
-        .map_err(|error| Diagnostic::error(format!("{shown} is no state of `lancer stress`: {error}")))?;
-    // A state of other seeds or sizes would be added to trials that are not the same.
-    let fits = |(name, done): (&String, &CaseProgress)| {
-        stress::find(name).is_ok_and(|case| case.seed == done.seed && done.tally.trials <= case.trials(size))
-    };
-    if state.schema == STATE && state.size == size && state.cases.iter().all(fits) {
-        return Ok(state);
-    }
-    let message = Diagnostic::error(format!("{shown} is the state of another run"));
-    Err(message.hint("choose the size that it was made with, or another file").into())
 }
 
 fn verdict(case: &'static Case, tally: TrialTally) -> CaseVerdict {

@@ -6,6 +6,7 @@ mod decisions;
 mod mesh;
 mod numbers;
 mod pictures;
+pub mod progress;
 mod random;
 mod surfaces;
 mod tally;

@@ -15,7 +15,7 @@ use isa::{Class, InstructionDef, Isa, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::builder::{Builder, program};
+use super::builder::{ProgramBuilder, program};
 
 fn run_with(config: &Config, program: &Program, registers: Registers) -> OneCoreRun {
     run_on_both(config, program, registers, false)
@@ -116,7 +116,7 @@ fn clocks_by_the_word_are_the_same_on_all_engines() {
     }
 }
 
-fn run(body: impl FnOnce(&mut Builder)) -> OneCoreRun {
+fn run(body: impl FnOnce(&mut ProgramBuilder)) -> OneCoreRun {
     let program = program(|p| {
         body(p);
         p.emit(Op::halt, &[]);

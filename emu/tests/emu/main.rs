@@ -1,7 +1,6 @@
 //! Programs on the machine, and what they must do, take and count.
 
 mod alike;
-mod builder;
 mod bus;
 mod clocks;
 mod engine;
@@ -18,3 +17,5 @@ mod shadow;
 mod stepper;
 mod totals;
 mod traps;
+
+use programs::builder;

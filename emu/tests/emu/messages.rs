@@ -8,7 +8,7 @@ use emu::semantics::Message;
 use emu::trap::{Fault, Trap};
 use isa::{Isa, Op, Program};
 
-use super::builder::{Builder, program};
+use super::builder::{ProgramBuilder, program};
 
 fn result(config: &Config, core: &Program, main: &Program) -> Result<RunOutcome, Box<Trap>> {
     let isa = Isa::base();
@@ -20,7 +20,7 @@ fn result(config: &Config, core: &Program, main: &Program) -> Result<RunOutcome,
     }
 }
 
-fn frame(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Builder)) -> RunOutcome {
+fn frame(cores: u32, core: impl FnOnce(&mut ProgramBuilder), main: impl FnOnce(&mut ProgramBuilder)) -> RunOutcome {
     let config = Config { cores, ..Config::default() };
     let frame = result(&config, &program(core), &program(main)).unwrap_or_else(|trap| panic!("{trap}"));
     for used in &frame.processors {
@@ -30,7 +30,7 @@ fn frame(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Bui
     frame
 }
 
-fn trap(cores: u32, core: impl FnOnce(&mut Builder), main: impl FnOnce(&mut Builder)) -> Trap {
+fn trap(cores: u32, core: impl FnOnce(&mut ProgramBuilder), main: impl FnOnce(&mut ProgramBuilder)) -> Trap {
     let config = Config { cores, step_limit: 10_000, ..Config::default() };
     *result(&config, &program(core), &program(main)).expect_err("it traps")
 }
@@ -40,7 +40,7 @@ fn word(frame: &RunOutcome, index: u32) -> i32 {
 }
 
 /// Sends five vectors, the first component being `value`, to each core.
-fn send_to_all(p: &mut Builder, value: i64) {
+fn send_to_all(p: &mut ProgramBuilder, value: i64) {
     p.emit(Op::movi, &[2, value]).emit(Op::vput, &[0, 2, 0]).emit(Op::movi, &[1, 0]).emit(Op::cores, &[3]);
     let next = p.here();
     p.emit(Op::send5, &[1, 0]).emit(Op::iaddi, &[1, 1, 1]);
@@ -96,7 +96,7 @@ fn a_send_waits_until_the_mailbox_is_free() {
 #[test]
 fn cores_wait_for_each_other_at_a_barrier() {
     // Core n works n * 20 clocks, writes its number, waits; then each reads its neighbour's.
-    let core = |p: &mut Builder| {
+    let core = |p: &mut ProgramBuilder| {
         let ready = p.label();
         p.emit(Op::recv5, &[0, 20]).emit(Op::core, &[1]).emit(Op::slli, &[2, 1, 3]).emit(Op::iaddi, &[3, 1, 10]);
         let again = p.here();
@@ -231,7 +231,7 @@ fn a_core_hands_work_to_another_one_that_has_nothing_to_do() {
 
 #[test]
 fn programs_that_do_nothing_end() {
-    let nothing = |p: &mut Builder| {
+    let nothing = |p: &mut ProgramBuilder| {
         p.emit(Op::halt, &[]);
     };
     let frame = frame(4, nothing, nothing);
@@ -255,7 +255,7 @@ fn waiting_for_each_other_is_a_trap_that_names_all() {
 
 #[test]
 fn a_barrier_that_one_never_reaches_is_a_deadlock() {
-    let core = |p: &mut Builder| {
+    let core = |p: &mut ProgramBuilder| {
         p.emit(Op::recv5, &[0, 20]).emit(Op::barrier, &[]).emit(Op::halt, &[]);
     };
     let found = trap(2, core, |p| {

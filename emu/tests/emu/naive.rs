@@ -169,7 +169,7 @@ fn each_set_of_open_functions_has_totals_of_its_own_however_many_there_are() {
     // Each number calls, one in the other, the functions whose bits it has: 8192 sets.
     check(&program(|p| {
         let labels: Vec<Label> = (0..FUNCTIONS).map(|_| p.label()).collect();
-        let turn = |p: &mut super::builder::Builder, from: i64| {
+        let turn = |p: &mut super::builder::ProgramBuilder, from: i64| {
             for callee in from..FUNCTIONS {
                 let skip = p.label();
                 p.emit(Op::srli, &[2, 1, callee]).emit(Op::andi, &[2, 2, 1]);

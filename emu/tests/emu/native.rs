@@ -2,27 +2,20 @@
 //! hold memory, passes, clocks, octets and each work item; the answers are made of all registers and of the buffer.
 
 use emu::engine::EngineKind;
-use emu::engine::HostSimd;
+use emu::engine::{HostSimd, Wish};
+use emu::machine::one_core::{self, OneCore};
 use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
-use isa::{InstructionDef, Isa, Kind, Op, Program};
+use emu::profile::ProfileLevel;
+use isa::{Isa, Op, Program};
+use programs::generate::{DATA, MEMORY, NUMBER, anywhere, below, gather, image, instruction, scatter, structured};
 use random::SplitMix64;
 
-use super::builder::{Builder, program};
+use super::builder::{ProgramBuilder, program};
 use super::machine::dispatch;
-
-/// Octets of global memory; answers lie in front.
-const MEMORY: i64 = 2000;
-
-/// Address from which work items read.
-const DATA: i64 = 400;
 
 /// Items of a frame: more than a host thread takes at a time.
 const ITEMS: i32 = 45;
-
-/// Scalars that generated instructions may use; the rest are counters, links and the item's number.
-const FREE: i64 = 19;
-const NUMBER: i64 = 22;
 
 fn frame(
     engine: EngineKind,
@@ -34,8 +27,7 @@ fn frame(
     let options = RunOptions { has_items: true, engine, simd: features, is_eager: true, ..RunOptions::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
-    let image = (0..MEMORY as u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-    emu::run(&setup, Memory::new(image), &mut |_| {})
+    emu::run(&setup, Memory::new(image()), &mut |_| {})
 }
 
 /// Runs a program on both engines, as native code with each of the host's features, and yields what all said.
@@ -52,187 +44,11 @@ fn same(name: &str, core: &Program, step_limit: u64) -> Result<RunOutcome, Strin
     checked
 }
 
-/// Numbers of generated programs.
-struct Random(SplitMix64);
-
-impl Random {
-    fn new(seed: u64) -> Random {
-        Random(SplitMix64::new(seed))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0.bits()
-    }
-
-    fn below(&mut self, end: i64) -> i64 {
-        self.0.below(end as u64) as i64
-    }
-}
-
-/// The item's number goes everywhere, changed a little each time, so that items differ.
-fn scatter(p: &mut Builder, random: &mut Random) {
-    p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::mov, &[1, NUMBER]);
-    for register in 2..=FREE {
-        let factor = random.next() as i32 | 1;
-        p.constant(register, factor >> random.below(31)).emit(Op::iadd, &[1, 1, register]);
-        p.emit(Op::imul, &[register, register, 1]);
-    }
-    for register in 0..32 {
-        for lane in 0..3 {
-            p.emit(Op::vput, &[register, 1 + random.below(FREE), lane]);
-        }
-    }
-    for register in 0..8 {
-        p.emit(Op::wjoin, &[register, 1 + random.below(FREE), 1 + random.below(FREE)]);
-    }
-}
-
-/// Everything goes into one word, the answer.
-fn gather(p: &mut Builder) {
-    let add = |p: &mut Builder, from: i64| {
-        p.emit(Op::slli, &[23, 24, 5]).emit(Op::srli, &[24, 24, 27]).emit(Op::or, &[24, 24, 23]);
-        p.emit(Op::iadd, &[24, 24, from]);
-    };
-    p.emit(Op::movi, &[24, 0]);
-    for register in 0..=FREE {
-        add(p, register);
-    }
-    for register in 0..8 {
-        p.emit(Op::wlow, &[1, register]).emit(Op::whigh, &[2, register]);
-        add(p, 1);
-        add(p, 2);
-    }
-    for (register, lane) in (0..32).flat_map(|register| (0..3).map(move |lane| (register, lane))) {
-        p.emit(Op::vget, &[1, register, lane]);
-        add(p, 1);
-    }
-    for at in 0..24 {
-        p.emit(Op::lw, &[1, 0, 16 * at]);
-        add(p, 1);
-    }
-    p.emit(Op::vsplat, &[6, NUMBER]).emit(Op::vsplat, &[7, 24]).emit(Op::cores, &[20]);
-    p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
-}
-
-/// An instruction of a row with operands at random; addresses stay in reach.
-fn instruction(p: &mut Builder, random: &mut Random, op: Op, row: &InstructionDef) {
-    if matches!(op, Op::load | Op::loadf | Op::loadfu | Op::loadnode) {
-        // Octets, numbers of up to 63 bits, or nodes of up to 12 octets, which are counted from address 0.
-        let (base, most) = match op {
-            Op::load => (DATA, 0x7f),
-            Op::loadnode => (0, 0xf),
-            _ => (DATA, 0xf),
-        };
-        p.emit(Op::movi, &[1, random.below(200)]).emit(Op::andi, &[2, 2, 0xff]).emit(Op::iaddi, &[2, 2, base]);
-        p.emit(Op::andi, &[3, 3, most]);
-        let widths =
-            row.operands[3..].iter().map(|operand| random.below(if operand.kind == Kind::Sh { 64 } else { 32 }));
-        let operands: Vec<i64> = [1, 2, 3].into_iter().chain(widths.collect::<Vec<_>>()).collect();
-        p.emit(op, &operands);
-        return;
-    }
-    let has_address = row.room == "local" || row.room == "bus";
-    if row.room == "packet" {
-        // A packet of at most seven triangles.
-        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::andi, &[5, 5, 7]);
-    }
-    if row.room == "walk" {
-        // A block of three nodes, the first of which is the one to begin with.
-        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::movi, &[5, 64]).emit(Op::sw, &[5, 4, 0]);
-        p.emit(Op::movi, &[6, 24]).emit(Op::sw, &[6, 4, 4]).emit(Op::andi, &[6, 6, 0xff]);
-    }
-    if has_address {
-        let base = if row.room == "bus" { DATA } else { 0 };
-        p.emit(Op::andi, &[4, 4, 0xff]).emit(Op::iaddi, &[4, 4, base]);
-    }
-    let operand = |random: &mut Random, letter: u8, kind: Kind| {
-        let width = row.pattern.fields().iter().find(|field| field.letter == letter).map_or(5, |field| field.width);
-        let (least, most) = kind.range(width);
-        match kind {
-            Kind::A | Kind::S if has_address && (kind == Kind::A || letter == b'x') => 4,
-            Kind::A if ["packet", "walk"].contains(&&*row.room) => 4,
-            Kind::S if row.room == "packet" || row.room == "walk" && letter == b'x' => 5,
-            Kind::S if row.room == "walk" => 6,
-            Kind::S | Kind::A => random.below(FREE + 1),
-            Kind::Off if has_address => random.below(100),
-            _ => least + random.below(most - least + 1),
-        }
-    };
-    let operands: Vec<i64> = row.operands.iter().map(|o| operand(random, o.letter, o.kind)).collect();
-    p.emit(op, &operands);
-}
-
-/// Rows that a work item may execute anywhere.
-fn anywhere(op: &Op, isa: &Isa) -> bool {
-    let row = isa.definition(*op);
-    let is_write = matches!(op, Op::store | Op::stw | Op::stv | Op::fetchadd);
-    let is_meeting = matches!(op, Op::send2 | Op::send5 | Op::recv2 | Op::recv5 | Op::barrier);
-    row.room != "control" && !is_write && !is_meeting
-}
-
-/// A few instructions of any kind.
-fn straight(p: &mut Builder, random: &mut Random, isa: &Isa, count: i64) {
-    let ops: Vec<Op> = Op::BUILT_IN.iter().copied().filter(|op| anywhere(op, isa)).collect();
-    for _ in 0..count {
-        let op = ops[random.below(ops.len() as i64) as usize];
-        instruction(p, random, op, isa.definition(op));
-    }
-}
-
-/// Instructions with branches on what registers hold, loops whose length they choose, and calls.
-fn structured(p: &mut Builder, random: &mut Random, isa: &Isa, depth: i64) {
-    for _ in 0..3 {
-        straight(p, random, isa, 4);
-        let scalars = [random.below(FREE + 1), random.below(FREE + 1)];
-        match random.below(if depth == 0 { 1 } else { 4 }) {
-            0 => {
-                let (other, end) = (p.label(), p.label());
-                let rows = [Op::beq, Op::bne, Op::blt, Op::bge, Op::bltu, Op::bgeu];
-                match random.below(2) {
-                    0 => p.branch(rows[random.below(6) as usize], &scalars, other),
-                    _ => p.branch([Op::bwltz, Op::bwgez][random.below(2) as usize], &[random.below(8)], other),
-                };
-                straight(p, random, isa, 2);
-                p.branch(Op::jump, &[], end);
-                p.place(other);
-                straight(p, random, isa, 3);
-                p.place(end);
-            }
-            1 => {
-                // A loop of one to four rounds.
-                let counter = 24 + depth;
-                p.emit(Op::andi, &[counter, scalars[0], 3]);
-                let again = p.here();
-                structured(p, random, isa, depth - 1);
-                p.emit(Op::isubi, &[counter, counter, 1]);
-                p.branch(Op::bge, &[counter, 0], again);
-            }
-            2 => {
-                // A function, called from two places, by its address the second time.
-                let (over, function, link) = (p.label(), p.label(), 28 + depth);
-                p.branch(Op::call, &[link], function);
-                straight(p, random, isa, 1);
-                p.branch(Op::call, &[23], over);
-                p.place(function);
-                structured(p, random, isa, depth - 1);
-                p.emit(Op::ret, &[link]);
-                p.place(over);
-            }
-            _ => {
-                let early = p.label();
-                p.branch(Op::blt, &scalars, early);
-                structured(p, random, isa, depth - 1);
-                p.place(early);
-            }
-        }
-    }
-}
-
 #[test]
 fn any_row_on_any_operands() {
     let isa = Isa::base();
     for (seed, &op) in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)).enumerate() {
-        let mut random = Random::new(seed as u64);
+        let mut random = SplitMix64::new(seed as u64);
         let core = program(|p| {
             scatter(p, &mut random);
             for _ in 0..12 {
@@ -244,11 +60,11 @@ fn any_row_on_any_operands() {
     }
 }
 
-/// Rows go on to each other by jumps; were one of them a call, it would leave something on the stack each time.
+/// An engine that left something on the host's stack for each instruction or each loop would not come to the end.
 #[test]
 fn a_long_loop_over_all_rows_takes_no_stack() {
     let isa = Isa::base();
-    let mut random = Random::new(77);
+    let mut random = SplitMix64::new(77);
     let core = program(|p| {
         scatter(p, &mut random);
         p.constant(27, 20_000);
@@ -277,12 +93,43 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
     assert!(count.tally.instructions() > 20_000 * 100);
 }
 
+/// Calls of the guest that never return take none of the host's stack, on either engine and whatever is measured.
+#[test]
+fn calls_without_end_take_no_stack() {
+    const CALLS: u64 = 1 << 16;
+    let core = program(|p| {
+        let function = p.label();
+        p.constant(1, CALLS as i32);
+        p.function("nest", |p| {
+            p.place(function).emit(Op::isubi, &[1, 1, 1]);
+            let end = p.label();
+            p.branch(Op::beq, &[1, 0], end).branch(Op::call, &[5], function);
+            p.place(end).emit(Op::halt, &[]);
+        });
+    });
+    for (wish, profile) in [Wish::CHECKED, Wish::native()]
+        .into_iter()
+        .flat_map(|wish| [ProfileLevel::None, ProfileLevel::Totals].map(|profile| (wish, profile)))
+    {
+        let (core, run) = (core.clone(), move |core: &Program| {
+            let (config, isa) = (Config::default(), Isa::base());
+            let one_core = OneCore { profile, ..OneCore::new(&config, &isa, core) };
+            one_core::run_with(&one_core, Memory::default(), wish).expect("the setup is right")
+        });
+        // Compiling a program takes most of this; a call that took sixteen octets would take four times as much.
+        let thread = std::thread::Builder::new().stack_size(256 << 10).spawn(move || run(&core));
+        let found = thread.expect("a thread can be had").join().expect("the stack is large enough");
+        assert_eq!((found.trap, found.engine.kind), (None, wish.kind), "{profile:?}");
+        assert!(found.state.steps > 3 * (CALLS - 1), "{profile:?}");
+    }
+}
+
 #[test]
 fn loops_calls_and_branches() {
     let isa = Isa::base();
     let mut ends = 0;
     for seed in 0..60 {
-        let mut random = Random::new(1000 + seed);
+        let mut random = SplitMix64::new(1000 + seed);
         let core = program(|p| {
             scatter(p, &mut random);
             structured(p, &mut random, &isa, 2);
@@ -296,11 +143,11 @@ fn loops_calls_and_branches() {
 #[test]
 fn words_at_random() {
     for seed in 0..60 {
-        let mut random = Random::new(2000 + seed);
+        let mut random = SplitMix64::new(2000 + seed);
         let core = program(|p| {
             scatter(p, &mut random);
-            for _ in 0..random.below(30) {
-                p.word(random.next() as u32);
+            for _ in 0..below(&mut random, 30) {
+                p.word(random.bits() as u32);
             }
             gather(p);
         });
@@ -311,14 +158,14 @@ fn words_at_random() {
 
 #[test]
 fn what_is_unusual_is_the_interpreters() {
-    let few = |body: fn(&mut Builder)| {
+    let few = |body: fn(&mut ProgramBuilder)| {
         program(|p| {
             p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::movi, &[1, 40]);
             body(p);
             gather(p);
         })
     };
-    let end = |name: &str, body: fn(&mut Builder)| same(name, &few(body), 5000).map(|_| ()).unwrap_err();
+    let end = |name: &str, body: fn(&mut ProgramBuilder)| same(name, &few(body), 5000).map(|_| ()).unwrap_err();
     let trap = end("a trap", |p| {
         let past = p.label();
         p.branch(Op::bne, &[NUMBER, 1], past).emit(Op::trap, &[9]);
@@ -342,16 +189,16 @@ fn what_is_unusual_is_the_interpreters() {
 }
 
 /// Something that may read the number of cores, write where it is, or leave it alone.
-fn meddle(p: &mut Builder, random: &mut Random, depth: i64) {
-    let register = 20 + random.below(2);
-    match random.below(if depth == 0 { 6 } else { 9 }) {
+fn meddle(p: &mut ProgramBuilder, random: &mut SplitMix64, depth: i64) {
+    let register = 20 + below(random, 2);
+    match below(random, if depth == 0 { 6 } else { 9 }) {
         0 => p.emit(Op::iadd, &[1, 1, register]),
         1 => p.emit(Op::movi, &[register, 5]),
         2 => p.emit(Op::cores, &[21]),
         3..6 => p.emit(Op::iaddi, &[1, 1, 7]),
         6 => {
             let end = p.label();
-            p.emit(Op::andi, &[3, NUMBER, 1 + random.below(4)]);
+            p.emit(Op::andi, &[3, NUMBER, 1 + below(random, 4)]);
             p.branch(Op::beq, &[3, 0], end);
             meddle(p, random, depth - 1);
             meddle(p, random, depth - 1);
@@ -359,7 +206,7 @@ fn meddle(p: &mut Builder, random: &mut Random, depth: i64) {
         }
         7 => {
             let counter = 24 + depth;
-            p.emit(Op::movi, &[counter, random.below(3)]);
+            p.emit(Op::movi, &[counter, below(random, 3)]);
             let again = p.here();
             meddle(p, random, depth - 1);
             meddle(p, random, depth - 1);
@@ -386,7 +233,7 @@ fn every_engine_knows_what_depends_on_the_number_of_cores() {
     let (main, memory) = (dispatch(ITEMS), Memory::new(vec![0; MEMORY as usize]));
     let mut dependent = [0, 0];
     for seed in 0..150 {
-        let random = &mut Random::new(seed);
+        let random = &mut SplitMix64::new(seed);
         let core = program(|p| {
             p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]);
             for _ in 0..4 {

@@ -10,7 +10,7 @@ use isa::{Isa, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::builder::{Builder, program};
+use super::builder::{ProgramBuilder, program};
 use super::clocks::check_sums;
 use super::machine::dispatch;
 
@@ -138,7 +138,7 @@ proptest! {
     }
 }
 
-fn why(core: impl FnOnce(&mut Builder), main: &Program) -> &'static str {
+fn why(core: impl FnOnce(&mut ProgramBuilder), main: &Program) -> &'static str {
     let core = program(core);
     let why = |cores| match both(&Config { cores, ..Config::default() }, &core, main).method {
         Method::Stepped { why } => why,
@@ -150,14 +150,14 @@ fn why(core: impl FnOnce(&mut Builder), main: &Program) -> &'static str {
 }
 
 /// The end of a work item that answers with its number.
-fn answer(p: &mut Builder) {
+fn answer(p: &mut ProgramBuilder) {
     p.emit(Op::cores, &[21]).emit(Op::vmov, &[6, 0]).emit(Op::vmov, &[7, 0]).emit(Op::send2, &[21, 6]);
     p.emit(Op::halt, &[]);
 }
 
 #[test]
 fn what_depends_on_others_is_stepped_and_says_why() {
-    let item = |body: fn(&mut Builder)| {
+    let item = |body: fn(&mut ProgramBuilder)| {
         why(
             |p| {
                 p.emit(Op::recv5, &[0, 20]).emit(Op::movi, &[2, 1]);
@@ -167,7 +167,7 @@ fn what_depends_on_others_is_stepped_and_says_why() {
             &dispatch(20),
         )
     };
-    let nothing = |_: &mut Builder| {};
+    let nothing = |_: &mut ProgramBuilder| {};
     assert_eq!(item(nothing), "");
     let writes = "the cores write to global memory";
     assert_eq!(
@@ -215,15 +215,15 @@ fn messages_and_barriers_in_the_middle_are_stepped() {
         }
         p.emit(Op::halt, &[]);
     });
-    let two = |p: &mut Builder| {
+    let two = |p: &mut ProgramBuilder| {
         p.emit(Op::recv5, &[0, 20]).emit(Op::recv5, &[5, 20]).emit(Op::halt, &[]);
     };
     assert_eq!(why(two, &send_twice), "a work item takes more than one message");
-    let meets = |p: &mut Builder| {
+    let meets = |p: &mut ProgramBuilder| {
         p.emit(Op::recv5, &[0, 20]).emit(Op::barrier, &[]).emit(Op::halt, &[]);
     };
     assert_eq!(why(meets, &send_twice), "the cores wait for each other at a barrier");
-    let late = |p: &mut Builder| {
+    let late = |p: &mut ProgramBuilder| {
         p.emit(Op::ldw, &[1, 0, 500]).emit(Op::recv5, &[0, 20]).emit(Op::halt, &[]);
     };
     assert_eq!(why(late, &send_twice), "a work item does not begin with a message");

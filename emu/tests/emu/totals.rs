@@ -4,7 +4,7 @@ use isa::{Class, Op, Program};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-use super::builder::{Builder, Label, program};
+use super::builder::{Label, ProgramBuilder, program};
 use super::naive;
 use super::profile::run;
 
@@ -34,7 +34,14 @@ fn pieces() -> impl Strategy<Value = Vec<Piece>> {
 }
 
 /// Writes pieces; names the regions in the order in which they begin.
-fn write(builder: &mut Builder, body: &[Piece], function: usize, labels: &[Label], loops: i64, regions: &mut usize) {
+fn write(
+    builder: &mut ProgramBuilder,
+    body: &[Piece],
+    function: usize,
+    labels: &[Label],
+    loops: i64,
+    regions: &mut usize,
+) {
     for piece in body {
         match piece {
             Piece::Adds(count) => {

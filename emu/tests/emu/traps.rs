@@ -6,7 +6,7 @@ use emu::octets::Memory;
 use emu::trap::{Fault, Trap};
 use isa::{Isa, Op, Program};
 
-use super::builder::{Builder, program};
+use super::builder::{ProgramBuilder, program};
 
 /// Runs a program on one core with 100 octets of memory and a limit of 1000 instructions.
 fn run_with(config: &Config, program: &Program) -> OneCoreRun {
@@ -15,7 +15,7 @@ fn run_with(config: &Config, program: &Program) -> OneCoreRun {
     one_core::run(&one_core, Memory::new(vec![0; 100])).expect("the setup is right")
 }
 
-fn trap(body: impl FnOnce(&mut Builder)) -> Trap {
+fn trap(body: impl FnOnce(&mut ProgramBuilder)) -> Trap {
     run_with(&Config::default(), &program(body)).trap.expect("the program traps")
 }
 
@@ -62,7 +62,7 @@ fn the_program_counter_may_not_leave_the_program() {
 fn accesses_beyond_the_buffer_trap_and_those_to_its_last_octet_do_not() {
     let last = i64::from(Config::default().buffer_octets);
     let at = |op: Op, address: i64| {
-        let body = |p: &mut Builder| {
+        let body = |p: &mut ProgramBuilder| {
             p.constant(1, address as i32).emit(op, &[1, 1, 0]).emit(Op::halt, &[]);
         };
         run_with(&Config::default(), &program(body)).trap.map(|trap| trap.kind)
@@ -83,7 +83,7 @@ fn accesses_beyond_the_buffer_trap_and_those_to_its_last_octet_do_not() {
 #[test]
 fn transfers_beyond_the_memory_or_of_a_huge_length_trap_before_they_start() {
     let transfer = |op: Op, to: i32, from: i32, octets: i32| {
-        let body = |p: &mut Builder| {
+        let body = |p: &mut ProgramBuilder| {
             p.constant(1, to).constant(2, from).constant(3, octets).emit(op, &[1, 2, 3]).emit(Op::halt, &[]);
         };
         let run = run_with(&Config::default(), &program(body));

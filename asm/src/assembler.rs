@@ -58,6 +58,8 @@ pub(crate) struct Assembler<'a> {
     pub messages: Messages,
     pub names: Names,
     pub macros: HashMap<Rc<str>, Rc<Macro>>,
+    /// Lines of the outermost macro calls, by the contexts of what they lead to.
+    pub call_lines: HashMap<u32, ProgramLine>,
     pub aliases: Vec<HashMap<Rc<str>, Alias>>,
     /// All names of registers that there were, in order.
     pub alias_spans: Vec<AliasSpan>,
@@ -118,6 +120,7 @@ pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
         messages: Messages::default(),
         names: Names::default(),
         macros: HashMap::new(),
+        call_lines: HashMap::new(),
         aliases: vec![HashMap::new()],
         alias_spans: Vec::new(),
         holdings: vec![HashMap::new()],
@@ -216,7 +219,9 @@ impl Assembler<'_> {
             return;
         }
         self.program.words.push(word);
-        self.program.lines.push(ProgramLine { source: line.source, line: line.number });
+        let own = ProgramLine { source: line.source, line: line.number };
+        self.program.lines.push(own);
+        self.program.call_lines.push(self.outermost_call(line.context).unwrap_or(own));
         self.program.region_of.push(self.regions.last().map(|open| open.index));
     }
 
@@ -271,6 +276,7 @@ impl Assembler<'_> {
         // Names that a mistake may have meant are sought among those of the outermost scope.
         let outermost: Vec<Rc<str>> = self.aliases.iter().flat_map(|scope| scope.keys().cloned()).collect();
         self.finish_naming();
+        self.finish_computed();
         let symbols = self.map();
         self.program.symbols = symbols.iter().map(|entry| (entry.name.clone(), entry.value)).collect();
         // Constants that were known late appear in the listing with their values.

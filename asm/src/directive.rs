@@ -21,6 +21,7 @@ enum Action {
     Reg,
     Unreg,
     Holds,
+    Computes,
     Include,
     Struct,
     Field,
@@ -66,6 +67,7 @@ impl Action {
                 | Action::Open { .. }
                 | Action::Close { .. }
                 | Action::Holds
+                | Action::Computes
                 | Action::End
         )
     }
@@ -107,6 +109,8 @@ directives! {
     ".unreg" "name" Action::Unreg, "Ends what `.reg` began.";
     ".holds" "register, format" Action::Holds,
         "Says what format the number in a register has from here on, up to the end of the function around it; without a format, that it has none. It makes no word: traces and debuggers show real values by it.";
+    ".computes" "instruction" Action::Computes,
+        "Says which instruction the function around it computes in many steps, such as `wsqrt s1, w0, 0`: of its operands as they are here, its results where the function returns. It makes no word: shadows go by it.";
     ".include" "\"file\"" Action::Include, "Reads another file here.";
     ".struct" "name" Action::Struct, "Begins a structure; its fields are constants `name.field`, its size is `sizeof(name)`.";
     ".field" "name, octets, count" Action::Field, "A field of that many octets, or of that many times `count`, at the next offset.";
@@ -238,6 +242,7 @@ impl Assembler<'_> {
             Action::Reg => self.define_alias(cursor),
             Action::Unreg => self.remove_alias(cursor),
             Action::Holds => self.hold(cursor),
+            Action::Computes => self.computes(at, cursor),
             Action::Include => self.include(at, cursor),
             Action::Struct => self.open_structure(at, cursor),
             Action::Field => self.field(at, cursor),

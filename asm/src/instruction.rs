@@ -167,7 +167,12 @@ impl Assembler<'_> {
     }
 
     /// Holds written operands against the row; `None` when what is wrong was reported.
-    fn arguments(&mut self, definition: &InstructionDef, operands: &[ParsedOperand], at: At) -> Option<Vec<Argument>> {
+    pub(crate) fn arguments(
+        &mut self,
+        definition: &InstructionDef,
+        operands: &[ParsedOperand],
+        at: At,
+    ) -> Option<Vec<Argument>> {
         let mut found = Vec::with_capacity(definition.operands.len());
         let mut rest = operands.iter();
         let mut place = 0;

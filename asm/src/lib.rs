@@ -5,6 +5,7 @@
 //! [`function::FUNCTIONS`], and the messages in [`explain::CODES`].
 
 mod assembler;
+mod computed;
 mod conditional;
 mod cursor;
 mod data;

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use isa::program::Line;
+
 use crate::assembler::Assembler;
 use crate::cursor::Cursor;
 use crate::explain;
@@ -217,12 +219,25 @@ impl Assembler<'_> {
                 }
                 let via = Via::Macro(definition.name.clone());
                 let context = self.messages.enter(MacroCall { at: cursor.line.at_all(), via });
+                let here = Line { source: cursor.line.source, line: cursor.line.number };
+                let outermost = self.outermost_call(cursor.line.context).unwrap_or(here);
+                self.call_lines.insert(context, outermost);
                 let mut frame = OpenText::new(definition.lines.clone(), Origin::Macro);
                 frame.substitution = Some(Rc::new(substitution));
                 frame.context = Some(context);
                 self.enter(frame, at);
             }
         }
+    }
+
+    /// Line of the outermost macro call through which text was reached; `None` outside of macros.
+    pub(crate) fn outermost_call(&self, context: u32) -> Option<Line> {
+        let mut context = context;
+        // Passes of repetitions are contexts, too, which stand in that of their header.
+        while context != 0 && !self.call_lines.contains_key(&context) {
+            context = self.messages.calls[context as usize - 1].at.context;
+        }
+        self.call_lines.get(&context).copied()
     }
 
     fn macro_arguments(&mut self, definition: &Macro, at: At, cursor: &mut Cursor) -> Parsed<Substitution> {

@@ -16,10 +16,12 @@
 //! | names | number (u32), each a text, a register's file (u8, ASCII) and number (u8), first word and word behind (u32 each) |
 //! | holds | number (u32), each a register, a text (empty for no format), first word and word behind |
 //! | records | number (u32), each a text, octets (u32), and its fields: number (u32), each a text, offset and octets (u32 each) |
+//! | calls | number of words (u32), for each the line outside of macros that it came from: a source (u16) and a line from 1 (u32) |
+//! | computed | number (u32), each an instruction's word, first word and word behind (u32 each), a source (u16) and a line (u32) |
 //! | check | CRC-32 (IEEE) of all octets before |
 //!
 //! No region is 65535. Version 1 ends behind the places; such files are read as programs of which nothing is known of formats, names and
-//! structures.
+//! structures. Version 2 ends behind the records; there nothing is known of macro calls.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -27,7 +29,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use isa::Program;
-use isa::naming::{FieldMap, HeldFormat, NamedRegister, RecordMap, RegisterId};
+use isa::naming::{ComputedInstruction, FieldMap, HeldFormat, NamedRegister, RecordMap, RegisterId};
 use isa::program::{Line, Region};
 use messages::Source;
 use nom::bytes::complete::take;
@@ -41,7 +43,7 @@ use crate::limits::{BUFFER, FRACTION_BITS, REGIONS, SOURCES, WORDS};
 pub const MAGIC: &[u8; 8] = b"lancer\x1a\n";
 
 /// The version that is written; all from 1 on are read.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 const NONE: u16 = u16::MAX;
 
@@ -158,6 +160,19 @@ pub fn write(program: &Program) -> Vec<u8> {
             file.extend(field.octets.to_le_bytes());
         }
     }
+    // Write where words come from and what functions compute.
+    let line = |file: &mut Vec<u8>, line: &Line| {
+        file.extend(line.source.to_le_bytes());
+        file.extend(line.line.to_le_bytes());
+    };
+    count(&mut file, program.call_lines.len());
+    program.call_lines.iter().for_each(|call| line(&mut file, call));
+    count(&mut file, program.computed.len());
+    for computed in &program.computed {
+        file.extend(computed.word.to_le_bytes());
+        words(&mut file, &computed.words);
+        line(&mut file, &computed.line);
+    }
     // The checksum covers everything before it.
     file.extend(crc32fast::hash(&file).to_le_bytes());
     file
@@ -239,6 +254,7 @@ fn parts(input: &[u8], version: u16) -> ObjectPiece<'_, Result<Program, &'static
     let (input, regions) = list(input, region_count as usize, |input| (text, le_u8, le_u16).parse(input))?;
     let (input, places) = list(input, count, le_u16)?;
     let (input, naming) = if version == 1 { (input, Ok(Program::default())) } else { naming(input)? };
+    let (input, (call_lines, computed)) = if version < 3 { (input, Default::default()) } else { origins(input)? };
     let region = |number: u16| (number != NONE).then_some(number);
     // The shape was right; contents may still be wrong, which is another error.
     let build = || {
@@ -268,6 +284,8 @@ fn parts(input: &[u8], version: u16) -> ObjectPiece<'_, Result<Program, &'static
             lines: lines.into_iter().map(|(source, line)| Line { source, line }).collect(),
             regions: regions.collect::<Result<_, _>>()?,
             region_of: places.into_iter().map(region).collect(),
+            call_lines,
+            computed,
             ..naming?
         })
     };
@@ -329,6 +347,22 @@ fn naming(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
     Ok((input, build()))
 }
 
+/// Parts that version 3 has behind the records.
+fn origins(input: &[u8]) -> ObjectPiece<'_, (Vec<Line>, Vec<ComputedInstruction>)> {
+    let line = |(source, line): (u16, u32)| Line { source, line };
+    let (input, number) = le_u32(input)?;
+    let (input, calls) = list(input, number as usize, |input| (le_u16, le_u32).parse(input))?;
+    let (input, number) = le_u32(input)?;
+    let (input, computed) =
+        list(input, number as usize, |input| (le_u32, le_u32, le_u32, le_u16, le_u32).parse(input))?;
+    let computed = computed.into_iter().map(|(word, start, end, source, number)| ComputedInstruction {
+        word,
+        words: start..end,
+        line: line((source, number)),
+    });
+    Ok((input, (calls.into_iter().map(line).collect(), computed.collect())))
+}
+
 fn consistent(program: &Program) -> Result<(), &'static str> {
     let words = program.words.len();
     let holds = [
@@ -336,9 +370,12 @@ fn consistent(program: &Program) -> Result<(), &'static str> {
         (program.sources.len() <= SOURCES && program.regions.len() <= REGIONS, "it has too many files or regions"),
         ((program.entry as usize) < words.max(1), "the entry is outside of the code"),
         (
-            program.lines.iter().all(|line| usize::from(line.source) < program.sources.len() && line.line > 0),
+            (program.lines.iter().chain(&program.call_lines))
+                .chain(program.computed.iter().map(|computed| &computed.line))
+                .all(|line| usize::from(line.source) < program.sources.len() && line.line > 0),
             "a line is of no source",
         ),
+        (program.call_lines.is_empty() || program.call_lines.len() == words, "words come from no line"),
         (
             program.region_of.iter().flatten().all(|&region| usize::from(region) < program.regions.len()),
             "a word is of no region",
@@ -351,8 +388,9 @@ fn consistent(program: &Program) -> Result<(), &'static str> {
         (
             (program.register_names.iter().map(|named| &named.words))
                 .chain(program.holds.iter().map(|held| &held.words))
+                .chain(program.computed.iter().map(|computed| &computed.words))
                 .all(|range| range.start < range.end && range.end as usize <= words),
-            "a register's name or format stands for no words",
+            "a register's name or format, or what a function computes, stands for no words",
         ),
         (
             program.holds.iter().flat_map(|held| &held.format).all(|format| program.formats.contains_key(format)),

@@ -12,7 +12,7 @@ use crate::message::{At, Parsed, Problem};
 #[derive(Clone, Debug)]
 pub(crate) struct OpenRegion {
     pub index: u16,
-    is_function: bool,
+    pub is_function: bool,
     at: At,
 }
 

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::definition::Kind;
+use crate::program::Line;
 
 /// A register that programs can name: the letter of its file, `s`, `v` or `w`, and its number.
 pub type RegisterId = (char, u8);
@@ -28,6 +29,18 @@ pub struct HeldFormat {
     pub format: Option<String>,
     /// The words before whose execution this holds.
     pub words: Range<u32>,
+}
+
+/// An instruction that a function computes in many steps (`.computes`): what is in the operands at the first word gives what is in the results
+/// where the function returns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ComputedInstruction {
+    /// The instruction; the program does not execute it.
+    pub word: u32,
+    /// From the word before which its operands are read to the function's end.
+    pub words: Range<u32>,
+    /// Line of the directive.
+    pub line: Line,
 }
 
 /// A record in memory (`.struct`).

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use messages::Source;
 
-use crate::naming::{HeldFormat, NamedRegister, RecordMap};
+use crate::naming::{ComputedInstruction, HeldFormat, NamedRegister, RecordMap};
 
 /// A line of one of a program's sources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,6 +43,8 @@ pub struct Program {
     pub sources: Vec<Arc<Source>>,
     /// The source line of each word; where a macro made the word, its line in the macro.
     pub lines: Vec<Line>,
+    /// The line outside of all macros that each word came from: its own, or that of the macro's call. Empty where that is not known.
+    pub call_lines: Vec<Line>,
     /// Functions and regions.
     pub regions: Vec<Region>,
     /// The innermost region of each word.
@@ -56,6 +58,8 @@ pub struct Program {
     pub register_names: Vec<NamedRegister>,
     /// Formats of what registers hold, with the words where that is said.
     pub holds: Vec<HeldFormat>,
+    /// Instructions that functions compute in many steps (`.computes`).
+    pub computed: Vec<ComputedInstruction>,
     /// Structures of records in memory.
     pub records: Vec<RecordMap>,
 }
@@ -65,6 +69,17 @@ impl Program {
     pub fn place(&self, pc: u32) -> Option<String> {
         let line = self.lines.get(pc as usize)?;
         Some(format!("{}:{}", self.sources.get(line.source as usize)?.name, line.line))
+    }
+
+    /// The line at which a macro was called that made a word; `None` for a word that no macro made.
+    pub fn call_line(&self, pc: u32) -> Option<Line> {
+        let line = self.call_lines.get(pc as usize)?;
+        (self.lines.get(pc as usize) != Some(line)).then_some(*line)
+    }
+
+    /// Text of a source line, without its end; `None` of a line that no source has.
+    pub fn line_text(&self, line: Line) -> Option<&str> {
+        self.sources.get(usize::from(line.source))?.text.lines().nth((line.line as usize).checked_sub(1)?)
     }
 
     /// Name of the innermost function around a word.

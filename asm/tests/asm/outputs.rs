@@ -159,12 +159,61 @@ fn names_and_formats_of_registers_reach_the_object_file() {
 fn object_files_of_version_1_are_read_without_names_and_formats() {
     let program = tried("nop\n.func f\nhalt\n.endfunc").program;
     assert!(program.formats.is_empty() && program.register_names.is_empty());
-    // Version 1 ends where four empty lists would follow.
+    // Version 1 ends where four empty lists would follow, and version 2 behind them; then come the calls and one more empty list.
     let new = write(&program);
-    let mut old = new[..new.len() - 4 - 16].to_vec();
-    old[8] = 1;
-    old.extend(crc32fast::hash(&old).to_le_bytes());
-    assert_eq!(read(&old), Ok(program));
+    let behind = 4 + 6 * program.words.len() + 4;
+    for (version, missing) in [(1, 16 + behind), (2, behind)] {
+        let mut old = new[..new.len() - 4 - missing].to_vec();
+        old[8] = version;
+        old.extend(crc32fast::hash(&old).to_le_bytes());
+        assert_eq!(read(&old), Ok(Program { call_lines: Vec::new(), ..program.clone() }));
+    }
+}
+
+#[test]
+fn words_know_their_macro_calls_and_functions_what_they_compute() {
+    let text = "\
+        .macro  inner
+        nop
+        .endm
+        .macro  outer
+        .rept   2
+        inner
+        .endr
+        .endm
+        nop
+        .func   root
+        .computes wsqrt s2, w1, 1 + 1
+        outer
+        ret     s31
+        .endfunc
+        .rept   1
+        outer
+        .endr
+";
+    let program = tried(text).finish().unwrap().program;
+    let back = read(&write(&program)).unwrap();
+    assert_eq!(back, program);
+    // The words that macros made are of the lines that called the outermost macro; a repetition is no macro.
+    let lines: Vec<_> =
+        (0..6).map(|pc| (program.lines[pc].line, program.call_line(pc as u32).map(|l| l.line))).collect();
+    assert_eq!(lines, [(9, None), (2, Some(12)), (2, Some(12)), (13, None), (2, Some(16)), (2, Some(16))]);
+    let [computed] = &back.computed[..] else { panic!("{:?}", back.computed) };
+    assert_eq!((computed.words.clone(), computed.line.line), (1..4, 11));
+    assert_eq!(back.line_text(computed.line).map(str::trim), Some(".computes wsqrt s2, w1, 1 + 1"));
+    let word = tried("wsqrt s2, w1, 2").finish().unwrap().program.words[0];
+    assert_eq!(computed.word, word);
+    for (text, message) in [
+        (".computes add s1, s2, s3", "outside of functions"),
+        (".func f\n.computes lw s1, 0(s2)\nnop\n.endfunc", "from registers alone"),
+        (".func f\n.computes sw s1, 0(s2)\nnop\n.endfunc", "from registers alone"),
+        (".func f\n.computes vdto s1, v2, v3, 1\nnop\n.endfunc", "`vdto` is not an instruction"),
+        (".func f\n.computes add s1, s2\nnop\n.endfunc", "takes 3 operands"),
+        (".func f\n.computes mul s1, s2, s3, 64\nnop\n.endfunc", "does not fit"),
+    ] {
+        let report = tried(text).finish().unwrap_err().to_string();
+        assert!(report.contains(message), "{text}: {report}");
+    }
 }
 
 #[test]
@@ -182,7 +231,7 @@ fn damaged_object_files_are_refused() {
     }
     assert_eq!(read(b"no"), Err(ObjectError::Magic));
     assert_eq!(read(b"lancer\x1a\n"), Err(ObjectError::Truncated));
-    assert_eq!(read(b"lancer\x1a\n\x03\x00"), Err(ObjectError::Version(3)));
+    assert_eq!(read(b"lancer\x1a\n\x04\x00"), Err(ObjectError::Version(4)));
     assert_eq!(read(b"lancer\x1a\n\x00\x00"), Err(ObjectError::Version(0)));
     let mut longer = file.clone();
     longer.push(0);
@@ -208,7 +257,7 @@ fn octets_with_a_right_checksum_are_read_or_refused() {
         Ok(())
     });
     check(2_000, &proptest::collection::vec(any::<u8>(), 0..80), |octets| {
-        let mut file = b"lancer\x1a\n\x02\x00".to_vec();
+        let mut file = b"lancer\x1a\n\x03\x00".to_vec();
         file.extend(octets);
         file.extend(crc32fast::hash(&file).to_le_bytes());
         let _ = read(&file);
@@ -220,7 +269,7 @@ fn octets_with_a_right_checksum_are_read_or_refused() {
 fn the_page_of_formats_has_the_parts_of_the_object_file() {
     let (page, code) = (include_str!("../../../docs/formats.md"), include_str!("../../src/object.rs"));
     let rows: Vec<&str> = code.lines().filter_map(|line| line.strip_prefix("//! |")).collect();
-    assert_eq!(rows.len(), 15);
+    assert_eq!(rows.len(), 17);
     for row in rows {
         assert!(page.lines().any(|line| line.strip_prefix('|') == Some(row)), "docs/formats.md lacks |{row}");
     }

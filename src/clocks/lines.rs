@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use emu::code::Code;
 use emu::profile::PlaceUse;
+use isa::program::Line;
 use isa::{Class, Program};
 use serde::Serialize;
 
@@ -83,7 +84,5 @@ pub fn lines(job: &Job, drawing: &Drawing) -> Vec<LineClocks> {
 
 /// A line of a source, without its indentation.
 fn text(program: &Program, source: u16, line: u32) -> String {
-    let source = program.sources.get(usize::from(source));
-    let line = source.and_then(|source| source.text.lines().nth(line.saturating_sub(1) as usize));
-    line.unwrap_or_default().trim().to_owned()
+    program.line_text(Line { source, line }).unwrap_or_default().trim().to_owned()
 }

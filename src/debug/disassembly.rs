@@ -31,9 +31,7 @@ pub fn text(session: &Session, from: u32, count: u32) -> String {
 /// The source line of a word, without its end.
 pub fn source_line(session: &Session, pc: u32) -> Option<String> {
     let program = &session.target.program;
-    let line = program.lines.get(pc as usize)?;
-    let source = program.sources.get(usize::from(line.source))?;
-    source.text.lines().nth(line.line as usize - 1).map(|text| text.trim_end().to_owned())
+    program.line_text(*program.lines.get(pc as usize)?).map(|text| text.trim_end().to_owned())
 }
 
 /// Source lines around a word: `>` marks its own.

@@ -12,7 +12,7 @@ mod text;
 mod totals;
 
 #[cfg(feature = "cli")]
-pub use numbers::{number_text, register_errors, register_numbers};
+pub use numbers::{number_text, register_errors, register_numbers, ulps};
 pub use picture::picture;
 #[cfg(feature = "cli")]
 pub use program::program;

@@ -32,13 +32,18 @@ pub fn register_numbers<'a>(
 
 /// The exact number, how far the machine's is from it, and which lines brought that in: `exact 0.6, error -0.40 ulp, 31 good bits (unit.s:9 -0.40)`.
 pub fn number_text(number: ShadowedNumber, programs: &SourcePrograms) -> String {
-    let Some(shadow) = number.shadow else { return "an integer, which has no shadow".into() };
-    let scale = number.scale.or(shadow.scale);
+    // A register that is declared to hold a number, and that no instruction has written, is exact.
+    let scale = number.scale.or(number.shadow.and_then(|shadow| shadow.scale));
+    if number.shadow.is_none() && scale.is_none() {
+        return "an integer, which has no shadow".into();
+    }
     let real = |value: f64| match scale {
         Some(scale) => real_text(value * f64::from(-scale).exp2()),
         None => format!("{} raw", real_text(value)),
     };
-    let Some(deviation) = &shadow.deviation else { return format!("exact {}", real(number.raw as f64)) };
+    let Some(deviation) = number.shadow.and_then(|shadow| shadow.deviation.as_ref()) else {
+        return format!("exact {}", real(number.raw as f64));
+    };
     let (error, bits) = (error_of(number.raw, deviation), deviation.real.good_bits());
     let mut parts: Vec<(u32, f64)> = deviation.parts.iter().collect();
     parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
@@ -65,7 +70,7 @@ pub(super) fn real_text(value: f64) -> String {
 }
 
 /// Units in the last place: two digits behind the point of small numbers, powers of ten of large and very small ones.
-pub(super) fn ulps(number: f64) -> String {
+pub fn ulps(number: f64) -> String {
     match number.abs() {
         0.0 => "0".into(),
         magnitude if (0.005..1e5).contains(&magnitude) => format!("{number:.2}"),
@@ -78,6 +83,7 @@ pub(super) fn ulps(number: f64) -> String {
 pub fn register_errors(stepper: &Stepper, register: RegisterId) -> Option<[f64; 3]> {
     let error = |number: ShadowedNumber| match number.shadow {
         Some(shadow) => shadow.deviation.as_ref().map_or(0.0, |deviation| error_of(number.raw, deviation)),
+        None if number.scale.is_some() => 0.0,
         None => f64::NAN,
     };
     let mut errors = [f64::NAN; 3];

@@ -25,7 +25,7 @@ pub fn program(
     for &register in registers {
         for (name, number) in register_numbers(stepper, shadow, register) {
             // Integers are no numbers, unless somebody asked for them.
-            if number.shadow.is_some() || !chosen.is_empty() {
+            if number.shadow.is_some() || number.scale.is_some() || !chosen.is_empty() {
                 totals.add_output(&programs, || name, number, OutputWeight::Shares);
             }
         }

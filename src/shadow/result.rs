@@ -14,7 +14,8 @@ pub struct ShadowResult {
     pub largest_ulps: f64,
     /// Root of the mean square of all their errors in units in the last place.
     pub root_mean_square_ulps: f64,
-    /// Lines of which the final errors consist, the one with the largest share first.
+    /// Lines of which the final errors consist, and those whose errors turned decisions: first those whose shifts contradict declared formats, then
+    /// the one with the largest share first.
     pub where_precision_died: Vec<DiedLine>,
     /// Share of the final errors that belongs to lines too small to be followed, in [0, 1].
     pub other_share: f64,
@@ -33,8 +34,10 @@ pub struct ShadowResult {
 /// A source line and its part of the final errors.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct DiedLine {
-    /// `file:line`, or the word where there are no sources.
+    /// `file:line` outside of macros, or the word where there are no sources.
     pub place: String,
+    /// `file:line` within the macro that is called there; `None` where none is.
+    pub macro_place: Option<String>,
     /// The function around it.
     pub function: Option<String>,
     /// Text of the line.
@@ -47,6 +50,8 @@ pub struct DiedLine {
     pub largest_ulps: f64,
     /// Numbers at the end to whose error the line belongs.
     pub outputs: u64,
+    /// Decisions anywhere that were turned by an error of which the line's part is the largest.
+    pub turned_by: u64,
 }
 
 /// A number at the end.
@@ -84,8 +89,10 @@ pub struct OutputPart {
 /// Errors of a source line.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ShadowLine {
-    /// `file:line`, or the word where there are no sources.
+    /// `file:line` outside of macros, or the word where there are no sources.
     pub place: String,
+    /// `file:line` within the macro that is called there; `None` where none is.
+    pub macro_place: Option<String>,
     /// The function around it.
     pub function: Option<String>,
     /// Text of the line.
@@ -108,6 +115,8 @@ pub struct ShadowLine {
     pub decisions: u64,
     /// Decisions that exact arithmetic would have taken otherwise.
     pub turned: u64,
+    /// Decisions anywhere that were turned by an error of which the line's part is the largest.
+    pub turned_by: u64,
     /// Results of which cancellation left fewer than 20 good bits.
     pub cancelled: u64,
     /// Fewest good bits of those.

@@ -37,22 +37,33 @@ fn function(name: Option<&str>, is_main: bool) -> String {
     if is_main { format!("{name} (main)") } else { name.to_owned() }
 }
 
+/// The line, and behind it that of the macro that it calls.
+fn shown_place(place: &str, macro_place: Option<&str>) -> String {
+    macro_place.map_or_else(|| place.to_owned(), |inner| format!("{place} ({inner})"))
+}
+
 /// The ranking of lines by their share of the final errors.
 pub fn died_table(died: &[DiedLine], other_share: f64) -> String {
     if died.is_empty() {
         return "where precision died: nowhere, the results are exact\n".into();
     }
+    let has_turned = died.iter().take(RANKED).any(|line| line.turned_by != 0);
     let mut rows = vec![row(["rank", "share", "largest, ulp", "line", "function", "source"])];
     rows.extend((1..).zip(died).take(RANKED).map(|(rank, line): (usize, &DiedLine)| {
         vec![
             rank.to_string(),
             share(line.share),
             ulps(line.largest_ulps),
-            line.place.clone(),
+            shown_place(&line.place, line.macro_place.as_deref()),
             function(line.function.as_deref(), line.is_main),
             shortened(&line.source),
         ]
     }));
+    // Decisions have a column only where errors turned some.
+    if has_turned {
+        let turned = std::iter::once("turned".to_owned()).chain(died.iter().map(|line| grouped(line.turned_by)));
+        rows.iter_mut().zip(turned).for_each(|(row, turned)| row.insert(3, turned));
+    }
     let more = match died.len().saturating_sub(RANKED) {
         0 => String::new(),
         more => {
@@ -75,7 +86,10 @@ fn remarks(lines: &[ShadowLine]) -> String {
         if let Some(gap) = line.format_gap {
             text += &format!(
                 "{}: the shift gives {} fraction bits, but `.holds` says {}: `{}`\n",
-                line.place, gap.computed, gap.declared, line.source
+                shown_place(&line.place, line.macro_place.as_deref()),
+                gap.computed,
+                gap.declared,
+                line.source
             );
         }
         if line.doubtful != 0 {
@@ -110,7 +124,7 @@ fn line_table(lines: &[ShadowLine]) -> String {
         vec![row(["line", "brought in, ulp", "as a value", "arrived, ulp", "as a value", "saturated", "turned"])];
     rows.extend(wrong.iter().take(LINES).map(|line| {
         vec![
-            line.place.clone(),
+            shown_place(&line.place, line.macro_place.as_deref()),
             ulps(line.brought_ulps),
             real(line.brought),
             ulps(line.arrived_ulps),

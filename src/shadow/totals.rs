@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use emu::shadow::{Deviation, ErrorParts, LineErrors, LongReal, ShadowLedger, ShadowNumber, ShadowProgram};
 use isa::Program;
+use isa::program::Line;
 
 use super::result::{DiedLine, FormatGapResult, OutputPart, ShadowFunction, ShadowLine, ShadowOutput, ShadowResult};
 
@@ -18,8 +19,10 @@ const PARTS: usize = 5;
 pub struct SiteKey {
     /// True for the main processor's program.
     pub is_main: bool,
-    /// Source and line; of a program without sources the word.
+    /// Source and line, outside of macros; of a program without sources the word.
     pub place: (u16, u32),
+    /// Source and line within a macro.
+    pub macro_place: Option<(u16, u32)>,
     /// Function around it.
     pub function: Option<String>,
 }
@@ -39,8 +42,10 @@ impl SourcePrograms<'_> {
         let of = |program: &ShadowProgram, is_main: bool| {
             let site = program.sites.sites.get(site.checked_sub(program.first_site)? as usize)?;
             let word = site.words.first().copied().unwrap_or(0);
-            let place = site.line.map_or((u16::MAX, word), |line| (line.source, line.line));
-            Some(SiteKey { is_main, place, function: site.function.clone() })
+            let of_line = |line: Line| (line.source, line.line);
+            let place = site.call.or(site.line).map_or((u16::MAX, word), of_line);
+            let macro_place = site.call.and(site.line).map(of_line);
+            Some(SiteKey { is_main, place, macro_place, function: site.function.clone() })
         };
         let main = self.main.and_then(|(_, main)| of(main, true));
         main.or_else(|| of(self.core.1, false))
@@ -48,23 +53,34 @@ impl SourcePrograms<'_> {
 
     /// `file:line` of a site.
     pub fn place(&self, site: u32) -> String {
-        self.key(site).map_or_else(String::new, |key| self.line(&key).0)
+        self.key(site).map_or_else(String::new, |key| self.line(&key).place)
     }
 
-    /// `file:line` of a line, and its text.
-    fn line(&self, key: &SiteKey) -> (String, String) {
+    /// `file:line` of a line, with that in the macro, and its text.
+    fn line(&self, key: &SiteKey) -> SourcePlace {
         let program = match (key.is_main, self.main) {
             (true, Some((main, _))) => main,
             _ => self.core.0,
         };
-        let (source, line) = key.place;
-        let Some(file) = program.sources.get(usize::from(source)) else {
-            return (format!("word {line}"), String::new());
+        let named = |(source, line): (u16, u32)| {
+            program.sources.get(usize::from(source)).map(|file| format!("{}:{line}", file.name))
         };
-        let text = file.text.lines().nth((line as usize).saturating_sub(1)).unwrap_or_default();
-        let text = text.split(';').next().unwrap_or_default().trim();
-        (format!("{}:{line}", file.name), text.split_whitespace().collect::<Vec<_>>().join(" "))
+        let (source, line) = key.place;
+        let text = program.line_text(Line { source, line }).unwrap_or_default();
+        let text = text.split(';').next().unwrap_or_default();
+        SourcePlace {
+            place: named(key.place).unwrap_or_else(|| format!("word {line}")),
+            macro_place: key.macro_place.and_then(named),
+            text: text.split_whitespace().collect::<Vec<_>>().join(" "),
+        }
     }
+}
+
+/// A line as people are shown it.
+struct SourcePlace {
+    place: String,
+    macro_place: Option<String>,
+    text: String,
 }
 
 /// All that is known of a line.
@@ -226,32 +242,41 @@ impl ShadowTotals {
     pub fn result(&self, programs: &SourcePrograms) -> ShadowResult {
         let weighted = self.lines.values().map(|line| line.weighted).sum::<f64>() + self.rest;
         let share = |part: f64| if weighted == 0.0 { 0.0 } else { part / weighted };
-        let mut died: Vec<DiedLine> = Vec::new();
+        let (mut mistakes, mut died): (Vec<DiedLine>, Vec<DiedLine>) = Default::default();
         let mut lines = Vec::new();
         let mut functions: BTreeMap<(bool, Option<String>), ShadowFunction> = BTreeMap::new();
         for (key, totals) in &self.lines {
-            let (place, source) = programs.line(key);
+            let SourcePlace { place, macro_place, text: source } = programs.line(key);
             let (function, is_main, errors) = (key.function.clone(), key.is_main, &totals.errors);
-            if totals.weighted != 0.0 {
+            // A shift that contradicts the formats is a mistake, even where decisions have hidden what it did to the numbers.
+            let is_mistake = errors.gap.is_some();
+            if totals.weighted != 0.0 || is_mistake || errors.turned_by != 0 {
+                let died = if is_mistake { &mut mistakes } else { &mut died };
                 died.push(DiedLine {
                     place: place.clone(),
+                    macro_place: macro_place.clone(),
                     function: function.clone(),
                     source: source.clone(),
                     is_main,
                     share: share(totals.weighted),
                     largest_ulps: totals.largest,
                     outputs: totals.outputs,
+                    turned_by: errors.turned_by,
                 });
             }
             let sum = functions.entry((is_main, function.clone())).or_insert_with(|| ShadowFunction::new(key));
             sum.add(errors, share(totals.weighted));
-            lines.push(ShadowLine::new(place, source, key, errors));
+            lines.push(ShadowLine::new(place, macro_place, source, key, errors));
         }
         // Of equal shares the first line comes first.
-        died.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let ranked = |mut lines: Vec<DiedLine>| {
+            lines.sort_by(|a, b| b.share.total_cmp(&a.share).then(b.turned_by.cmp(&a.turned_by)));
+            lines
+        };
+        let where_precision_died = [ranked(mistakes), ranked(died)].concat();
         let outputs = self.worst.iter().map(|(output, parts)| {
             let part = |(key, ulps): &(SiteKey, f64)| OutputPart {
-                place: programs.line(key).0,
+                place: programs.line(key).place,
                 function: key.function.clone(),
                 ulps: *ulps,
             };
@@ -262,7 +287,7 @@ impl ShadowTotals {
             different: self.different,
             largest_ulps: self.largest,
             root_mean_square_ulps: if self.compared == 0 { 0.0 } else { (self.squares / self.compared as f64).sqrt() },
-            where_precision_died: died,
+            where_precision_died,
             other_share: share(self.rest),
             outputs: outputs.collect(),
             decisions: lines.iter().map(|line: &ShadowLine| line.decisions).sum(),
@@ -274,9 +299,16 @@ impl ShadowTotals {
 }
 
 impl ShadowLine {
-    fn new(place: String, source: String, key: &SiteKey, errors: &LineErrors) -> ShadowLine {
+    fn new(
+        place: String,
+        macro_place: Option<String>,
+        source: String,
+        key: &SiteKey,
+        errors: &LineErrors,
+    ) -> ShadowLine {
         ShadowLine {
             place,
+            macro_place,
             function: key.function.clone(),
             source,
             is_main: key.is_main,
@@ -288,6 +320,7 @@ impl ShadowLine {
             saturated: errors.saturated,
             decisions: errors.decisions,
             turned: errors.turned,
+            turned_by: errors.turned_by,
             cancelled: errors.cancelled,
             fewest_good_bits: errors.fewest_bits,
             doubtful: errors.doubtful,

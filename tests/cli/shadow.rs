@@ -40,6 +40,9 @@ fn a_planted_loss_is_named_first_at_its_line() {
             "weight_now, weight",
         ),
         ("report", "report", "shade", "mul   s13, s13, s14, weight", "s14, weight"),
+        // Shifts of macros: the line is that of the call.
+        ("report", "report", "shade", "scale_vector v25, v25, s13, weight", "s13, weight"),
+        ("report", "report", "reflect", "scale_vector v6, facing, s12, dir", "s12, dir"),
     ];
     for (profile, set, kernel, line, shift) in cases {
         let (text, number) = planted(set, kernel, line, shift);
@@ -54,8 +57,61 @@ fn a_planted_loss_is_named_first_at_its_line() {
             let lines = result["shadow"]["lines"].as_array().unwrap();
             let gap = lines.iter().find(|line| !line["format_gap"].is_null()).unwrap();
             assert_eq!(gap["place"], first["place"], "{options}: the shift contradicts the formats");
+            let is_macro = line.starts_with("scale_vector");
+            assert_eq!(first["macro_place"].is_string(), is_macro, "{first}");
         }
     }
+}
+
+#[test]
+fn a_planted_loss_that_only_turns_decisions_is_named_first() {
+    let session = Session::new();
+    // With a cosine that is half as large, nearly every refracted ray is taken for a total reflection.
+    let (text, number) = planted("report", "refract", "mul   s12, cosine, cosine, dir", "cosine, dir");
+    session.write("planted.s", &text);
+    for word in [32, 20] {
+        let options = format!("{PICTURE} --profile report --kernel refract=planted.s --word {word}");
+        let result = session.json(&options);
+        let first = &result["shadow"]["where_precision_died"][0];
+        assert_eq!(first["place"], format!("planted.s:{number}"), "{options}: {first}");
+        assert!(first["turned_by"].as_u64().unwrap() > 100, "{options}: {first}");
+    }
+}
+
+#[test]
+fn a_root_bit_by_bit_keeps_its_shadow() {
+    let session = Session::new();
+    // Three decimals of a length, whose root is taken by the kernel of `report`.
+    let root = project("kernels/asm/report/sqrt.s").replace("link_leaf", "s25");
+    let text = format!(
+        ".equ WORD, 32\n.format pos, 16\n.entry start\n.func start\n.holds s1, pos\nwmul w0, s1, s1\n\
+         call s25, sqrt\n.holds s12, pos\nhalt\n.endfunc\n.func start2\nmul s2, s1, s1, 0\n.endfunc\n{root}"
+    );
+    session.write("root.s", &text);
+    let at = |text: &str| text.lines().position(|line| line.contains(".computes")).unwrap() + 1;
+    // 5 squared, and a number whose square is the square of itself: no error but that of the root.
+    let exact = session.json("run root.s --shadow --reg s1=5:pos --show s12 --json");
+    assert_eq!((&exact["shadow"]["compared"], &exact["shadow"]["different"]), (&1.into(), &0.into()), "{exact}");
+    let text = text.replace("wmul w0, s1, s1\n", "wmul w0, s1, s1\nwmac w0, s1, s1\n");
+    session.write("root.s", &text);
+    let rounded = session.json("run root.s --shadow --reg s1=5:pos --show s12 --json");
+    let first = &rounded["shadow"]["where_precision_died"][0];
+    assert_eq!((&first["place"], &first["function"]), (&format!("root.s:{}", at(&text)).into(), &"sqrt".into()));
+    let output = &rounded["shadow"]["outputs"][0];
+    let exact = 50f64.sqrt();
+    assert!((output["exact_real"].as_f64().unwrap() - exact).abs() < 1e-12, "{output}");
+    assert!(output["error_ulps"].as_f64().unwrap().abs() <= 0.5, "{output}");
+}
+
+#[test]
+fn registers_that_are_declared_and_not_written_are_exact_numbers() {
+    let session = Session::new();
+    let text = ".format pos, 16\n.func start\n.holds s5, pos\n.holds v1, pos\nmul s6, s5, s5, pos\nhalt\n.endfunc\n";
+    session.write("held.s", text);
+    session.write("script.txt", "shadow s5,v1\nstep\nshadow s6\n");
+    let text = session.succeed("debug held.s --shadow --reg s5=1.5:pos --commands script.txt");
+    assert!(text.contains("s5=98304: exact 1.5\n") && text.contains("v1.y=0: exact 0\n"), "{text}");
+    assert!(text.contains("s6=147456: exact 2.25\n"), "{text}");
 }
 
 #[test]

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use isa::Program;
 use isa::program::Line;
 
+use super::long_real::power;
+
 /// Good bits below which cancellation is told of.
 pub const FEW_GOOD_BITS: f64 = 20.0;
 
@@ -13,6 +15,8 @@ pub const FEW_GOOD_BITS: f64 = 20.0;
 pub struct ShadowSite {
     /// The line; `None` in a program without sources, where each word is a site.
     pub line: Option<Line>,
+    /// The line that called a macro which made the words; `None` where no macro did.
+    pub call: Option<Line>,
     /// Function around it.
     pub function: Option<String>,
     /// Words of the line.
@@ -24,6 +28,8 @@ pub struct ShadowSite {
 pub struct ShadowSites {
     /// The sites, in the order of their first words.
     pub sites: Vec<ShadowSite>,
+    /// Sites of the instructions that functions compute (`.computes`), in the order of the program's list. They have no words.
+    pub computed: Vec<u32>,
     of: Vec<u32>,
 }
 
@@ -31,20 +37,26 @@ impl ShadowSites {
     /// The sites of a program.
     pub fn new(program: &Program) -> ShadowSites {
         let mut sites = ShadowSites::default();
-        let mut known: BTreeMap<(Option<Line>, Option<u16>, u32), u32> = BTreeMap::new();
+        let mut known: BTreeMap<(Option<Line>, Option<Line>, Option<u16>, u32), u32> = BTreeMap::new();
         for word in 0..program.words.len() as u32 {
             let line = program.lines.get(word as usize).copied();
             let region = program.region_of.get(word as usize).copied().flatten();
             // Words without a line are told apart by themselves.
-            let key = (line, region, if line.is_none() { word } else { 0 });
+            let call = program.call_line(word);
+            let key = (line, call, region, if line.is_none() { word } else { 0 });
             let next = sites.sites.len() as u32;
             let site = *known.entry(key).or_insert(next);
             if site == next {
                 let function = program.function(word).map(str::to_owned);
-                sites.sites.push(ShadowSite { line, function, words: Vec::new() });
+                sites.sites.push(ShadowSite { line, call, function, words: Vec::new() });
             }
             sites.sites[site as usize].words.push(word);
             sites.of.push(site);
+        }
+        for computed in &program.computed {
+            sites.computed.push(sites.sites.len() as u32);
+            let function = program.function(computed.words.start).map(str::to_owned);
+            sites.sites.push(ShadowSite { line: Some(computed.line), call: None, function, words: Vec::new() });
         }
         sites
     }
@@ -70,7 +82,7 @@ impl LargestError {
         let ulps = ulps.abs().min(f64::MAX);
         self.ulps = self.ulps.max(ulps);
         if let Some(scale) = scale {
-            self.value = self.value.max((ulps * f64::from(-scale).exp2()).min(f64::MAX));
+            self.value = self.value.max((ulps * power(-scale)).min(f64::MAX));
         }
     }
 
@@ -111,6 +123,8 @@ pub struct LineErrors {
     pub doubtful: u64,
     /// A shift that contradicts the declared formats.
     pub gap: Option<FormatGap>,
+    /// Decisions, of this line and of others, that were turned by an error of which this line's part is the largest.
+    pub turned_by: u64,
 }
 
 /// A result, as a ledger takes note of it.
@@ -161,6 +175,7 @@ impl LineErrors {
         };
         self.doubtful += other.doubtful;
         self.gap = self.gap.or(other.gap);
+        self.turned_by += other.turned_by;
     }
 }
 
@@ -189,6 +204,21 @@ impl ShadowLedger {
         if let Some(line) = self.lines.get_mut(site as usize) {
             line.decisions += u64::from(decisions);
             line.turned += u64::from(turned);
+        }
+    }
+
+    /// Notes that a shift of a line contradicts a format that is declared further on, and how much that makes of one number.
+    pub fn note_gap(&mut self, site: u32, gap: FormatGap, brought: f64) {
+        if let Some(line) = self.lines.get_mut(site as usize) {
+            line.brought.note(brought, Some(gap.declared));
+            line.gap = line.gap.or(Some(gap));
+        }
+    }
+
+    /// Notes that a line's error has turned a decision.
+    pub fn blame(&mut self, site: u32) {
+        if let Some(line) = self.lines.get_mut(site as usize) {
+            line.turned_by += 1;
         }
     }
 

@@ -25,7 +25,7 @@ pub struct LongReal {
 }
 
 /// 2^by, within the range of doubles.
-fn power(by: i32) -> f64 {
+pub(super) fn power(by: i32) -> f64 {
     match by {
         1024.. => f64::INFINITY,
         ..-1022 => f64::MIN_POSITIVE,

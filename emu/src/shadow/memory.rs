@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     fn scaled(scale: i32) -> Option<ShadowNumber> {
-        Some(ShadowNumber { scale: Some(scale), deviation: None })
+        Some(ShadowNumber { scale: Some(scale), ..ShadowNumber::default() })
     }
 
     #[test]

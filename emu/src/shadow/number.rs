@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::long_real::LongReal;
+use super::long_real::{LongReal, power};
 use super::parts::ErrorParts;
 
 /// A real number that differs from the machine's, in units of the register, and the parts of the difference.
@@ -21,6 +21,8 @@ pub struct ShadowNumber {
     pub deviation: Option<Arc<Deviation>>,
     /// Fraction bits that the number has, where a declared format and exact formulas tell.
     pub scale: Option<i32>,
+    /// Site of the line whose shift gave it these bits, as long as no declaration has said that they are right.
+    pub fitted: Option<u32>,
 }
 
 /// A number in a formula: the formula's exact value on the machine's numbers, and on their shadows.
@@ -34,12 +36,14 @@ pub struct ShadowTerm {
     pub scale: Option<i32>,
     /// Exponent of the largest term that was added on the way in this formula; `None` where nothing was added.
     pub largest: Option<i32>,
+    /// Site of the line whose shift gave it its fraction bits, as in [`ShadowNumber`].
+    pub fitted: Option<u32>,
 }
 
 impl ShadowTerm {
     /// A number that is known exactly, such as one of the program's constants.
     pub fn whole(raw: i64) -> ShadowTerm {
-        ShadowTerm { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None }
+        ShadowTerm { machine: LongReal::whole(raw.into()), deviation: None, scale: None, largest: None, fitted: None }
     }
 
     /// The machine's number with its shadow; a number without one begins anew at the machine's.
@@ -47,6 +51,7 @@ impl ShadowTerm {
         ShadowTerm {
             deviation: shadow.and_then(|shadow| shadow.deviation.clone()),
             scale: shadow.and_then(|shadow| shadow.scale),
+            fitted: shadow.and_then(|shadow| shadow.fitted),
             ..ShadowTerm::whole(raw)
         }
     }
@@ -56,7 +61,7 @@ impl ShadowTerm {
         self.deviation.as_ref().map_or(&self.machine, |deviation| &deviation.real)
     }
 
-    fn parts(&self, factor: f64) -> ErrorParts {
+    pub(super) fn parts(&self, factor: f64) -> ErrorParts {
         self.deviation.as_ref().map_or(ErrorParts::NONE, |deviation| deviation.parts.times(factor))
     }
 
@@ -80,6 +85,8 @@ impl ShadowTerm {
             // Numbers of two formats have no sum that has one; a number without a known format takes that of the other one where it is 0.
             scale: if self.scale == other.scale { self.scale } else { self.scale_beside_zero(other) },
             largest: exponent(self).max(exponent(other)),
+            // A sum has the format of its terms, by the same shift.
+            fitted: self.fitted.or(other.fitted),
         };
         sum.with(self.deviates(other), || Deviation {
             real: add(self.real(), other.real()),
@@ -119,11 +126,10 @@ impl ShadowTerm {
             scale: self.scale.map(|scale| scale + by),
             largest: self.largest.map(|largest| largest + by),
             deviation: None,
+            fitted: None,
         };
-        scaled.with(self.deviation.is_some(), || Deviation {
-            real: self.real().scaled(by),
-            parts: self.parts(f64::from(by).exp2()),
-        })
+        scaled
+            .with(self.deviation.is_some(), || Deviation { real: self.real().scaled(by), parts: self.parts(power(by)) })
     }
 
     /// The product. The parts come from `a b - a' b' = (a - a') b' + a (b - b')`.
@@ -133,6 +139,7 @@ impl ShadowTerm {
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a + b),
             largest: None,
+            fitted: None,
         };
         product.with(self.deviates(other), || Deviation {
             real: self.real().times(other.real()),
@@ -148,6 +155,7 @@ impl ShadowTerm {
             deviation: None,
             scale: self.scale.zip(other.scale).map(|(a, b)| a - b),
             largest: None,
+            fitted: None,
         };
         if !self.deviates(other) {
             return Some(quotient);
@@ -164,7 +172,7 @@ impl ShadowTerm {
         let machine = self.machine.root()?;
         // Half of an odd number of fraction bits is no number of bits.
         let scale = self.scale.filter(|scale| scale % 2 == 0).map(|scale| scale / 2);
-        let root = ShadowTerm { machine, deviation: None, scale, largest: None };
+        let root = ShadowTerm { machine, deviation: None, scale, largest: None, fitted: None };
         if self.deviation.is_none() {
             return Some(root);
         }

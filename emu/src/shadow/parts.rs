@@ -77,6 +77,13 @@ impl ErrorParts {
 
     /// The parts of both, those of one line added.
     pub fn plus(&self, other: &ErrorParts) -> ErrorParts {
+        // Most operands of an instruction are exact.
+        if other.length == 0 && other.rest == 0.0 {
+            return *self;
+        }
+        if self.length == 0 && self.rest == 0.0 {
+            return *other;
+        }
         let mut sum = ErrorParts { rest: finite(f64::from(self.rest) + f64::from(other.rest)), ..ErrorParts::NONE };
         let (ends, mut a, mut b) = ((usize::from(self.length), usize::from(other.length)), 0, 0);
         // Both lists ascend, so the next site is the lesser of the two in front.

@@ -1,21 +1,21 @@
 //! The shadow of one core: registers, buffer and messages, kept up with the machine's by the interpreter's observer.
 
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::sync::Arc;
 
 use isa::naming::RegisterId;
 use isa::number::Modes;
-use isa::{Op, Program};
+use isa::{Fields, Op};
 
-use super::ledger::{ShadowLedger, ShadowSites};
+use super::ledger::ShadowLedger;
 use super::memory::ShadowMemory;
 use super::number::{ShadowNumber, ShadowTerm};
+use super::program::{CELLS, FILE, ShadowProgram, WordMark, cells, scalar_cell, vector_cell, wide_cell};
 use super::rows::{
     BusRoom, ControlRoom, IntegerRoom, LocalRoom, PacketRoom, RayRoom, RealFormulas, RealResult, ScalarRoom,
     ShadowEffect, ShadowInput, VectorRoom, WalkRoom, WideRoom,
 };
-use super::settle::{ResultPlace, moved, settle};
+use super::settle::{ResultPlace, Settled, corrected, moved, settle};
 use crate::code::octets::Buffer;
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
@@ -23,57 +23,8 @@ use crate::code::{Code, Slot};
 use crate::profile::{Observer, Profile, ProfileLevel, UnitCount};
 use crate::semantics::{Motion, split_operands};
 
-/// Registers of a file, hidden ones of extensions' bodies among them.
-const FILE: usize = 64;
-
-/// Scalars, then the components of vectors, then wide accumulators.
-const CELLS: usize = FILE + 3 * FILE + FILE;
-
 /// Shadows of the components of a message's vector.
 pub type MessageVector = [Option<ShadowNumber>; 3];
-
-/// Everything about a program that its shadows need and that does not change.
-#[derive(Clone, Debug)]
-pub struct ShadowProgram {
-    /// The sites of its errors.
-    pub sites: ShadowSites,
-    /// Number of the first site among those of all programs of a run.
-    pub first_site: u32,
-    /// Declared fraction bits of the two registers that a word writes, behind it.
-    declared: Vec<[Option<i8>; 2]>,
-    modes: Modes,
-}
-
-impl ShadowProgram {
-    /// A decoded program on a machine of such words. Its sites are numbered from `first_site` on.
-    pub fn new(code: &Code, modes: Modes, first_site: u32) -> ShadowProgram {
-        let program = code.program;
-        let declared = (0..code.words()).map(|word| {
-            let mut formats = [None; 2];
-            // What an instruction with a body writes is written by the steps of that.
-            let row = code.row(word).filter(|_| code.slots()[word as usize].op == code.op(word));
-            let written =
-                row.iter().flat_map(|row| row.operands.iter()).filter(|operand| b"dexy".contains(&operand.letter));
-            for (format, operand) in formats.iter_mut().zip(written) {
-                let number = code.slots()[word as usize].fields.get(operand.letter) as u8;
-                let register = operand.kind.register_file().map(|file| (file, number));
-                *format = register.and_then(|register| declared_behind(program, register, word));
-            }
-            formats
-        });
-        ShadowProgram { sites: ShadowSites::new(program), first_site, declared: declared.collect(), modes }
-    }
-}
-
-/// Fraction bits of what a register holds behind a word, as far as the program says.
-fn declared_behind(program: &Program, register: RegisterId, word: u32) -> Option<i8> {
-    // What stands behind the last word of a function says nothing about it.
-    let (next, here) = (word + 1, program.function(word));
-    let next = if program.function(next) == here && (next as usize) < program.words.len() { next } else { word };
-    // Shifts speak of the bits of the arithmetic, whatever units people are shown.
-    let (name, _) = program.format_of(register, next)?;
-    program.formats.get(name).map(|bits| *bits as i8)
-}
 
 /// Shadows of a message, and what is known of the program that sent it.
 #[derive(Clone, Debug)]
@@ -89,7 +40,15 @@ pub struct ShadowLetter {
 struct Expected {
     cell: usize,
     result: RealResult,
-    declared: Option<i32>,
+}
+
+/// Decisions of an instruction on numbers with shadows.
+#[derive(Clone, Debug, Default)]
+struct Decisions {
+    all: u32,
+    turned: u32,
+    /// Sites whose errors turned comparisons.
+    blamed: Vec<u32>,
 }
 
 /// The shadow of a core.
@@ -111,33 +70,10 @@ pub struct Shadow {
     /// Number of this core.
     core: u32,
     expected: Vec<Expected>,
+    /// Results of the formulas that functions compute in many steps, which wait for their returns.
+    computed: Vec<Vec<Expected>>,
     effect: ShadowEffect,
-    decisions: (u32, u32),
-}
-
-/// Place of a scalar among the cells.
-fn scalar_cell(number: u8) -> usize {
-    usize::from(number) % FILE
-}
-
-/// Place of a vector's component.
-fn vector_cell(number: u8, component: usize) -> usize {
-    FILE + 3 * (usize::from(number) % FILE) + component
-}
-
-/// Place of a wide accumulator.
-fn wide_cell(number: u8) -> usize {
-    4 * FILE + usize::from(number) % FILE
-}
-
-/// Places of a register: one, or three of a vector.
-fn cells_of((file, number): RegisterId) -> Range<usize> {
-    let (first, count) = match file {
-        's' => (scalar_cell(number), 1),
-        'v' => (vector_cell(number, 0), 3),
-        _ => (wide_cell(number), 1),
-    };
-    first..first + count
+    decisions: Decisions,
 }
 
 impl Shadow {
@@ -145,6 +81,7 @@ impl Shadow {
     pub fn new(program: Arc<ShadowProgram>, core: u32) -> Shadow {
         let sites = program.sites.sites.len();
         Shadow {
+            computed: vec![Vec::new(); program.computed.len()],
             program,
             cells: vec![None; CELLS],
             buffer: ShadowMemory::default(),
@@ -155,24 +92,25 @@ impl Shadow {
             core,
             expected: Vec::new(),
             effect: ShadowEffect::Nothing,
-            decisions: (0, 0),
+            decisions: Decisions::default(),
         }
     }
 
     /// The core begins a work item: all is as after reset, and what it has learnt of the lines stays.
     pub fn begin(&mut self) {
         self.cells.fill(None);
+        self.computed.iter_mut().for_each(Vec::clear);
         self.buffer.clear();
     }
 
     /// Shadows of a register: one, or three of a vector.
     pub fn of(&self, register: RegisterId) -> Vec<Option<&ShadowNumber>> {
-        self.cells[cells_of(register)].iter().map(Option::as_ref).collect()
+        self.cells[cells(register)].iter().map(Option::as_ref).collect()
     }
 
     /// Numbers of a register that was written without a formula begin anew at the machine's.
     fn forget(&mut self, register: RegisterId) {
-        self.cells[cells_of(register)].fill(None);
+        self.cells[cells(register)].fill(None);
     }
 
     /// Registers were changed by hand: shadows of those that differ begin anew.
@@ -199,10 +137,47 @@ impl Shadow {
 
     /// Sees the operands of an instruction that is about to be executed.
     fn expect_results(&mut self, pc: u32, slot: &Slot, registers: &Registers, buffer: &Buffer) {
-        let fields = &slot.fields;
+        for read in self.program.declared_reads(pc) {
+            self.declare(read, registers);
+        }
+        if let WordMark::Reads(number) = self.program.mark(pc) {
+            let formula = self.program.computed[usize::from(number)];
+            let mut results = std::mem::take(&mut self.computed[usize::from(number)]);
+            self.evaluate(Some(formula.op), &formula.fields, registers, buffer, &mut results);
+            self.computed[usize::from(number)] = results;
+        }
         let mut expected = std::mem::take(&mut self.expected);
+        (self.decisions, self.effect) = self.evaluate(slot.op, &slot.fields, registers, buffer, &mut expected);
+        self.expected = expected;
+    }
+
+    /// A cell is read where the program declares its format: from here on it holds a number of that.
+    fn declare(&mut self, read: usize, registers: &Registers) {
+        let read = self.program.declared_read(read);
+        let (cell, declared) = (usize::from(read.cell), i32::from(read.scale));
+        let number = self.cells[cell].get_or_insert_default();
+        match number.scale {
+            Some(scale) if scale == declared => number.fitted = None,
+            None => number.scale = Some(declared),
+            Some(_) => {
+                let gap = corrected(number, raw_of(registers, cell), declared);
+                if let Some((site, gap, brought)) = gap {
+                    self.ledger.note_gap(site.wrapping_sub(self.program.first_site), gap, brought);
+                }
+            }
+        }
+    }
+
+    /// Evaluates the exact formula of an instruction on the numbers of the registers.
+    fn evaluate(
+        &self,
+        op: Option<Op>,
+        fields: &Fields,
+        registers: &Registers,
+        buffer: &Buffer,
+        expected: &mut Vec<Expected>,
+    ) -> (Decisions, ShadowEffect) {
         expected.clear();
-        let declared = self.program.declared.get(pc as usize).copied().unwrap_or_default();
         let mut formulas = RealFormulas {
             buffer,
             local: &self.buffer,
@@ -210,6 +185,7 @@ impl Shadow {
             modes: self.program.modes,
             decisions: 0,
             turned: 0,
+            blamed: Vec::new(),
             effect: ShadowEffect::Nothing,
             note_register: fields.y,
             message_register: fields.d,
@@ -255,43 +231,33 @@ impl Shadow {
                 fields.$letter
             };
         }
-        let mut place = 0;
         /// Notes what a formula says of a written operand.
         macro_rules! expect {
             ($letter:ident S) => {
-                let declared = declared.get(place).copied().flatten().map(i32::from);
-                place += 1;
                 // What is written to `s0` is gone.
                 if fields.$letter != 0 {
-                    expected.push(Expected { cell: scalar_cell(fields.$letter), result: $letter, declared });
+                    expected.push(Expected { cell: scalar_cell(fields.$letter), result: $letter });
                 }
             };
             ($letter:ident W) => {
-                let declared = declared.get(place).copied().flatten().map(i32::from);
-                place += 1;
-                expected.push(Expected { cell: wide_cell(fields.$letter), result: $letter, declared });
+                expected.push(Expected { cell: wide_cell(fields.$letter), result: $letter });
             };
             ($letter:ident V) => {
-                let declared = declared.get(place).copied().flatten().map(i32::from);
-                place += 1;
                 for (k, result) in $letter.into_iter().enumerate() {
-                    expected.push(Expected { cell: vector_cell(fields.$letter, k), result, declared });
+                    expected.push(Expected { cell: vector_cell(fields.$letter, k), result });
                 }
             };
             ($letter:ident W3) => {
-                place += 1;
                 for (at, result) in $letter.into_iter().enumerate() {
-                    let cell = wide_cell(fields.$letter.wrapping_add(at as u8));
-                    expected.push(Expected { cell, result, declared: None });
+                    expected.push(Expected { cell: wide_cell(fields.$letter.wrapping_add(at as u8)), result });
                 }
             };
             // Groups of vectors.
             ($letter:ident $group:ident) => {
-                place += 1;
                 for (at, vector) in $letter.into_iter().enumerate() {
                     for (k, result) in vector.into_iter().enumerate() {
                         let cell = vector_cell(fields.$letter.wrapping_add(at as u8), k);
-                        expected.push(Expected { cell, result, declared: None });
+                        expected.push(Expected { cell, result });
                     }
                 }
             };
@@ -309,7 +275,7 @@ impl Shadow {
             ($($style:ident $room:ident $trait:ident $room_doc:literal {
                 $($(#[doc = $doc:expr])* $name:ident ($($operands:tt)*) $drawn:literal [$($exits:tt)*];)*
             })*) => {
-                match slot.op {
+                match op {
                     $($(Some(Op::$name) => {
                         split_operands! { evaluate { $trait $name } [] [] ($($operands)*) }
                     })*)*
@@ -319,36 +285,26 @@ impl Shadow {
             };
         }
         isa::instructions!(dispatch);
-        let _ = place;
-        self.decisions = (formulas.decisions, formulas.turned);
-        self.effect = formulas.effect;
-        self.expected = expected;
+        let decisions = Decisions { all: formulas.decisions, turned: formulas.turned, blamed: formulas.blamed };
+        (decisions, formulas.effect)
     }
 
-    /// Sees the results of the instruction. `site` is that of its word.
-    fn take_results(&mut self, word: u32, slot: &Slot, code: &Code, registers: &Registers) {
+    /// Sees the results of the instruction at `pc`, which belongs to a word.
+    fn take_results(&mut self, pc: u32, word: u32, slot: &Slot, code: &Code, registers: &Registers) {
         let site = self.program.sites.of(word);
         let mut expected = std::mem::take(&mut self.expected);
-        for Expected { cell, result, declared } in expected.drain(..) {
-            let mut settled = |term: ShadowTerm, is_fitted: bool| {
-                let place =
-                    ResultPlace { site: self.program.first_site + site, raw: raw_of(registers, cell), declared };
-                let (number, result) = settle(term, is_fitted, place);
-                self.ledger.note(site, &result);
-                Some(number)
-            };
-            self.cells[cell] = match result {
-                // Where a number of a format is said to be, it is one from here on.
-                RealResult::Integer => declared.map(|scale| ShadowNumber { deviation: None, scale: Some(scale) }),
-                RealResult::Moved(number) => Some(moved(number, declared)),
-                RealResult::Computed(term) => settled(term, false),
-                RealResult::Fitted(term) => settled(term, true),
-            };
-        }
+        self.settle_all(&mut expected, site, pc, registers);
         self.expected = expected;
-        if self.decisions.0 != 0 {
-            self.ledger.decide(site, self.decisions.0, self.decisions.1);
-            self.decisions = (0, 0);
+        if self.decisions.all != 0 {
+            let Decisions { all, turned, blamed } = std::mem::take(&mut self.decisions);
+            self.ledger.decide(site, all, turned);
+            blamed.into_iter().for_each(|site| self.ledger.blame(site.wrapping_sub(self.program.first_site)));
+        }
+        if let WordMark::Returns(number) = self.program.mark(pc) {
+            let site = self.program.computed[usize::from(number)].site;
+            let mut results = std::mem::take(&mut self.computed[usize::from(number)]);
+            self.settle_all(&mut results, site, pc, registers);
+            self.computed[usize::from(number)] = results;
         }
         if let Some(Op::Ext(_)) = slot.op {
             self.forget_written(slot, code);
@@ -356,6 +312,32 @@ impl Shadow {
         match std::mem::take(&mut self.effect) {
             ShadowEffect::Nothing => {}
             effect => self.take_effect(effect, registers),
+        }
+    }
+
+    /// Puts the machine's results beside the exact ones.
+    fn settle_all(&mut self, expected: &mut Vec<Expected>, site: u32, pc: u32, registers: &Registers) {
+        for Expected { cell, result } in expected.drain(..) {
+            let declared = self.program.declared_behind(pc, cell);
+            let mut settled = |term: ShadowTerm, is_fitted: bool| {
+                let first = self.program.first_site;
+                let place = ResultPlace { site: first + site, raw: raw_of(registers, cell), declared };
+                let Settled { number, entry, elsewhere } = settle(term, is_fitted, place);
+                self.ledger.note(site, &entry);
+                if let Some((site, gap, brought)) = elsewhere {
+                    self.ledger.note_gap(site.wrapping_sub(first), gap, brought);
+                }
+                Some(number)
+            };
+            self.cells[cell] = match result {
+                // Where a number of a format is said to be, it is one from here on.
+                RealResult::Integer => {
+                    declared.map(|scale| ShadowNumber { scale: Some(scale), ..ShadowNumber::default() })
+                }
+                RealResult::Moved(number) => Some(moved(number, declared)),
+                RealResult::Computed(term) => settled(term, false),
+                RealResult::Fitted(term) => settled(term, true),
+            };
         }
     }
 
@@ -423,7 +405,7 @@ impl Observer for Shadow {
 
     #[inline]
     fn after(&mut self, pc: u32, code: &Code, registers: &Registers) {
-        self.take_results(code.word(pc), &code.slots()[pc as usize], code, registers);
+        self.take_results(pc, code.word(pc), &code.slots()[pc as usize], code, registers);
     }
 
     fn step(&mut self, _: u32, _: usize, _: UnitCount, _: u32, _: Motion) {}

@@ -2,6 +2,7 @@
 ; in a word of 32 bits, for every input (Annex II). Shifts and masks are wiring. In: w0 >= 0. Out: s12. Returns by link_leaf.
 ; Scratch: s13 to s15, w0 to w5.
 .func sqrt
+    .computes wsqrt s12, w0, 0
     .holds s12
     wclz  s12, w0
     isubi s12, s12, 65 - 2 * WORD           ; k: how far w0 can go up

@@ -82,6 +82,8 @@ pub struct RealFormulas<'a> {
     pub decisions: u32,
     /// Those that the shadow would have taken otherwise.
     pub turned: u32,
+    /// Sites of the lines whose errors have turned comparisons.
+    pub blamed: Vec<u32>,
     /// Effect of the instruction.
     pub effect: ShadowEffect,
     /// The register to which a walk writes the place of its last note.
@@ -124,12 +126,21 @@ impl RealFormulas<'_> {
         self.turned += u32::from(of.any(ShadowInput::deviates) && !agrees());
     }
 
-    /// Notes a comparison.
+    /// Notes a comparison. Where the shadow takes the other side, the line whose part of the difference is the largest has the blame.
     fn compare(&mut self, a: &ShadowInput, b: &ShadowInput, claim: impl Fn(Ordering) -> bool) {
+        let mut blamed = None;
         self.decide_on([a, b].into_iter(), || {
-            let real = a.term().real().partial_cmp(b.term().real()).expect("reals are ordered");
-            claim(a.raw.cmp(&b.raw)) == claim(real)
+            let (left, right) = (a.term(), b.term());
+            let real = left.real().partial_cmp(right.real()).expect("reals are ordered");
+            let agrees = claim(a.raw.cmp(&b.raw)) == claim(real);
+            if !agrees {
+                let parts = left.parts(1.0).plus(&right.parts(-1.0));
+                let largest = parts.iter().max_by(|(_, a), (_, b)| a.abs().total_cmp(&b.abs()));
+                blamed = largest.map(|(site, _)| site);
+            }
+            agrees
         });
+        self.blamed.extend(blamed);
     }
 }
 

@@ -1,6 +1,7 @@
 //! A debugger that goes back: a program or the work item of a pixel on a lone core, whose state after n instructions is a function of the settings
 //! and of n. The session moves; commands and the Debug Adapter Protocol are doors to it.
 
+mod checkpoints;
 mod command;
 mod condition;
 pub mod dap;

@@ -1,11 +1,12 @@
 //! A session: where the core is, and how it moves, forwards by executing and back by checkpoints. Positions are numbers of executed
 //! instructions, so that each has one state.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
-use emu::stepper::{Checkpoint, Executed, Stepper};
+use emu::stepper::{Executed, Stepper};
 use messages::Report;
 
+use super::checkpoints::Checkpoints;
 use super::stop::{self, Event, StopPoint};
 use super::target::DebugTarget;
 use crate::trace::instruction::TraceClocks;
@@ -51,25 +52,18 @@ impl Lossy {
     }
 }
 
-/// Checkpoints that are kept at most; then every second one goes, and the next ones lie twice as far apart.
+/// Checkpoints that are kept at most.
 const MOST_CHECKPOINTS: usize = 256;
 
 /// Octets that the checkpoints of a program may take, of which each may have written all of its memory.
 const MOST_OCTETS: usize = 256 << 20;
-
-/// Instructions between the first checkpoints.
-const FIRST_INTERVAL: u64 = 4096;
 
 /// A core that is debugged.
 pub struct Session<'a> {
     /// Program that is debugged.
     pub target: &'a DebugTarget,
     stepper: Stepper<'a>,
-    /// By position; the first one is the start.
-    checkpoints: BTreeMap<u64, Checkpoint>,
-    /// Positions whose state was changed by hand; their checkpoints are those changed.
-    changed: BTreeSet<u64>,
-    interval: u64,
+    checkpoints: Checkpoints,
     stops: Vec<StopPoint>,
     next_number: u32,
     /// Losses that every motion stops at.
@@ -87,13 +81,11 @@ impl<'a> Session<'a> {
     /// A machine out of its ranges, or initial data that do not fit the buffer.
     pub fn new(target: &'a DebugTarget) -> Result<Session<'a>, Report> {
         let stepper = target.stepper()?;
-        let checkpoints = [(0, stepper.checkpoint())].into();
+        let checkpoints = Checkpoints::new(stepper.checkpoint(), most_checkpoints(target, &stepper));
         Ok(Session {
             target,
             stepper,
             checkpoints,
-            changed: BTreeSet::new(),
-            interval: FIRST_INTERVAL,
             stops: Vec::new(),
             next_number: 1,
             lossy: Lossy::default(),
@@ -152,12 +144,7 @@ impl<'a> Session<'a> {
     /// Changes the state by hand: what comes after is another future, and what was before stays.
     pub fn change(&mut self, change: impl FnOnce(&mut emu::registers::Registers)) {
         self.stepper.change_registers(change);
-        let position = self.position();
-        // States behind this one would be those of the old future.
-        self.checkpoints.split_off(&position);
-        self.changed.split_off(&position);
-        self.checkpoints.insert(position, self.stepper.checkpoint());
-        self.changed.insert(position);
+        self.checkpoints.change(self.position(), self.stepper.checkpoint());
     }
 
     /// Begins a motion: what it counts begins anew.
@@ -173,10 +160,8 @@ impl<'a> Session<'a> {
         }
         // Run in pieces that end where checkpoints are due.
         while self.position() < position && self.stepper.end().is_none() {
-            let due = (self.position() / self.interval + 1) * self.interval;
-            let changed = self.changed.range(self.position() + 1..).next().copied().unwrap_or(u64::MAX);
-            self.stepper.run_to(due.min(position).min(changed));
-            self.arrive();
+            self.stepper.run_to(self.checkpoints.next(self.position(), position).min(position));
+            self.arrive(Some(position));
         }
         self.recount();
         match self.stepper.end() {
@@ -191,41 +176,22 @@ impl<'a> Session<'a> {
     }
 
     fn restore_before(&mut self, position: u64) {
-        let (_, checkpoint) = self.checkpoints.range(..=position).next_back().expect("the start is always kept");
-        self.stepper.restore(checkpoint);
+        self.stepper.restore(self.checkpoints.before(position).1);
     }
 
-    /// Takes over what was changed by hand at this position, or keeps a checkpoint where one is due.
-    fn arrive(&mut self) {
+    /// Takes over what was changed by hand at this position, or keeps a checkpoint where one is due on the way to `end`.
+    fn arrive(&mut self, end: Option<u64>) {
         let position = self.position();
-        if self.changed.contains(&position) {
+        if self.checkpoints.is_changed(position) {
             return self.restore_before(position);
         }
-        if !position.is_multiple_of(self.interval) || self.checkpoints.contains_key(&position) {
-            return;
-        }
-        self.checkpoints.insert(position, self.stepper.checkpoint());
-        if self.checkpoints.len() > self.most_checkpoints() {
-            self.interval *= 2;
-            let interval = self.interval;
-            // What was changed by hand must stay: a run from further back would not come to it.
-            let changed = &self.changed;
-            self.checkpoints.retain(|at, _| at.is_multiple_of(interval) || changed.contains(at));
-        }
+        self.checkpoints.arrive(position, end, || self.stepper.checkpoint());
     }
 
-    /// Checkpoints that are kept. Those of a work item share its memory, which it seldom writes.
-    fn most_checkpoints(&self) -> usize {
-        match self.target.clocks {
-            TraceClocks::Own => (MOST_OCTETS / (self.stepper.memory().size() + (64 << 10))).clamp(8, MOST_CHECKPOINTS),
-            TraceClocks::None => MOST_CHECKPOINTS,
-        }
-    }
-
-    /// Takes one instruction; `None` at the program's end.
-    fn step(&mut self) -> Option<Executed> {
+    /// Takes one instruction on the way to `end`, where that is known; `None` at the program's end.
+    fn step(&mut self, end: Option<u64>) -> Option<Executed> {
         let executed = self.stepper.step();
-        self.arrive();
+        self.arrive(end);
         executed
     }
 
@@ -263,13 +229,12 @@ impl<'a> Session<'a> {
         }
         let position = self.position();
         self.hits.clear();
-        let start = self.checkpoints.first_key_value().expect("the start is always kept").1.clone();
         let here = self.stepper.checkpoint();
-        self.stepper.restore(&start);
+        self.stepper.restore(self.checkpoints.start());
         self.met(None, &vec![None; self.stops.len()]);
         while self.position() < position {
             let before = self.watched();
-            let Some(executed) = self.step() else { break };
+            let Some(executed) = self.step(Some(position)) else { break };
             self.met(Some(&executed), &before);
         }
         self.stepper.restore(&here);
@@ -279,7 +244,7 @@ impl<'a> Session<'a> {
     pub fn run(&mut self, is_there: &mut dyn FnMut(&Session, Option<&Executed>) -> bool) -> StopReason {
         loop {
             let before = self.watched();
-            let Some(executed) = self.step() else { return self.end_reason() };
+            let Some(executed) = self.step(None) else { return self.end_reason() };
             let met = self.met(Some(&executed), &before);
             if !met.is_empty() {
                 return StopReason::Met(met);
@@ -303,10 +268,9 @@ impl<'a> Session<'a> {
         let mut found = None;
         while end > 0 && found.is_none() {
             // Look through the piece up to `end` from a checkpoint that lies before its last position; counted stop points count from the start.
-            let before_last = ..end - 1;
-            let from = match is_counted {
+            let from = match is_counted || end == 1 {
                 true => 0,
-                false => self.checkpoints.range(before_last).next_back().map_or(0, |(at, _)| *at),
+                false => self.checkpoints.before(end - 2).0,
             };
             self.restore_before(from);
             self.hits.clear();
@@ -319,7 +283,7 @@ impl<'a> Session<'a> {
             }
             while self.position() + 1 < end {
                 let before = self.watched();
-                let Some(executed) = self.step() else { break };
+                let Some(executed) = self.step(Some(end)) else { break };
                 let met = self.met(Some(&executed), &before);
                 let reason = match (met.is_empty(), self.lossy.has(&executed)) {
                     (false, _) => Some(StopReason::Met(met)),
@@ -333,5 +297,13 @@ impl<'a> Session<'a> {
         let (position, reason) = found.unwrap_or((0, StopReason::Start));
         self.go_to(position);
         reason
+    }
+}
+
+/// Checkpoints that are kept. Those of a work item share its memory, which it seldom writes.
+fn most_checkpoints(target: &DebugTarget, stepper: &Stepper) -> usize {
+    match target.clocks {
+        TraceClocks::Own => (MOST_OCTETS / (stepper.memory().size() + (64 << 10))).clamp(8, MOST_CHECKPOINTS),
+        TraceClocks::None => MOST_CHECKPOINTS,
     }
 }

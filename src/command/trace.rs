@@ -25,7 +25,7 @@ use crate::terminal::Terminal;
 use crate::trace::instruction::TraceClocks;
 use crate::trace::output::{TraceForm, is_standard, write_instructions};
 use crate::trace::window::{TraceWindow, TraceWindows};
-use crate::trace::{TracedScene, perfetto, wave};
+use crate::trace::{FunctionSlice, TracedScene, functions, perfetto, wave};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -43,7 +43,7 @@ const LONGEST: u64 = 50_000_000;
 /// Shows what every processor and the bus do in a window of clocks or during one pixel, as a wave and as a trace.
 ///
 /// The wave (FST) has the bus with its owner and address, and each processor with request, grant, state (0 idle, 1 busy,
-/// 2 waiting for the bus) and pixel. The trace has a track a core and one for the bus. With --clocks the whole picture is
+/// 2 waiting for the bus) and pixel. The trace has a track a core and one for the bus, and one a core with its functions. With --clocks the whole picture is
 /// drawn; --pixel draws that pixel alone. With --instructions each instruction of the pixel is written, with what it read and
 /// wrote. Where no file is named by an option, NAME.fst and NAME.trace.json are written in the current folder.
 #[derive(Args, Clone, Debug)]
@@ -204,7 +204,10 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
     if let Some(path) = fst {
         files.push((path, wave(&scene)?));
     }
-    files.extend(perfetto_target.as_ref().map(|path| (path, perfetto(&scene).into_bytes())));
+    if let Some(path) = perfetto_target {
+        let functions = functions_of(&scene, &config, terminal)?;
+        files.push((path, perfetto(&scene, &functions).into_bytes()));
+    }
     files::write_all(&files)?;
     let traced = TraceResult::new(&scene, &frame, paths());
     match (is_taken, arguments.json) {
@@ -214,6 +217,17 @@ pub(super) fn execute(arguments: &TraceArguments, terminal: &mut Terminal) -> Re
         (false, false) => terminal.tell(&traced.text())?,
     }
     Ok(Exit::Done)
+}
+
+/// Functions of the cores in the window. Where it cuts work items, the machine runs once more, with a window that has them whole.
+fn functions_of(scene: &TracedScene, config: &Config, terminal: &Terminal) -> Result<Vec<FunctionSlice>, Failure> {
+    let whole = scene.whole_items();
+    if whole == scene.trace.window {
+        return Ok(functions(scene, scene.trace, config)?);
+    }
+    let frame = run(scene.load, config, Some(whole), terminal)?;
+    let trace = frame.trace.as_ref().ok_or_else(|| Diagnostic::error("the machine has watched nothing"))?;
+    Ok(functions(scene, trace, config)?)
 }
 
 /// Writes the instructions of a pixel: on one core, whose transfers are answered from the memory at the start.

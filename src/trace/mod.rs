@@ -1,16 +1,18 @@
 //! A window of a machine's clocks as files that viewers of waves and of traces read. What happened is gathered by the
 //! machine; here it gets names and formats.
 
+mod functions;
 pub mod instruction;
 pub mod output;
 mod perfetto;
 mod wave;
 pub mod window;
 
-use emu::machine::trace::{Cargo, Doing, Span, Trace, TracedBurst};
+use emu::machine::trace::{Cargo, Doing, Span, Trace, TracedBurst, Window};
 use emu::machine::{Item, RunOutcome};
 use emu::quantity::Clocks;
 
+pub use functions::{FunctionSlice, functions};
 pub use perfetto::perfetto;
 pub use wave::wave;
 
@@ -61,6 +63,15 @@ impl<'a> TracedScene<'a> {
         let start = self.trace.window.start;
         let clip = |burst: &TracedBurst| (burst.start.clamp(start, end), burst.end.clamp(start, end));
         self.trace.bursts.iter().map(clip).map(|(start, end)| (end - start).0).sum()
+    }
+
+    /// The window that has all work items whole of which a part lies in the window of the scene.
+    pub fn whole_items(&self) -> Window {
+        let Window { start, end } = self.trace.window;
+        Window {
+            start: self.items().map(|item| item.start).min().unwrap_or(start).min(start),
+            end: self.items().map(|item| item.end).max().unwrap_or(end).max(end),
+        }
     }
 
     /// Work items of which a part lies in the window.

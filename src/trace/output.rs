@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use emu::stepper::Stepper;
+use messages::Diagnostic;
 
 use super::instruction::{TraceClocks, head, next};
 use super::window::TraceWindows;
 use crate::failure::Failure;
 use crate::files::{self, FileStream};
+use crate::numeral::count;
 use crate::terminal::Terminal;
 
 /// Form of a trace.
@@ -106,5 +108,9 @@ pub fn write_instructions(
         written += 1;
     }
     target.finish()?;
+    if written == 0 {
+        let executed = count(stepper.steps(), "instruction", "instructions");
+        terminal.show(&Diagnostic::warning(format!("no instruction lies in the windows: {executed} came by")).into());
+    }
     Ok(written)
 }

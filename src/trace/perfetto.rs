@@ -1,14 +1,14 @@
 //! A window as Chrome trace events (JSON), which <https://ui.perfetto.dev> and chrome://tracing read: a track a core with
-//! its pixels and what it does in them, one for the main processor, one for the bus.
+//! its pixels and what it does in them, one for the main processor, one for the bus, and one a core with its functions.
 
 use emu::machine::trace::Doing;
 use emu::quantity::Clocks;
 use serde_json::{Value, json};
 
-use super::{TracedScene, address};
+use super::{FunctionSlice, TracedScene, address};
 
-/// The file.
-pub fn perfetto(scene: &TracedScene) -> String {
+/// The file. `functions` has the outer before the inner ones.
+pub fn perfetto(scene: &TracedScene, functions: &[FunctionSlice]) -> String {
     let processors = scene.trace.processors.len();
     let bus = track(processors);
     let mut events = vec![metadata("process_name", track(0), &format!("lancer: {}", scene.name))];
@@ -43,6 +43,20 @@ pub fn perfetto(scene: &TracedScene) -> String {
             "octets": burst.octets.0, "address": address(burst.cargo), "clocks waited": (burst.start - burst.asked).0,
         });
         events.push(slice(bus, format!("{master} {}", scene.cargo(burst.cargo)), burst.start, burst.end, more));
+    }
+    // Of what is open at the same time, the outer slice has been told first, and all have the ends of whole nanoseconds.
+    let track_of = |core: u32| bus + 1 + core as usize;
+    for core in 0..scene.cores() as u32 {
+        events.push(metadata("thread_name", track_of(core), &format!("{} functions", scene.processor(core as usize))));
+    }
+    for function in functions {
+        let FunctionSlice { core, start, end, .. } = *function;
+        let more = json!({ "clocks": (end - start).0 });
+        let slice = slice(track_of(core), function.name.clone(), start, end, more);
+        // At 2 GHz two clocks may begin in one nanosecond.
+        if slice["dur"] != json!(0.0) {
+            events.push(slice);
+        }
     }
     let file = json!({ "displayTimeUnit": "ns", "traceEvents": events });
     format!("{file}\n")

@@ -126,9 +126,12 @@ type Counted = fn(f64) -> u64;
 #[test]
 fn slices_lie_within_or_behind_each_other() {
     let session = Session::new();
-    for clock_hz in [48_000_000, 100_000_000, 2_000_000_000] {
+    // In the profile `report` many instructions take no clock, and several transfers lie at one clock of computing.
+    let rates = [48_000_000, 100_000_000, 2_000_000_000];
+    for (clock_hz, profile) in rates.into_iter().flat_map(|rate| [(rate, "ray"), (rate, "report")]) {
         session.write("a.toml", &format!("clock_hz = {clock_hz}\n"));
-        session.succeed("trace cornell --size 8x6 --clocks 100..20000 --machine a.toml --perfetto a.json");
+        let scene = format!("trace cornell --size 8x6 --profile {profile} --machine a.toml");
+        session.succeed(&format!("{scene} --clocks 1000..40000 --perfetto a.json"));
         let trace: Value = serde_json::from_slice(&session.read("a.json")).unwrap();
         let ways: [Counted; 2] = [|time| (time * 1e3) as u64, |time| (time * 1e3).round() as u64];
         for counted in ways {
@@ -137,7 +140,7 @@ fn slices_lie_within_or_behind_each_other() {
                 let [start, length] = ["ts", "dur"].map(|key| counted(event[key].as_f64().unwrap()));
                 tracks.entry(event["tid"].as_u64().unwrap()).or_default().push((start, start + length));
             }
-            assert!(tracks.len() > 2);
+            assert!((6..=9).all(|track| tracks[&track].len() > 10), "four cores have functions");
             for (track, mut slices) in tracks {
                 // The longer one of two that begin together holds the other one.
                 slices.sort_by_key(|&(start, end)| (start, u64::MAX - end));
@@ -149,6 +152,46 @@ fn slices_lie_within_or_behind_each_other() {
                     open.push(end);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn functions_are_open_as_long_as_the_accounts_say() {
+    let session = Session::new();
+    for options in [
+        "--cores 2",
+        "--cores 3 --profile report",
+        "--cores 2 --profile packet --machine wide32",
+        "--cores 2 --set machine.cache.octets=1024 --set machine.cache.kind=nodes",
+    ] {
+        let scene = format!("cornell --size 4x3 --shift 0.137,0.071 {options}");
+        let drawn = session.json(&format!("render {scene} --no-error"));
+        session.succeed(&format!("trace {scene} --clocks 0..{} --perfetto a.json", drawn["clocks"]));
+        let trace: Value = serde_json::from_slice(&session.read("a.json")).unwrap();
+        let events = trace["traceEvents"].as_array().unwrap();
+        let cores = drawn["cores"].as_array().unwrap();
+        for (core, accounts) in cores.iter().enumerate() {
+            // Behind the tracks of the cores, the main processor and the bus.
+            let track = cores.len() + 3 + core;
+            let is_name = |event: &&Value| event["name"] == "thread_name" && event["tid"] == track;
+            let name = &events.iter().find(is_name).unwrap()["args"]["name"];
+            assert_eq!(name, &format!("core {core} functions"));
+            let mut open: BTreeMap<&str, u64> = BTreeMap::new();
+            for event in events.iter().filter(|event| event["tid"] == track && event["ph"] == "X") {
+                *open.entry(event["name"].as_str().unwrap()).or_default() += event["args"]["clocks"].as_u64().unwrap();
+            }
+            // The outermost function begins before the message that a work item begins with.
+            let rows = accounts["functions"].as_array().unwrap().iter().filter(|row| row["is_function"] != false);
+            let mut compared = 0;
+            for row in rows.skip(1).filter(|row| row["name"] != "(outside)") {
+                let clocks = &row["inclusive"];
+                let clocks = clocks["busy"].as_u64().unwrap() + clocks["waiting"].as_u64().unwrap();
+                let shown = open.get(row["name"].as_str().unwrap()).copied().unwrap_or(0);
+                assert_eq!(shown, clocks, "{options}: core {core}, {}", row["name"]);
+                compared += u32::from(clocks != 0);
+            }
+            assert!(compared > 5, "{options}: {compared}");
         }
     }
 }
@@ -188,6 +231,8 @@ fn the_instructions_of_a_pixel_are_those_that_it_costs() {
     let text = session.succeed(&format!("trace {scene} --instructions - --window steps=10..12"));
     assert!(text.lines().count() == 3 && text.lines().nth(1).unwrap().trim_start().starts_with("10 "), "{text}");
     session.fail(&format!("trace {scene} --instructions - --window function=triangel"), 2, "did you mean `triangle`?");
+    let run = session.run(&format!("trace {scene} --instructions - --window steps=90000000..90000001"));
+    assert!(run.code == 0 && run.messages.contains("no instruction lies in the windows"), "{}", run.messages);
     session.fail("trace cornell --clocks 1..2 --instructions -", 2, "cannot be used with");
 }
 

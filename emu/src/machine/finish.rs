@@ -39,7 +39,7 @@ impl<W: Worker> Machine<'_, W> {
         let processor = &self.processors[number];
         let kind = processor.fault.unwrap_or(Fault::Deadlock);
         let trap = Trap::new(kind, number as u32, processor.worker.progress().pc, processor.code);
-        match processor.work.subject {
+        match processor.work.message.map(|message| message.first()) {
             Some([x, y, z]) => {
                 trap.with_detail(format!("in the work item whose first message began with {x}, {y}, {z}"))
             }
@@ -55,7 +55,7 @@ impl<W: Worker> Machine<'_, W> {
                 ProcessorState::Rests | ProcessorState::Asleep => false,
                 // A core that waits without having received anything is out of work once the main processor is done.
                 ProcessorState::Listens | ProcessorState::Blocked { .. } if number != self.main() => {
-                    !self.has_main_halted || processor.work.subject.is_some()
+                    !self.has_main_halted || processor.work.message.is_some()
                 }
                 _ => true,
             }

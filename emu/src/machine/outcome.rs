@@ -11,6 +11,7 @@ use crate::code::octets::Memory;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::profile::{Profile, ProgramClocks};
+use crate::semantics::Message;
 
 /// Clocks of one processor by use; `busy + waiting + idle` is the length of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +37,8 @@ pub struct ProcessorUse {
 pub struct Item {
     /// First vector of its first message: what it is about.
     pub subject: Vector,
+    /// That message; `None` of an item that got none.
+    pub message: Option<Message>,
     /// The core that did it.
     pub core: u32,
     /// Clock at which it got its first message, or was begun when it got none.

@@ -1,19 +1,18 @@
 //! One processor of the machine: its state, what it waits for, and where its clocks went.
 
-use isa::number::Vector;
-
 use super::bus::NextTransfer;
 use super::cache::Cache;
 use super::kinds::Kinds;
-use super::outcome::ProcessorUse;
+use super::outcome::{Item, ProcessorUse};
 use super::port::Shared;
 use super::request::Request;
 use super::trace::{Doing, Spans};
-use super::worker::{Advance, Played, Worker};
+use super::worker::{Advance, Played, Progress, Worker};
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
+use crate::semantics::Message;
 
 /// Act of a processor without the bus, at its own clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -64,8 +63,8 @@ pub enum ProcessorState {
 pub struct Work {
     /// Clock at which it was begun.
     pub start: Clocks,
-    /// First vector of its first message; `None` before that.
-    pub subject: Option<Vector>,
+    /// Its first message; `None` before that.
+    pub message: Option<Message>,
     /// The bus, a mailbox or a barrier has been used.
     pub has_acted: bool,
     /// Waiting of the processor before it.
@@ -78,7 +77,7 @@ impl Work {
     /// Nothing received yet.
     pub fn new(start: Clocks, used: &ProcessorUse) -> Work {
         let (waiting_before, octets_before) = (used.waiting, used.octets);
-        Work { start, subject: None, has_acted: false, waiting_before, octets_before }
+        Work { start, message: None, has_acted: false, waiting_before, octets_before }
     }
 }
 
@@ -130,6 +129,22 @@ impl<'a, W: Worker> Processor<'a, W> {
             used: ProcessorUse::default(),
             work: Work::new(Clocks(0), &ProcessorUse::default()),
             begins_by_receiving: false,
+        }
+    }
+
+    /// The work item that has ended at its clock.
+    pub fn item(&self) -> Item {
+        let Progress { steps, elementary, .. } = self.worker.progress();
+        Item {
+            subject: self.work.message.map_or([0; 3], |message| message.first()),
+            message: self.work.message,
+            core: self.core.core,
+            start: self.work.start,
+            end: self.clock,
+            waiting: self.used.waiting - self.work.waiting_before,
+            octets: self.used.octets - self.work.octets_before,
+            instructions: steps,
+            elementary,
         }
     }
 

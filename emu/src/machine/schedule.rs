@@ -14,7 +14,7 @@ use super::port::Shared;
 use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
-use super::worker::{Executor, Progress, Worker};
+use super::worker::{Executor, Worker};
 use super::{RunFailure, Setup};
 use crate::code::Code;
 use crate::code::octets::Memory;
@@ -200,10 +200,10 @@ impl<'a, W: Worker> Machine<'a, W> {
         let advance = processor.advance(&mut self.shared, is_permitted);
         self.steps_without_main = if is_main { 0 } else { self.steps_without_main + advance.steps };
         if let Some((message, _)) = advance.taken
-            && processor.work.subject.is_none()
+            && processor.work.message.is_none()
         {
             let has_acted = processor.work.has_acted;
-            processor.work = Work { subject: Some(message.first()), has_acted, ..Work::new(at, &used) };
+            processor.work = Work { message: Some(message), has_acted, ..Work::new(at, &used) };
         }
         // Cores could play on among themselves for ever while the main processor waits. Between two of its steps each of
         // them needs at most a work item.
@@ -421,20 +421,10 @@ impl<'a, W: Worker> Machine<'a, W> {
     fn end_item(&mut self, number: usize) {
         let processor = &mut self.processors[number];
         processor.worker.end();
-        let Progress { steps, elementary, .. } = processor.worker.progress();
         processor.used.items += 1;
         self.item_count += 1;
         if self.setup.options.has_items {
-            self.items.push(Item {
-                subject: processor.work.subject.unwrap_or_default(),
-                core: number as u32,
-                start: processor.work.start,
-                end: processor.clock,
-                waiting: processor.used.waiting - processor.work.waiting_before,
-                octets: processor.used.octets - processor.work.octets_before,
-                instructions: steps,
-                elementary,
-            });
+            self.items.push(processor.item());
         }
         (self.progress)(self.item_count);
         // A message that is there already is work, also when the main processor has halted since.

@@ -47,7 +47,7 @@ impl<W: Worker> Machine<'_, W> {
             ProcessorState::Meets | ProcessorState::Rests => true,
             // Nobody but the main processor begins work.
             ProcessorState::Asleep | ProcessorState::Listens => {
-                self.has_main_halted && processor.work.subject.is_none()
+                self.has_main_halted && processor.work.message.is_none()
             }
             _ => false,
         };

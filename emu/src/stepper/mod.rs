@@ -228,6 +228,11 @@ impl<'a> Stepper<'a> {
         Clocks(self.state.clocks) + self.link.waited
     }
 
+    /// Clocks of computing, without those of transfers.
+    pub fn busy(&self) -> Clocks {
+        Clocks(self.state.clocks)
+    }
+
     /// End of the program, once it has come.
     pub fn end(&self) -> Option<LoneEnd> {
         self.end

@@ -1,6 +1,7 @@
 //! Advice as tables for people, and as comma-separated values for other programs.
 
 use super::{Advice, AdviceResult, Prediction};
+use crate::energy::FigureRange;
 use crate::numeral::grouped;
 use crate::table::{row, table};
 
@@ -11,11 +12,12 @@ const SHOWN: usize = 10;
 const SHOWN_PAIRS: usize = 3;
 
 /// Heads of the columns.
-const HEAD: [&str; 8] = ["change", "us a pixel", "times", "bus %", "limit then", "closed", "queue", "memory"];
+const HEAD: [&str; 9] = ["change", "us a pixel", "times", "bus %", "limit then", "closed", "queue", "memory", "mm2"];
 
 /// Remarks on columns and marks.
 const REMARKS: &str = "\
 us a pixel: runs of the changed machine; closed and queue: the closed form and the queueing estimate
+memory: octets in all cores; mm2: area of all cores by published tables, which weigh neither bus nor arbiter (docs/energy.md)
 + not from the machine's recording: operations take other clocks, or another picture is in memory; ~ other colours
 ";
 
@@ -72,7 +74,17 @@ fn cells(name: &str, predicted: &Prediction, advice: Option<&Advice>) -> Vec<Str
         microseconds(predicted.closed_form_pixel_seconds),
         microseconds(predicted.queueing_pixel_seconds),
         advice.map_or(String::new(), |advice| octets(advice.price.local_octets)),
+        advice.and_then(|advice| advice.price.area_um2).map_or(String::new(), square_millimetres),
     ]
+}
+
+/// More area in square millimetres with its sign, or the range of that where tables disagree.
+fn square_millimetres(area: FigureRange) -> String {
+    let number = |um2: f64| if um2 == 0.0 { "0".to_owned() } else { format!("{:+.3}", 1e-6 * um2) };
+    match (number(area.least), number(area.most)) {
+        (least, most) if least == most => least,
+        (least, most) => format!("{least} to {most}"),
+    }
 }
 
 fn microseconds(seconds: f64) -> String {
@@ -106,7 +118,7 @@ fn price(advice: &Advice) -> String {
 /// A column of the comma-separated values: its head and what it holds.
 type AdviceColumn = (&'static str, fn(&Advice) -> String);
 
-const COLUMNS: [AdviceColumn; 19] = [
+const COLUMNS: [AdviceColumn; 21] = [
     ("change", |advice| quoted(&advice.change)),
     ("parts", |advice| quoted(&advice.parts.join(" "))),
     ("toml", |advice| quoted(&advice.toml.join("; "))),
@@ -125,6 +137,8 @@ const COLUMNS: [AdviceColumn; 19] = [
     ("queueing_pixel_seconds", |advice| advice.predicted.queueing_pixel_seconds.to_string()),
     ("local_octets", |advice| advice.price.local_octets.to_string()),
     ("global_octets", |advice| advice.price.global_octets.to_string()),
+    ("area_um2_least", |advice| advice.price.area_um2.map_or(String::new(), |area| area.least.to_string())),
+    ("area_um2_most", |advice| advice.price.area_um2.map_or(String::new(), |area| area.most.to_string())),
     ("hardware", |advice| quoted(&advice.price.hardware)),
 ];
 

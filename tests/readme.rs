@@ -66,6 +66,42 @@ fn the_commands_of_the_readme_run() {
     assert_eq!(run_commands("README.md"), 11);
 }
 
+/// Width and height of a picture in the row of scenes.
+const SHOWN: [u32; 2] = [128, 96];
+
+#[test]
+fn the_row_of_scenes_is_what_is_drawn() {
+    let folder = folder();
+    let scenes = ["cornell", "sphereflake", "slabs", "mirrors", "terrain"];
+    let [width, height] = SHOWN;
+    let mut row = image::RgbImage::new(width * scenes.len() as u32, height);
+    for (number, scene) in (0..).zip(scenes) {
+        let size = format!("{width}x{height}");
+        succeed(folder.path(), &["render", scene, "--size", &size, "--no-error", "-q", "-o", "scene.png"]);
+        let picture = image::open(folder.path().join("scene.png")).expect("it is a picture").into_rgb8();
+        assert_eq!(picture.dimensions(), (width, height));
+        image::imageops::replace(&mut row, &picture, i64::from(number * width), 0);
+    }
+    let path = repository().join("docs/scenes.png");
+    if std::env::var_os("LANCER_BLESS").is_some() {
+        row.save(&path).expect("the documents can be written");
+    }
+    let shown = image::open(&path).expect("docs/scenes.png is a picture").into_rgb8();
+    assert!(shown == row, "docs/scenes.png is stale: LANCER_BLESS=1 writes it");
+    assert!(fs::metadata(&path).unwrap().len() < 100_000, "pictures of the first screen are small");
+}
+
+#[test]
+fn the_readme_shows_what_the_assembler_says() {
+    let folder = folder();
+    let text = document("examples/dot.s");
+    fs::write(folder.path().join("dot.s"), text.replacen("vdot ", "vdto ", 1)).unwrap();
+    let output = lancer(folder.path(), &["run", "dot.s"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(document("README.md").contains(&format!("```text\n{said}```")), "README.md should show\n{said}");
+}
+
 #[test]
 fn the_commands_of_the_tutorial_run() {
     assert_eq!(run_commands("docs/tutorial.md"), 20);

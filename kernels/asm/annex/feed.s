@@ -2,6 +2,7 @@
 ; pixel, so that no core waits for the main processor.
 .entry feed
 .func feed
+    .holds v0
     mov   s1, s0                ; pixels handed out
     mov   s4, s0                ; pixels done
     li    s2, PIXELS

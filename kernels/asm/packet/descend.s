@@ -4,6 +4,7 @@
 ; In: packet_refs = address of the node, came_by, leaves_by (of boxes alone), last_note. Out: the packet, last_note. Returns by link_step.
 ; Scratch: s12 to s15, split, came_by, leaves_by.
 .func descend
+    walk_names
     .holds origin, pos
     .holds direction, dir
 .if LAYOUT_REPORT

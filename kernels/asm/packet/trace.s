@@ -138,6 +138,7 @@ search_begin_\any:
 .endm
 
 .func trace
+    walk_names
     .holds gathered
     .holds place
     .holds stride

@@ -2,6 +2,7 @@
 ; code 4. In: origin, direction. Out: the packet; box_low = the plane by which the ray leaves it (coordinate, axis). Returns by
 ; link_packet. Scratch: s12 to s15, v6, v7, w0 to w2.
 .func first_packet
+    walk_names
     .holds box_low
     .holds v6, pos
     .holds v7, pos

@@ -3,6 +3,7 @@
 ; In: the ray, the walk's notes, near, near_t, any_hit. Out: the packet and the notes. Returns by link_packet. Report, pseudo codes 2
 ; and 3. Scratch: s12 to s15, v6, v7, w0 to w2.
 .func next_packet
+    walk_names
     .holds box_low
     .holds v6, pos
     .holds v7, pos

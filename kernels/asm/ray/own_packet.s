@@ -2,6 +2,7 @@
 ; off surfaces, so some lie outside. In: origin, direction. Out: the packet and the walk's notes. Returns by link_packet.
 ; Scratch: s12 to s15, v6, v7, w0 to w2.
 .func own_packet
+    walk_names
     .holds v6, pos
     .holds v7, pos
     enter_scene 1f

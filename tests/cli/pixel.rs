@@ -1,7 +1,5 @@
 //! `lancer explain-pixel`: what it says of the rays against pictures, counts and double precision, and its page as a browser shows it.
 
-use std::process::Command;
-
 use kernels::KernelSet;
 use kernels::build::Crop;
 use kernels::set::Formulas;
@@ -16,7 +14,7 @@ use scenes::layout::Layout;
 use scenes::model::Camera;
 use serde_json::Value;
 
-use super::session::Session;
+use super::session::{Session, page_data};
 
 const SIZE: (u32, u32) = (12, 9);
 
@@ -287,12 +285,6 @@ fn scenes_of_any_size_are_shown_in_their_own_units() {
     }
 }
 
-/// Data of a page.
-fn data(page: &str) -> Value {
-    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").expect("the page has data");
-    serde_json::from_str(rest.split_once("</script>").expect("the data end").0).expect("the data are JSON")
-}
-
 /// Raw registers before a step, in the order in which the page has them.
 fn registers_at(target: &DebugTarget, step: u64) -> Vec<i64> {
     let mut stepper = target.stepper().unwrap();
@@ -316,7 +308,7 @@ fn the_page_replays_the_pixel_in_a_browser() {
     let said = session.json("explain-pixel mirrors 5,4 --size 12x9 --shift 0.137,0.071 --html p.html");
     assert_eq!(said["instructions"], end);
     let page = String::from_utf8(session.read("p.html")).unwrap();
-    let data = data(&page);
+    let data = page_data(&page);
     assert_eq!((&data["replay"]["count"], &data["replay"]["total"]), (&end.into(), &end.into()));
     let ray = explanation.rays[1].step.unwrap();
     // Jumps, steps on and back by buttons and keys, then says where it is and which registers it has at many steps.
@@ -333,8 +325,7 @@ fn the_page_replays_the_pixel_in_a_browser() {
          const out = document.createElement('pre'); out.id = 'out';\
          out.textContent = JSON.stringify({{ said, states, where, next, shown, table }}); document.body.append(out); }}"
     );
-    session.write("shown.html", &page.replace("</body>", &format!("<script>{script}</script></body>")));
-    let Some(dom) = browse(&session, &["--dump-dom", "--virtual-time-budget=5000"]) else {
+    let Some(dom) = session.browse(&page, &script) else {
         println!("no browser is installed");
         return;
     };
@@ -374,21 +365,12 @@ fn the_page_replays_the_pixel_in_a_browser() {
     );
 }
 
-/// Page `shown.html` in a browser; `None` where none is installed.
-fn browse(session: &Session, arguments: &[&str]) -> Option<String> {
-    let mut browser = Command::new("chromium");
-    browser.args(["--headless", "--no-sandbox", "--disable-gpu"]).args(arguments);
-    browser.arg(format!("--user-data-dir={}", session.path("profile").display()));
-    let output = browser.arg(session.path("shown.html")).output().ok()?;
-    Some(String::from_utf8_lossy(&output.stdout).into_owned())
-}
-
 #[test]
 fn a_page_of_a_part_says_what_is_left_out() {
     let session = Session::new();
     let run = session.run("explain-pixel cornell 5,4 --size 12x9 --html p.html --steps 100..300");
     assert_eq!(run.code, 0);
-    let total = data(&String::from_utf8(session.read("p.html")).unwrap())["replay"]["total"].as_u64().unwrap();
+    let total = page_data(&String::from_utf8(session.read("p.html")).unwrap())["replay"]["total"].as_u64().unwrap();
     let expected = format!(
         "{} instructions are not on the page; --steps A..B chooses others\n",
         lancer::numeral::grouped(total - 200)

@@ -1,25 +1,17 @@
 //! `lancer report`: one page that needs nothing else, as a browser shows it.
 
-use std::process::Command;
-
 use serde_json::Value;
 
-use super::session::Session;
+use super::session::{Session, page_data};
 
 const TINY: &str = "cornell --size 12x9 --shift 0.137,0.071";
-
-/// Data of a page.
-fn data(page: &str) -> Value {
-    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").expect("the page has data");
-    serde_json::from_str(rest.split_once("</script>").expect("the data end").0).expect("the data are JSON")
-}
 
 #[test]
 fn the_page_has_what_the_other_commands_say() {
     let session = Session::new();
     assert_eq!(session.succeed(&format!("report {TINY} --no-advice -o r.html")), "");
     let page = String::from_utf8(session.read("r.html")).unwrap();
-    let data = data(&page);
+    let data = page_data(&page);
     let render = session.json(&format!("render {TINY}"));
     for key in ["clocks", "image_hash", "run_hash", "functions"] {
         assert_eq!(data["render"][key], render[key], "{key}");
@@ -39,29 +31,18 @@ fn the_page_has_what_the_other_commands_say() {
     session.fail(&format!("report {TINY} -o no/r.html"), 1, "there is no folder no");
 }
 
-/// Page as a browser shows it after a script; `None` where none is installed.
-fn shown(session: &Session, script: &str) -> Option<String> {
-    let page = String::from_utf8(session.read("r.html")).unwrap();
-    session.write("shown.html", &page.replace("</body>", &format!("<script>{script}</script></body>")));
-    let mut browser = Command::new("chromium");
-    browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", "--virtual-time-budget=5000"]);
-    let profile = format!("--user-data-dir={}", session.path("profile").display());
-    let output = browser.arg(profile).arg(session.path("shown.html")).output().ok()?;
-    Some(String::from_utf8_lossy(&output.stdout).into_owned())
-}
-
 #[test]
 fn the_page_shows_values_under_the_cursor_and_sorts() {
     let session = Session::new();
     session.succeed(&format!("report {TINY} -o r.html"));
     let page = String::from_utf8(session.read("r.html")).unwrap();
-    let data = data(&page);
+    let data = page_data(&page);
     assert_eq!(data["advice"]["schema"], "lancer-advise-1");
     let script = "const image = document.querySelector('#maps img'), box = image.getBoundingClientRect();\
         image.dispatchEvent(new MouseEvent('mousemove', { clientX: box.left + box.width * 7.5 / 12, clientY: box.top + box.height * 3.5 / 9 }));\
         document.querySelector('#functions th').click(); document.querySelector('#functions th').click();\
         document.getElementById('slider').value = 20; document.getElementById('slider').oninput();";
-    let Some(dom) = shown(&session, script) else {
+    let Some(dom) = session.browse(&page, script) else {
         println!("no browser is installed");
         return;
     };

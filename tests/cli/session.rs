@@ -57,6 +57,16 @@ impl Session {
         command
     }
 
+    /// A page as a browser shows it after a script; `None` where no browser is installed.
+    pub fn browse(&self, page: &str, script: &str) -> Option<String> {
+        self.write("shown.html", &page.replace("</body>", &format!("<script>{script}</script></body>")));
+        let mut browser = Command::new("chromium");
+        browser.args(["--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", "--virtual-time-budget=5000"]);
+        browser.arg(format!("--user-data-dir={}", self.path("profile").display()));
+        let output = browser.arg(self.path("shown.html")).output().ok()?;
+        Some(String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+
     /// Runs `lancer` with arguments between blanks.
     pub fn run(&self, arguments: &str) -> Run {
         let Output { status, stdout, stderr } = self.command(arguments).output().unwrap();
@@ -83,4 +93,10 @@ impl Session {
         assert_eq!((run.code, run.out.as_str()), (code, ""), "lancer {arguments}\n{}", run.messages);
         assert!(run.messages.contains(message), "lancer {arguments}\n{}", run.messages);
     }
+}
+
+/// The data of a page.
+pub fn page_data(page: &str) -> Value {
+    let (_, rest) = page.split_once("<script type=\"application/json\" id=\"data\">").expect("the page has data");
+    serde_json::from_str(rest.split_once("</script>").expect("the data end").0).expect("the data are JSON")
 }

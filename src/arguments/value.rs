@@ -43,7 +43,12 @@ pub fn whole<const N: usize>(text: &str) -> Result<[u32; N], String> {
     }
     let mut numbers = [0; N];
     for (number, part) in numbers.iter_mut().zip(parts) {
-        *number = part.parse().map_err(|_| format!("`{part}` is no whole number"))?;
+        *number = part.parse().map_err(|_| match part.strip_prefix('-') {
+            Some(rest) if rest.starts_with(|c: char| c.is_ascii_digit()) => {
+                format!("`{part}` is negative: columns and rows count from 0, at the top left")
+            }
+            _ => format!("`{part}` is no whole number"),
+        })?;
     }
     Ok(numbers)
 }

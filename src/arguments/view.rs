@@ -36,10 +36,10 @@ pub struct ViewArguments {
     #[arg(long, value_name = "DX,DY", value_parser = value::point::<2>, allow_hyphen_values = true, default_value = "0,0")]
     pub shift: [f64; 2],
     /// Draws only a part of the picture, in pixels: first column, first row from the top, width, height.
-    #[arg(long, value_name = "X,Y,W,H", value_parser = value::rectangle)]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = value::rectangle, allow_hyphen_values = true)]
     pub crop: Option<Rectangle>,
     /// Draws only one pixel: its column and its row from the top.
-    #[arg(long, value_name = "X,Y", value_parser = value::whole::<2>, conflicts_with = "crop")]
+    #[arg(long, value_name = "X,Y", value_parser = value::whole::<2>, allow_hyphen_values = true, conflicts_with = "crop")]
     pub pixel: Option<[u32; 2]>,
     /// Ambient intensity.
     #[arg(long, value_name = "I", value_parser = intensity, allow_hyphen_values = true, default_value = "0.1")]

@@ -246,12 +246,14 @@ fn interactive(door: &mut Door, terminal: &mut Terminal) -> Result<Exit, Failure
     Ok(Exit::Done)
 }
 
-/// Target that a launch request asks for: `program`, and `args` as on the command line.
+/// Target that a launch request asks for: `program`, `args` as on the command line, and `shadow`, which is the option of that name.
 fn launched(arguments: &Value) -> Result<DebugTarget, String> {
     let program = arguments["program"].as_str().ok_or("`program` names the file or the scene")?;
     let more = arguments["args"].as_array().cloned().unwrap_or_default();
     let more = more.iter().map(|argument| argument.as_str().map_or_else(|| argument.to_string(), str::to_owned));
-    let line: Vec<String> = [program.to_owned()].into_iter().chain(more).collect();
+    let has_shadow = arguments["shadow"].as_bool().unwrap_or(false).then(|| "--shadow".to_owned());
+    let mut line: Vec<String> = [program.to_owned()].into_iter().chain(more).collect();
+    line.extend(has_shadow.filter(|option| !line.contains(option)));
     let parsed = LaunchArguments::try_parse_from(line).map_err(|error| error.to_string())?;
     match target(&parsed.arguments.target) {
         Ok((target, _)) => Ok(target),

@@ -40,7 +40,7 @@ pub struct ExplainPixelArguments {
     #[command(flatten)]
     job: JobArguments,
     /// Column and row of the pixel, from the top left.
-    #[arg(value_name = "X,Y", value_parser = arguments::whole::<2>, required_unless_present_any = ["pixel", "crop"])]
+    #[arg(value_name = "X,Y", value_parser = arguments::whole::<2>, allow_hyphen_values = true, required_unless_present_any = ["pixel", "crop"])]
     place: Option<[u32; 2]>,
     /// Prints the explanation as JSON instead of text.
     #[arg(long, help_heading = "Results")]

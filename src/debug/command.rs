@@ -84,7 +84,7 @@ commands! {
     "disassemble" ["d"] "[PLACE] [N]" Disassemble "Shows instructions with their costs.";
     "calls" ["bt"] "" Calls "Shows the open calls, the innermost first.";
     "registers" ["r"] "[all]" Registers "Shows the registers that are not zero, or all.";
-    "print" ["p"] "REGISTER[:FORMAT],.." Print "Shows registers, by name, raw and as real numbers.";
+    "print" ["p"] "REGISTER[:FORMAT],.." Print "Shows registers, by name, raw and as real numbers; components such as v1.y, pc and step as well.";
     "shadow" ["sh"] "[REGISTER,..]" Shadow "Shows beside each register the number that exact arithmetic would have given; with --shadow.";
     "died" [] "[REGISTER,..]" Died "Ranks the source lines of which the errors of registers consist; with --shadow.";
     "set" [] "REGISTER=VALUE,.." Set "Changes registers; the program then goes on from there, and comes through it again.";

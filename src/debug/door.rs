@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use messages::Report;
 use sha2::{Digest, Sha256};
 
 use super::command::{self, CommandAction};
@@ -14,7 +13,7 @@ use super::stop::{self, Event, Watched};
 use super::{disassembly, place, shadow, trial};
 use crate::arguments::numbered;
 use crate::numeral::{count, grouped};
-use crate::registers::{self, RegisterContents, RegisterList, ShowList, ShownRegister, register_of, rows};
+use crate::registers::{self, RegisterContents, RegisterList, ShowRequest, ShownRegister, register_of, rows};
 use crate::result::hexadecimal;
 use crate::table::table;
 use crate::trace::instruction::TraceClocks;
@@ -286,6 +285,9 @@ impl<'a> Door<'a> {
         };
         let (place, condition) = match rest.split_once(" if ") {
             Some((place, condition)) => (place, Some(condition.parse::<StopCondition>()?)),
+            None if rest == "if" || rest.ends_with(" if") => {
+                return Err("a condition is missing behind `if`: write such as if s1 == 5 && v2.x < 0.5:pos".into());
+            }
             None => (rest, None),
         };
         if let Some(condition) = &condition {
@@ -323,10 +325,21 @@ impl<'a> Door<'a> {
 
     fn print(&self, rest: &str) -> Result<String, String> {
         let (state, program, pc) = (self.session.stepper().state(), &self.session.target.program, self.session.pc());
-        let list: ShowList = rest.parse()?;
-        let shown = list.0.iter().map(|request| request.shown(program, &state.registers, pc));
-        let shown = shown.collect::<Result<Vec<_>, _>>()?;
-        Ok(shown.iter().map(|register| format!("{}  {}\n", register.short(), register.hexadecimal)).collect())
+        let mut text = String::new();
+        for item in rest.split(',') {
+            text += &match item.trim() {
+                "pc" => {
+                    let place = program.place(pc).map_or_else(String::new, |place| format!(" ({place})"));
+                    format!("pc={pc}{place}  {pc:#06x}\n")
+                }
+                "step" => format!("step={}\n", self.session.position()),
+                item => {
+                    let shown = item.parse::<ShowRequest>()?.shown(program, &state.registers, pc)?;
+                    format!("{}  {}\n", shown.short(), shown.hexadecimal)
+                }
+            };
+        }
+        Ok(text)
     }
 
     fn set(&mut self, rest: &str) -> Result<String, String> {
@@ -365,7 +378,7 @@ impl<'a> Door<'a> {
         if rest.is_empty() {
             return Err("an instruction is expected, such as x vdot s1, v1, v2, 16".into());
         }
-        let record = trial::tried(&self.session, rest).map_err(|report: Report| report.render(false))?;
+        let record = trial::tried(&self.session, rest)?;
         let mut text = format!("{}\n", record.text);
         for register in &record.writes {
             let before = register_of(&self.session.target.program, &register.register, record.pc).ok();

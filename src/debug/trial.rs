@@ -1,12 +1,10 @@
 //! An instruction that is tried on the state and undone: `x vdot s1, v1, v2, 16`.
 
-use std::sync::Arc;
-
 use asm::Options;
 use emu::octets::Memory;
 use emu::stepper::{Lone, Stepper};
 use isa::Program;
-use messages::{Report, Source};
+use messages::{Diagnostic, Report, Source};
 
 use super::session::Session;
 use crate::trace::instruction::{TraceClocks, TracedInstruction, next};
@@ -15,7 +13,18 @@ use crate::trace::instruction::{TraceClocks, TracedInstruction, next};
 ///
 /// # Errors
 /// What the assembler finds in it.
-pub fn tried(session: &Session, text: &str) -> Result<TracedInstruction, Report> {
+pub fn tried(session: &Session, text: &str) -> Result<TracedInstruction, String> {
+    attempt(session, text).map_err(|report| {
+        // A command is answered in a line: the place is the instruction that was typed.
+        let sentence = |message: Diagnostic| match message.hint {
+            Some(hint) => format!("{}: {hint}", message.message),
+            None => message.message,
+        };
+        report.0.into_iter().map(sentence).collect::<Vec<_>>().join("; ")
+    })
+}
+
+fn attempt(session: &Session, text: &str) -> Result<TracedInstruction, Report> {
     let target = session.target;
     let (program, pc, state) = (&target.program, session.pc(), session.stepper().state());
     let word = assembled(program, target, pc, text)?;
@@ -23,7 +32,7 @@ pub fn tried(session: &Session, text: &str) -> Result<TracedInstruction, Report>
     let mut changed = program.clone();
     let at = (pc as usize).min(changed.words.len().saturating_sub(1));
     let Some(place) = changed.words.get_mut(at) else {
-        return Err(messages::Diagnostic::error("the program has no words").into());
+        return Err(Diagnostic::error("the program has no words").into());
     };
     *place = word;
     // Where the program ends, something has to stand behind the instruction.
@@ -54,7 +63,6 @@ fn assembled(program: &Program, target: &super::DebugTarget, pc: u32, text: &str
             &format!(".unreg {}\n", named.name).repeat(usize::from(lines.contains(&format!(".reg {},", named.name))));
         lines += &format!(".reg {}, {file}{number}\n", named.name);
     }
-    let head = lines.lines().count();
     let source = Source::new("<tried>", format!("{lines}{text}\n"));
     let is_symbol = |name: &str| {
         !program.formats.contains_key(name) && !program.register_names.iter().any(|named| named.name == name)
@@ -66,26 +74,9 @@ fn assembled(program: &Program, target: &super::DebugTarget, pc: u32, text: &str
         formats: program.formats.iter().map(|(name, bits)| (name.clone(), i64::from(*bits))).collect(),
         ..Options::default()
     };
-    let assembled =
-        asm::assemble(&source, &target.isa, &options).map_err(|report| only(report, &source, head, text))?;
+    let assembled = asm::assemble(&source, &target.isa, &options)?;
     match assembled.program.words.get(pc as usize..) {
         Some(&[word]) => Ok(word),
-        _ => Err(messages::Diagnostic::error(format!("`{}` is not one instruction", text.trim())).into()),
+        _ => Err(Diagnostic::error(format!("`{}` is not one instruction", text.trim())).into()),
     }
-}
-
-/// The messages without the lines that were put before the instruction.
-fn only(report: Report, source: &Arc<Source>, head: usize, text: &str) -> Report {
-    let skipped: usize = source.text.split_inclusive('\n').take(head).map(str::len).sum();
-    let shown = Source::new("<tried>", text);
-    let moved = report.0.into_iter().map(|mut message| {
-        if let Some((place, _)) = &mut message.place
-            && Arc::ptr_eq(&place.source, source)
-            && place.span.start >= skipped
-        {
-            *place = messages::Place::new(&shown, place.span.start - skipped..place.span.end - skipped);
-        }
-        message
-    });
-    Report(moved.collect())
 }

@@ -41,7 +41,14 @@ fn split(text: &str) -> Result<Vec<String>, String> {
         let is_grouped = (1..=3).contains(&plain.len())
             && plain.bytes().all(|digit| digit.is_ascii_digit())
             && (before.contains('_') || !plain.starts_with('0'));
+        // Digits behind a format are neither a register nor a group of the number, which is over.
+        let is_number = before.starts_with(|c: char| c.is_ascii_digit());
         match (begins_with_group, is_grouped) {
+            _ if digits > 0 && !is_number => {
+                return Err(format!(
+                    "`{piece}` behind a comma names no register: write s1={piece} for one more; groups of digits stand before the format, as in s1=1_000:pos"
+                ));
+            }
             (true, true) => *item = format!("{item}_{piece}"),
             (true, false) => {
                 return Err(format!("`{before},{piece}` could be read in two ways; write {before}_{piece}"));
@@ -80,6 +87,7 @@ mod tests {
             ("s1=0,123", "write 0_123"),
             ("s1=1,0000", "write 1_0000"),
             ("s1=1,00", "write 1_00"),
+            ("s5=1.5:pos,100", "`100` behind a comma names no register: write s1=100"),
         ] {
             assert!(split(text).unwrap_err().contains(form), "{text}: {:?}", split(text));
         }

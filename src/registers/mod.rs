@@ -61,6 +61,14 @@ impl RegisterContents {
         }
     }
 
+    /// The raw number of a component; `None` of what is no vector.
+    pub fn component(&self, number: usize) -> Option<i64> {
+        match self {
+            RegisterContents::One(_) => None,
+            RegisterContents::Three(components) => components.get(number).map(|&component| component.into()),
+        }
+    }
+
     /// The raw numbers as text, with `:` between components.
     pub fn raw_text(&self) -> String {
         joined(self.numbers().into_iter().map(|number| number.to_string()))

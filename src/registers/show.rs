@@ -10,10 +10,14 @@ use messages::did_you_mean;
 use super::setting::register_of;
 use super::{RegisterContents, ShownRegister};
 
-/// A register to show, and the format to show it in.
+/// Names of the components of a vector.
+const COMPONENTS: [&str; 3] = ["x", "y", "z"];
+
+/// A register or a component of one to show, and the format to show it in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShowRequest {
     register: String,
+    component: Option<usize>,
     format: Option<String>,
 }
 
@@ -40,7 +44,14 @@ impl FromStr for ShowRequest {
         if register.is_empty() || format.as_ref().is_some_and(String::is_empty) {
             return Err("a register is expected, such as s2, or with a format, such as s2:pos".into());
         }
-        Ok(ShowRequest { register: register.into(), format })
+        let (register, component) = match register.rsplit_once('.') {
+            Some((register, name)) => {
+                let component = COMPONENTS.iter().position(|known| *known == name);
+                (register, Some(component.ok_or_else(|| format!("`{name}` is no component: x, y or z"))?))
+            }
+            None => (register, None),
+        };
+        Ok(ShowRequest { register: register.into(), component, format })
     }
 }
 
@@ -81,6 +92,14 @@ impl ShowRequest {
             None => program.format_of(register, pc),
         };
         let contents = RegisterContents::of(registers, register);
-        Ok(ShownRegister::new(register, contents, program.name_of(register, pc), format))
+        let name = program.name_of(register, pc);
+        let (Some(component), Some(raw)) = (self.component, self.component.and_then(|k| contents.component(k))) else {
+            return match self.component {
+                None => Ok(ShownRegister::new(register, contents, name, format)),
+                Some(_) => Err(format!("`{}` has one number and no components", self.register)),
+            };
+        };
+        let shown = ShownRegister::new(register, RegisterContents::One(raw), name, format);
+        Ok(ShownRegister { register: format!("{}.{}", shown.register, COMPONENTS[component]), ..shown })
     }
 }

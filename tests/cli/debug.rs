@@ -295,7 +295,8 @@ fn drive<R: Read, W: Write>(client: &mut Client<R, W>) {
     let scopes = client.body("scopes", json!({ "frameId": 1 }))["scopes"].clone();
     let named = client.body("variables", json!({ "variablesReference": scopes[0]["variablesReference"] }));
     let origin = named["variables"].as_array().unwrap().iter().find(|one| one["name"] == "origin").unwrap();
-    assert!(origin["value"].as_str().unwrap().ends_with(":pos)"), "{origin}");
+    let value = origin["value"].as_str().unwrap();
+    assert!(value.contains(":pos), error ") && value.ends_with(" ulp"), "the launch asked for shadows: {origin}");
     let hash = client.evaluate("hash");
     let step = client.evaluate("where");
     client.evaluate("back 1000");
@@ -347,7 +348,7 @@ fn a_client_over_standard_streams_goes_back_and_forward_again() {
     let wrong = client.ask("launch", json!({ "program": "cornel", "args": ["--pixel", "5,4"] }));
     assert!(wrong["message"].as_str().unwrap().contains("did you mean `cornell`?"), "{wrong}");
     let args = ["--size", "12x9", "--shift", "0.137,0.071", "--pixel", "5,4"];
-    client.ask("launch", json!({ "program": "cornell", "args": args }));
+    client.ask("launch", json!({ "program": "cornell", "args": args, "shadow": true }));
     client.event("initialized");
     let set = client.body(
         "setFunctionBreakpoints",

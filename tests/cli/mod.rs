@@ -27,6 +27,7 @@ pub mod session;
 mod settings;
 mod shadow;
 mod standard;
+mod stepping;
 mod streams;
 mod sweep;
 mod trace;

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use isa::naming::RegisterId;
 use serde_json::{Value, json};
 
 use super::super::session::Session;
 use crate::debug::Door;
 use crate::registers::{self, ShowRequest, ShownRegister};
+use crate::shadow::{register_errors, ulps};
 use crate::trace::instruction::{self, TraceClocks};
 
 /// Scopes of a frame, by the lowest digits of their reference.
@@ -70,9 +72,17 @@ pub fn scopes(arguments: &Value) -> Value {
     json!({ "scopes": SCOPES.iter().enumerate().map(scope).collect::<Vec<_>>() })
 }
 
-fn variable(name: &str, shown: &ShownRegister) -> Value {
+/// A register as a variable: raw, real, and with a shadow how far it is from exact arithmetic.
+fn variable(session: &Session, name: &str, shown: &ShownRegister, register: Option<RegisterId>) -> Value {
     let real = shown.real_text();
-    let value = if real.is_empty() { shown.raw.raw_text() } else { format!("{} ({real})", shown.raw.raw_text()) };
+    let mut value = if real.is_empty() { shown.raw.raw_text() } else { format!("{} ({real})", shown.raw.raw_text()) };
+    if let Some(errors) = register.and_then(|register| register_errors(session.stepper(), register)) {
+        let errors: Vec<String> = errors.iter().filter(|error| !error.is_nan()).map(|error| ulps(*error)).collect();
+        // An integer has no shadow.
+        if !errors.is_empty() {
+            value += &format!(", error {} ulp", errors.join(":"));
+        }
+    }
     json!({ "name": name, "value": value, "type": shown.hexadecimal, "evaluateName": shown.register, "variablesReference": 0 })
 }
 
@@ -86,15 +96,16 @@ pub fn variables(session: &Session, arguments: &Value) -> Result<Value, String> 
     let pc = *frames(session).get(frame - 1).ok_or("there is no such frame")?;
     let (program, state) = (&session.target.program, session.stepper().state());
     let shown = |register| ShownRegister::at(program, &state.registers, register, pc);
+    let variable = |name: &str, register| variable(session, name, &shown(register), Some(register));
     let of_file = |file: char| -> Vec<Value> {
         let own =
             registers::all(&state.registers).filter(|((other, _), contents)| *other == file && !contents.is_zero());
-        own.map(|(register, _)| variable(&registers::name(register), &shown(register))).collect()
+        own.map(|(register, _)| variable(&registers::name(register), register)).collect()
     };
     let all = match scope {
         1 => {
             let here = program.register_names.iter().filter(|named| named.words.contains(&pc));
-            here.map(|named| variable(&named.name, &shown(named.register))).collect()
+            here.map(|named| variable(&named.name, named.register)).collect()
         }
         2 => of_file('s'),
         3 => of_file('v'),
@@ -120,14 +131,17 @@ pub fn set_variable(door: &mut Door, arguments: &Value) -> Result<Value, String>
     let name = arguments["name"].as_str().unwrap_or_default();
     let value = arguments["value"].as_str().unwrap_or_default();
     door.execute(&format!("set {name}={value}"))?;
-    let shown = shown(&door.session, name)?;
-    let changed = variable(name, &shown);
+    let (shown, register) = shown(&door.session, name)?;
+    let changed = variable(&door.session, name, &shown, register);
     Ok(json!({ "value": changed["value"], "type": changed["type"] }))
 }
 
-fn shown(session: &Session, text: &str) -> Result<ShownRegister, String> {
+fn shown(session: &Session, text: &str) -> Result<(ShownRegister, Option<RegisterId>), String> {
     let request: ShowRequest = text.parse()?;
-    request.shown(&session.target.program, &session.stepper().state().registers, session.pc())
+    let (program, pc) = (&session.target.program, session.pc());
+    let shown = request.shown(program, &session.stepper().state().registers, pc)?;
+    let register = request.register(program, pc).filter(|register| registers::name(*register) == shown.register);
+    Ok((shown, register))
 }
 
 /// The value of a register, or what a command of the debugger says.
@@ -136,8 +150,8 @@ fn shown(session: &Session, text: &str) -> Result<ShownRegister, String> {
 /// What is neither.
 pub fn evaluate(door: &mut Door, arguments: &Value) -> Result<Value, String> {
     let text = arguments["expression"].as_str().unwrap_or_default().trim();
-    if let Ok(shown) = shown(&door.session, text) {
-        let found = variable(text, &shown);
+    if let Ok((shown, register)) = shown(&door.session, text) {
+        let found = variable(&door.session, text, &shown, register);
         return Ok(json!({ "result": found["value"], "type": found["type"], "variablesReference": 0 }));
     }
     // Only the console may move; a hover over a word that is a command must not.

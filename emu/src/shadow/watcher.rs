@@ -42,9 +42,9 @@ struct Expected {
     result: RealResult,
 }
 
-/// Decisions of an instruction on numbers with shadows.
+/// NumberDecisions of an instruction on numbers with shadows.
 #[derive(Clone, Debug, Default)]
-struct Decisions {
+struct NumberDecisions {
     all: u32,
     turned: u32,
     /// Sites whose errors turned comparisons.
@@ -73,7 +73,7 @@ pub struct Shadow {
     /// Results of the formulas that functions compute in many steps, which wait for their returns.
     computed: Vec<Vec<Expected>>,
     effect: ShadowEffect,
-    decisions: Decisions,
+    decisions: NumberDecisions,
 }
 
 impl Shadow {
@@ -92,7 +92,7 @@ impl Shadow {
             core,
             expected: Vec::new(),
             effect: ShadowEffect::Nothing,
-            decisions: Decisions::default(),
+            decisions: NumberDecisions::default(),
         }
     }
 
@@ -176,7 +176,7 @@ impl Shadow {
         registers: &Registers,
         buffer: &Buffer,
         expected: &mut Vec<Expected>,
-    ) -> (Decisions, ShadowEffect) {
+    ) -> (NumberDecisions, ShadowEffect) {
         expected.clear();
         let mut formulas = RealFormulas {
             buffer,
@@ -285,7 +285,7 @@ impl Shadow {
             };
         }
         isa::instructions!(dispatch);
-        let decisions = Decisions { all: formulas.decisions, turned: formulas.turned, blamed: formulas.blamed };
+        let decisions = NumberDecisions { all: formulas.decisions, turned: formulas.turned, blamed: formulas.blamed };
         (decisions, formulas.effect)
     }
 
@@ -296,7 +296,7 @@ impl Shadow {
         self.settle_all(&mut expected, site, pc, registers);
         self.expected = expected;
         if self.decisions.all != 0 {
-            let Decisions { all, turned, blamed } = std::mem::take(&mut self.decisions);
+            let NumberDecisions { all, turned, blamed } = std::mem::take(&mut self.decisions);
             self.ledger.decide(site, all, turned);
             blamed.into_iter().for_each(|site| self.ledger.blame(site.wrapping_sub(self.program.first_site)));
         }

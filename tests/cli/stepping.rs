@@ -41,7 +41,7 @@ fn components_the_counter_and_the_step_are_printed() {
     session.write("loop.s", LOOP);
     session.write("script.txt", "instruction 3\nprint v1.y,v1:16,pc,step,v1.z:pos\n");
     let text = session.succeed("debug loop.s --reg v1=1:2:65536 --commands script.txt");
-    for line in ["v1.y=2  0x00000002", "pc=3 (loop.s:4)  0x0003", "step=3", "v1.z=65536 (1:pos)  0x00010000"] {
+    for line in ["v1.y=2  0x00000002", "pc=3 (loop.s:3)  0x0003", "step=3", "v1.z=65536 (1:pos)  0x00010000"] {
         assert!(text.lines().any(|shown| shown == line), "{line} in\n{text}");
     }
     for (command, message) in [

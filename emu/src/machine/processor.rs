@@ -63,7 +63,7 @@ pub enum ProcessorState {
 pub struct Work {
     /// Clock at which it was begun.
     pub start: Clocks,
-    /// Its first message; `None` before that.
+    /// First message of the item; `None` before that.
     pub message: Option<Message>,
     /// The bus, a mailbox or a barrier has been used.
     pub has_acted: bool,

@@ -23,6 +23,9 @@ pub struct ShadowSite {
     pub words: Vec<u32>,
 }
 
+/// Line of a word, the line that called its macro, its region, and of a word without a line its number.
+type WordOrigin = (Option<Line>, Option<Line>, Option<u16>, u32);
+
 /// The sites of a program, and the site of each word.
 #[derive(Clone, Debug, Default)]
 pub struct ShadowSites {
@@ -37,7 +40,7 @@ impl ShadowSites {
     /// The sites of a program.
     pub fn new(program: &Program) -> ShadowSites {
         let mut sites = ShadowSites::default();
-        let mut known: BTreeMap<(Option<Line>, Option<Line>, Option<u16>, u32), u32> = BTreeMap::new();
+        let mut known: BTreeMap<WordOrigin, u32> = BTreeMap::new();
         for word in 0..program.words.len() as u32 {
             let line = program.lines.get(word as usize).copied();
             let region = program.region_of.get(word as usize).copied().flatten();

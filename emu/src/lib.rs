@@ -20,4 +20,4 @@ pub mod stepper;
 
 pub use code::{octets, quantity, registers, tally, timing, trap};
 pub use replay::{count, weigh};
-pub use run::{run, run_all, step};
+pub use run::{machines_at_once, run, run_all, step};

@@ -56,7 +56,7 @@ pub fn run_all(
             results[*at].is_none() && machines[*at].computes_like(&machines[first]) && check(&setups[*at]).is_ok()
         };
         // A machine that cannot run has its own failure and must not fail the group.
-        let alike: Vec<usize> = (first..setups.len()).filter(is_alike).take(at_once(memory)).collect();
+        let alike: Vec<usize> = (first..setups.len()).filter(is_alike).take(machines_at_once(memory)).collect();
         let group: Vec<Setup> = alike.iter().map(|&at| setups[at].clone()).collect();
         for (&at, result) in alike.iter().zip(run_alike(&group, memory, progress)) {
             results[at] = Some(result);
@@ -66,7 +66,7 @@ pub fn run_all(
 }
 
 /// Machines that share a run of the work items, at most: each has a thread, and of global memory what it writes, which may be all of it.
-fn at_once(memory: &Memory) -> usize {
+pub fn machines_at_once(memory: &Memory) -> usize {
     const OCTETS: usize = 256 << 20;
     (OCTETS / memory.size().max(1)).clamp(1, 64)
 }

@@ -1,116 +1,180 @@
-//! Cost against error as a chart: one plot a scene, the front as a line.
+//! Cost against error as a chart: variants that differ in the word length alone share colour and mark, the front is a line.
 
-use super::MeasuredVariant;
+use super::front::{OverScenes, dominated};
+use super::{AccuracyStudy, CostAxis, ErrorAxis, MeasuredVariant, OverallVariant};
 use crate::chart::{AxisKind, ChartAxis, ChartFigure, ChartLine, ChartPoint, ChartSeries, Look, Plot, PointLabel};
 
-/// PSNR of a picture without any error, for the axis.
-const PERFECT: f64 = 200.0;
+/// Look of fronts, which no other series has.
+const FRONT: usize = 6;
 
-/// Cost that errors are set against.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum CostAxis {
-    /// Clocks of the machine.
-    #[default]
-    Clocks,
-    /// Time of the host.
-    Host,
+/// Kinds of variants that differ in colour and mark; further ones begin anew, with other lines.
+const KINDS: usize = 7;
+
+/// Axes of a chart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChartAxes {
+    /// The axis to the right.
+    pub cost: CostAxis,
+    /// The axis upwards.
+    pub error: ErrorAxis,
+    /// Scenes of each plot.
+    pub over: OverScenes,
 }
 
-impl CostAxis {
-    const fn name(self) -> &'static str {
-        match self {
-            CostAxis::Clocks => "clocks a pixel",
-            CostAxis::Host => "host's nanoseconds a pixel",
-        }
-    }
-
-    /// Cost of a variant; `None` where it was not measured.
-    fn of(self, one: &MeasuredVariant) -> Option<f64> {
-        match self {
-            CostAxis::Clocks => Some(one.clocks),
-            CostAxis::Host => one.host_nanoseconds,
-        }
-    }
+/// A variant in a plot.
+struct PlacedVariant<'m> {
+    kind: &'m str,
+    word: u32,
+    name: &'m str,
+    place: (f64, f64),
+    /// Least and most of the shifts, where there are several.
+    ends: Option<[f64; 2]>,
+    /// Cost and badness, by which the front goes.
+    rank: (f64, f64),
 }
 
-/// The chart of variants on the machine `report`, in pictures of a size.
-pub fn figure(measured: &[MeasuredVariant], (width, height): (u32, u32), axis: CostAxis) -> ChartFigure {
-    let mut scenes: Vec<&str> = Vec::new();
-    for one in measured {
-        if !scenes.contains(&one.scene.as_str()) {
-            scenes.push(&one.scene);
-        }
-    }
-    let mut profiles: Vec<&str> = Vec::new();
-    for one in measured {
-        if !profiles.contains(&one.profile) {
-            profiles.push(one.profile);
-        }
-    }
-    let plots = scenes.iter().map(|&scene| {
-        let variants: Vec<&MeasuredVariant> = measured.iter().filter(|one| one.scene == scene).collect();
-        plot(scene, &variants, &profiles, axis)
-    });
-    ChartFigure {
-        title: format!("Run time against error: {}, machine `report`, {width} x {height} pixels", scenes.join(", ")),
-        note: "PSNR against double precision. Nothing to the left of the front is nearer to double precision."
-            .to_owned(),
-        rows: plots.map(|plot| vec![plot]).collect(),
-    }
-}
-
-fn psnr(one: &MeasuredVariant) -> f64 {
-    one.error.psnr_db.unwrap_or(PERFECT).min(PERFECT)
-}
-
-/// Variants that no other one of these beats in cost and error both, the cheapest first.
-fn front<'v>(variants: &[&'v MeasuredVariant], axis: CostAxis) -> Vec<&'v MeasuredVariant> {
-    let cost = |one: &MeasuredVariant| axis.of(one).unwrap_or(f64::INFINITY);
-    let beats = |other: &MeasuredVariant, one: &MeasuredVariant| {
-        let (fewer, nearer) = (cost(other) < cost(one), other.error.rmse < one.error.rmse);
-        cost(other) <= cost(one) && other.error.rmse <= one.error.rmse && (fewer || nearer)
-    };
-    let is_first = |one: &&&MeasuredVariant| !variants.iter().any(|other| beats(other, one));
-    let mut front: Vec<&MeasuredVariant> = variants.iter().filter(is_first).copied().collect();
-    front.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
-    front
-}
-
-fn plot(scene: &str, variants: &[&MeasuredVariant], profiles: &[&str], axis: CostAxis) -> Plot {
-    let front = front(variants, axis);
-    let is_on_front = |one: &MeasuredVariant| front.iter().any(|other| other.variant == one.variant);
-    let point = |one: &MeasuredVariant, has_label: bool, is_important: bool| {
-        let label = has_label.then(|| PointLabel { words: one.variant.clone(), is_important });
-        let tip = match &one.dominated_by {
-            Some(by) if axis == CostAxis::Clocks => format!("{}: dominated by {by}", one.variant),
-            _ => one.variant.clone(),
-        };
-        Some(ChartPoint { x: axis.of(one)?, y: psnr(one), label, tip })
-    };
-    // Marks by set of kernels; names of the front belong to its line, so that they find room first.
-    let of_profile = |(at, &profile): (usize, &&str)| ChartSeries {
-        name: format!("kernels `{profile}`"),
-        look: Look::Numbered(at),
-        line: ChartLine::None,
-        is_marked: true,
-        points: variants
+/// The chart of variants, in pictures of a size.
+pub fn figure(
+    study: &AccuracyStudy,
+    overall: &[OverallVariant],
+    (width, height): (u32, u32),
+    axes: ChartAxes,
+) -> ChartFigure {
+    let measured = &study.measured;
+    let scenes = distinct(measured.iter().map(|one| one.scene.as_str()));
+    let machines = distinct(measured.iter().map(|one| one.machine.as_str()));
+    let kinds = distinct(measured.iter().map(|one| one.kind.as_str()));
+    let plots: Vec<Plot> = match axes.over {
+        OverScenes::Each => scenes
             .iter()
-            .filter(|one| one.profile == profile)
-            .filter_map(|one| point(one, !is_on_front(one), false))
+            .map(|&scene| {
+                let variants: Vec<PlacedVariant> =
+                    measured.iter().filter(|one| one.scene == scene).filter_map(|one| placed(one, axes)).collect();
+                plot(scene, &variants, &kinds, axes)
+            })
             .collect(),
+        OverScenes::Mean | OverScenes::Worst => {
+            let variants: Vec<PlacedVariant> =
+                overall.iter().filter_map(|one| placed_over(one, measured, axes)).collect();
+            let title = if axes.over == OverScenes::Mean { "mean of all scenes" } else { "worst of all scenes" };
+            vec![plot(title, &variants, &kinds, axes)]
+        }
     };
-    let mut series: Vec<ChartSeries> = profiles.iter().enumerate().map(of_profile).collect();
+    let of_machines = if machines.len() == 1 { "machine" } else { "machines" };
+    let shifts = measured.first().map_or(1, |one| one.shifts.len());
+    let mut note = format!(
+        "Against double precision. Numbers are bits of a word. Nothing to the left of the front is {} it.",
+        if axes.error.is_better_above() { "higher than" } else { "lower than" }
+    );
+    if shifts > 1 && axes.over == OverScenes::Each {
+        note += &format!(" Bars reach over {shifts} places of the samples.");
+    }
+    ChartFigure {
+        title: format!(
+            "Run time against error: {}, {of_machines} `{}`, {width} x {height} pixels",
+            scenes.join(", "),
+            machines.join("`, `")
+        ),
+        note,
+        rows: plots.into_iter().map(|plot| vec![plot]).collect(),
+    }
+}
+
+/// The names in the order in which they come, each once.
+fn distinct<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut found: Vec<&str> = Vec::new();
+    for name in names {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
+}
+
+/// A variant on its scene; `None` where its cost was not measured.
+fn placed(one: &MeasuredVariant, axes: ChartAxes) -> Option<PlacedVariant<'_>> {
+    let cost = axes.cost.of(one)?;
+    let (place, ends) = axes.error.place(one);
+    Some(PlacedVariant {
+        kind: &one.kind,
+        word: one.word,
+        name: &one.variant,
+        place: (cost, place),
+        ends: (one.shifts.len() > 1).then_some(ends),
+        rank: (cost, axes.error.badness(one)),
+    })
+}
+
+/// A variant over all scenes.
+fn placed_over<'m>(
+    one: &'m OverallVariant,
+    measured: &'m [MeasuredVariant],
+    axes: ChartAxes,
+) -> Option<PlacedVariant<'m>> {
+    let first = measured.iter().find(|measured| measured.number == one.number)?;
+    let (cost, error) = match axes.over {
+        OverScenes::Worst => (one.cost.worst, one.error.worst),
+        _ => (one.cost.mean, one.error.mean),
+    };
+    let rank = if axes.error.is_better_above() { -error } else { error };
+    Some(PlacedVariant {
+        kind: &first.kind,
+        word: first.word,
+        name: &one.variant,
+        place: (cost, error),
+        ends: None,
+        rank: (cost, rank),
+    })
+}
+
+fn plot(title: &str, variants: &[PlacedVariant], kinds: &[&str], axes: ChartAxes) -> Plot {
+    let by = dominated(&variants.iter().map(|one| one.rank).collect::<Vec<_>>());
+    let label = |words: &str, is_important: bool| Some(PointLabel { words: words.to_owned(), is_important });
+    // Words of one kind stand in the order of their lengths, as their line has it; the front has names in full, and finds room first.
+    let of_kind = |(at, &kind): (usize, &&str)| {
+        let mut points: Vec<(&PlacedVariant, &Option<usize>)> =
+            variants.iter().zip(&by).filter(|(one, _)| one.kind == kind).collect();
+        points.sort_by_key(|(one, _)| one.word);
+        let point = |(one, by): (&PlacedVariant, &Option<usize>)| ChartPoint {
+            label: by.and_then(|_| label(&one.word.to_string(), false)),
+            tip: by
+                .map_or_else(|| one.name.to_owned(), |by| format!("{}: dominated by {}", one.name, variants[by].name)),
+            bar: one.ends,
+            ..ChartPoint::new(one.place.0, one.place.1)
+        };
+        ChartSeries {
+            name: kind.to_owned(),
+            look: Look::Numbered(if at % KINDS < FRONT { at % KINDS } else { at % KINDS + 1 }),
+            line: if at < KINDS { ChartLine::Dotted } else { ChartLine::Dashed },
+            is_marked: true,
+            points: points.into_iter().map(point).collect(),
+        }
+    };
+    let mut series: Vec<ChartSeries> = kinds.iter().enumerate().map(of_kind).collect();
+    let mut front: Vec<&PlacedVariant> =
+        variants.iter().zip(&by).filter(|(_, by)| by.is_none()).map(|(one, _)| one).collect();
+    front.sort_by(|one, other| one.place.0.total_cmp(&other.place.0));
     series.push(ChartSeries {
         name: "front".to_owned(),
-        look: Look::Numbered(6),
+        look: Look::Numbered(FRONT),
         line: ChartLine::Solid,
         is_marked: false,
-        points: front.iter().filter_map(|one| point(one, true, true)).collect(),
+        points: front
+            .iter()
+            .map(|one| ChartPoint { label: label(one.name, true), ..ChartPoint::new(one.place.0, one.place.1) })
+            .collect(),
     });
     Plot {
-        title: scene.to_owned(),
-        x: ChartAxis { name: axis.name().to_owned(), kind: AxisKind::Logarithmic },
-        y: ChartAxis { name: "PSNR, dB".to_owned(), kind: AxisKind::Linear },
+        title: title.to_owned(),
+        x: ChartAxis { name: axes.cost.name().to_owned(), kind: AxisKind::Logarithmic },
+        y: ChartAxis {
+            name: axes.error.name().to_owned(),
+            kind: match axes.error {
+                ErrorAxis::Largest => AxisKind::Logarithmic,
+                ErrorAxis::Off => AxisKind::FromZero,
+                _ => AxisKind::Linear,
+            },
+        },
         series,
         aspect: 0.66,
     }

@@ -1,39 +1,54 @@
-//! Run time against error: pictures in many arithmetics, profiles and layouts, each measured against double precision, and its camera rays
-//! against exact integers on the same grid, so that what the formats cost and what the scene's rounding costs are told apart.
+//! Run time against error: pictures in many arithmetics, profiles and layouts on several machines, each measured against double precision, and its
+//! camera rays against exact integers on the same grid, so that what the formats cost and what the scene's rounding costs are told apart. A study
+//! of points that share recordings where only the machine differs.
 
+mod axis;
 #[cfg(feature = "cli")]
 mod chart;
 mod front;
+mod pooled;
 mod rays;
 mod similarity;
+mod study;
+#[cfg(feature = "cli")]
+mod text;
 
 use std::fmt;
-use std::time::Instant;
+use std::sync::Arc;
 
 use isa::number::Quantization;
 use kernels::KernelSet;
-use kernels::twin::samples::Samples;
 use scenes::layout::Layout;
-use scenes::metrics::{self, PictureError};
-use scenes::model::{Picture, Scene, View};
-use scenes::reference::{Reference, SearchMethod};
+use scenes::metrics::PictureError;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::drawing::{self, Comparison};
-use crate::energy::{EnergyResult, EnergySummary};
-use crate::failure::Failure;
-use crate::job::{Detail, Job};
-use crate::result::{ByClass, Render};
-use crate::settings::TreeSettings;
+use crate::energy::EnergySummary;
+use crate::result::{ByClass, FormatTable};
+use crate::settings::Settings;
+pub use axis::{CostAxis, ErrorAxis};
 #[cfg(feature = "cli")]
-pub use chart::{CostAxis, figure};
-pub use front::rank;
+pub use chart::{ChartAxes, figure};
+pub use front::{MeanAndWorst, OverScenes, OverallVariant, overall, rank};
 pub use rays::RayErrors;
+pub use study::{AccuracyStudy, PLACES, RefusedVariant, run};
+#[cfg(feature = "cli")]
+pub use text::{csv, text};
+
+/// Settings that variants share, on one of the machines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyBase {
+    /// Everything but the scene and what variants vary.
+    pub settings: Settings,
+    /// Words that tell the machine from the others; empty for the only one.
+    pub words: String,
+}
 
 /// Settings of one picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
+    /// The machine and all that no variant varies.
+    pub base: Arc<StudyBase>,
     /// Set of kernels.
     pub profile: KernelSet,
     /// Bits of a word.
@@ -52,34 +67,62 @@ pub struct Variant {
 
 impl Variant {
     /// The variant with other kernels, those that were made for a layout in that.
-    fn with(self, profile: KernelSet) -> Variant {
+    fn with(&self, profile: KernelSet) -> Variant {
         let layout = match profile.layout() {
             own @ (Layout::Report | Layout::Packet | Layout::Packed) => own,
             Layout::Wide => self.layout,
         };
-        Variant { profile, layout, ..self }
+        Variant { profile, layout, ..self.clone() }
+    }
+
+    /// Settings of the picture of a scene, with its samples moved by `shift` beside the shift that all share.
+    pub fn settings(&self, scene: &str, shift: [f64; 2]) -> Settings {
+        let mut settings = self.base.settings.clone();
+        scene.clone_into(&mut settings.scene.name);
+        settings.view.shift = [0, 1].map(|k| settings.view.shift[k] + shift[k]);
+        settings.kernels.profile = self.profile;
+        settings.layout = Some(self.layout);
+        settings.machine.config.arithmetic.word = self.word;
+        settings.machine.config.arithmetic.quantization = self.rounding;
+        settings.effort.bounces = self.bounces;
+        settings.effort.weight_cutoff = self.cutoff;
+        settings.effort.interpolate = self.interpolate;
+        settings
+    }
+
+    /// The variant in words without the word length.
+    pub fn kind(&self) -> String {
+        format!("{}{}", self.profile, self.particulars())
+    }
+
+    /// Words for what is not as usual.
+    fn particulars(&self) -> String {
+        let mut words = String::new();
+        if self.rounding != Quantization::Rnd {
+            words += &format!(" {}", self.rounding);
+        }
+        if self.layout != self.profile.layout() {
+            words += &format!(" {}", self.layout.name());
+        }
+        if self.bounces != BOUNCES {
+            words += &format!(" bounces {}", self.bounces);
+        }
+        if self.cutoff != 0.0 {
+            words += &format!(" cutoff {}", self.cutoff);
+        }
+        if let Some(difference) = self.interpolate {
+            words += &format!(" interpolated {difference}");
+        }
+        if !self.base.words.is_empty() {
+            words += &format!(" {}", self.base.words);
+        }
+        words
     }
 }
 
 impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.profile, self.word)?;
-        if self.rounding != Quantization::Rnd {
-            write!(f, " {}", self.rounding)?;
-        }
-        if self.layout != self.profile.layout() {
-            write!(f, " {}", self.layout.name())?;
-        }
-        if self.bounces != BOUNCES {
-            write!(f, " bounces {}", self.bounces)?;
-        }
-        if self.cutoff != 0.0 {
-            write!(f, " cutoff {}", self.cutoff)?;
-        }
-        if let Some(difference) = self.interpolate {
-            write!(f, " interpolated {difference}")?;
-        }
-        Ok(())
+        write!(f, "{} {}{}", self.profile, self.word, self.particulars())
     }
 }
 
@@ -89,6 +132,8 @@ const BOUNCES: u32 = 5;
 /// The values that are tried of each setting. The first one of each list is the base.
 #[derive(Clone, Debug)]
 pub struct Choices {
+    /// Machines, each with all that no variant varies.
+    pub bases: Vec<Arc<StudyBase>>,
     /// Sets of kernels.
     pub profiles: Vec<KernelSet>,
     /// Bits of a word.
@@ -107,9 +152,10 @@ pub struct Choices {
 
 impl Choices {
     /// Every profile in every word (that of the report in its own layout), and for each further value of another setting the base profile in
-    /// every word; `None` without a value of some setting.
+    /// every word; all of them on each machine. `None` without a value of some setting.
     pub fn variants(&self) -> Option<Vec<Variant>> {
         let base = Variant {
+            base: self.bases.first()?.clone(),
             profile: *self.profiles.first()?,
             word: *self.words.first()?,
             rounding: *self.roundings.first()?,
@@ -118,19 +164,48 @@ impl Choices {
             cutoff: *self.cutoffs.first()?,
             interpolate: *self.interpolate.first()?,
         };
+        let with = |change: &dyn Fn(&mut Variant)| {
+            let mut variant = base.clone();
+            change(&mut variant);
+            variant
+        };
         let mut kinds: Vec<Variant> = self.profiles.iter().map(|&profile| base.with(profile)).collect();
-        kinds.extend(self.roundings[1..].iter().map(|&rounding| Variant { rounding, ..base }));
-        kinds.extend(self.layouts[1..].iter().map(|&layout| Variant { layout, ..base }));
-        kinds.extend(self.bounces[1..].iter().map(|&bounces| Variant { bounces, ..base }));
-        kinds.extend(self.cutoffs[1..].iter().map(|&cutoff| Variant { cutoff, ..base }));
-        kinds.extend(self.interpolate[1..].iter().map(|&interpolate| Variant { interpolate, ..base }));
-        Some(kinds.iter().flat_map(|&kind| self.words.iter().map(move |&word| Variant { word, ..kind })).collect())
+        kinds.extend(self.roundings[1..].iter().map(|&rounding| with(&|one| one.rounding = rounding)));
+        kinds.extend(self.layouts[1..].iter().map(|&layout| with(&|one| one.layout = layout)));
+        kinds.extend(self.bounces[1..].iter().map(|&bounces| with(&|one| one.bounces = bounces)));
+        kinds.extend(self.cutoffs[1..].iter().map(|&cutoff| with(&|one| one.cutoff = cutoff)));
+        kinds.extend(self.interpolate[1..].iter().map(|&interpolate| with(&|one| one.interpolate = interpolate)));
+        let mut variants = Vec::new();
+        for base in &self.bases {
+            for kind in &kinds {
+                variants.extend(self.words.iter().map(|&word| Variant { word, base: base.clone(), ..kind.clone() }));
+            }
+        }
+        Some(variants)
     }
 }
 
-/// A variant on a scene.
+/// Error of the picture of one shift.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ShiftError {
+    /// Place of a ray in its pixel, in pixels to the right of the middle and above it.
+    pub shift: [f64; 2],
+    /// The picture against double precision with five bounces and no cut-off.
+    #[serde(flatten)]
+    pub error: PictureError,
+    /// Structural similarity.
+    pub ssim: Option<f64>,
+}
+
+/// A variant on a scene; errors and costs are those of the pictures of all shifts together.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MeasuredVariant {
+    /// Number of the variant among all that were asked for.
+    #[serde(skip)]
+    pub number: usize,
+    /// The variant in words without the word length.
+    #[serde(skip)]
+    pub kind: String,
     /// Name of the scene.
     pub scene: String,
     /// The variant in words.
@@ -149,96 +224,45 @@ pub struct MeasuredVariant {
     pub cutoff: f64,
     /// Difference up to which corners agree, so that a pixel between them is interpolated; null when every pixel has its ray.
     pub interpolate: Option<f64>,
+    /// Name of the machine.
+    pub machine: String,
+    /// Cores.
+    pub cores: u32,
+    /// Arbiter of the bus.
+    pub arbiter: &'static str,
     /// Bits of a word and fraction bits of each quantity.
-    pub formats: crate::result::FormatTable,
-    /// The picture against double precision with five bounces and no cut-off.
+    pub formats: FormatTable,
+    /// Pixels off by 1/255 or more, of the mean and of the worst picture of all shifts.
+    pub off: MeanAndWorst,
+    /// The pictures against double precision with five bounces and no cut-off.
     pub error: PictureError,
-    /// Structural similarity of both pictures as screens show them, 1 for equal ones.
+    /// Structural similarity of both pictures as screens show them, 1 for equal ones; the mean of all shifts.
     pub ssim: Option<f64>,
-    /// The picture against double precision over the vertices as they are stored: the error without that of rounding the mesh.
+    /// The error by shift.
+    pub shifts: Vec<ShiftError>,
+    /// The pictures against double precision over the vertices as they are stored: the error without that of rounding the mesh.
     pub stored_error: PictureError,
     /// Camera rays against exact integers.
     pub rays: RayErrors,
     /// Clocks of the frame, a pixel.
     pub clocks: f64,
-    /// Operations of all cores.
+    /// Seconds of the machine, a pixel.
+    pub seconds: f64,
+    /// Operations of all cores, in the pictures of all shifts.
     pub operations: ByClass,
     /// Instructions of all cores, a pixel.
     pub instructions: f64,
     /// Octets that the cores moved, a pixel.
     pub octets: f64,
-    /// Energy and area, as a range over published tables.
+    /// Energy and area, as a range over published tables; of several shifts the mean.
     pub energy: EnergySummary,
     /// Nanoseconds of the host a pixel; only when asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub host_nanoseconds: Option<f64>,
+    /// Method by which its frames came about: replayed, or stepped where one of them had to be.
+    pub method: &'static str,
     /// True where no other variant of the scene beats it.
     pub is_on_front: bool,
-    /// A variant of the scene that takes no more clocks, has no larger error and is better in one of them; null for one on the front.
+    /// A variant of the scene that costs no more, has no larger error and is better in one of them; null for one on the front.
     pub dominated_by: Option<String>,
-}
-
-/// Draws a scene in a variant and measures it against `reference`, that view of the scene in double precision.
-///
-/// # Errors
-/// A scene that does not fit the formats, or a trap.
-pub fn measure(
-    scene: &Scene,
-    view: &View,
-    reference: &Reference,
-    variant: &Variant,
-    tree: &TreeSettings,
-    has_times: bool,
-) -> Result<MeasuredVariant, Failure> {
-    // Draw the variant.
-    let mut job = Job::new(scene.clone());
-    job.view = View { bounces: variant.bounces, ..view.clone() };
-    job.kernels.profile = variant.profile;
-    job.kernels.weight_cutoff = variant.cutoff;
-    job.kernels.interpolate = variant.interpolate;
-    job.layout = Some(variant.layout);
-    tree.choose(&mut job);
-    job.machine.arithmetic.word = variant.word;
-    job.machine.arithmetic.quantization = variant.rounding;
-    job.detail = Detail::Totals;
-    let start = Instant::now();
-    let mut drawing = drawing::draw(&job, Comparison::None, &mut |_| {})?;
-    let host = start.elapsed();
-    // Measure it against the scene as it was given, and against the vertices that the format could hold: the difference is the cost of rounding the mesh.
-    let error = |reference: &Picture| metrics::compare(&drawing.picture, reference).expect("both have the view's size");
-    drawing.image.bytes = drawing.frame.memory.octets().to_vec();
-    let stored = drawing.image.stored_scene(scene).expect("an image that was built can be read");
-    let samples = Samples::new(scene, &drawing.image, variant.profile, job.machine.arithmetic.modes());
-    let stored = Reference::framed(&stored, scene.bounds(), view, SearchMethod::Hierarchy)?;
-    let [exact, stored] = [reference, &stored].map(|reference| reference.picture(Some(&samples)).picture);
-    // Measure camera rays by themselves on the stored grid.
-    let rays = RayErrors::new(&drawing.image, &job, view.size);
-    let result = Render::new(&job, &drawing);
-    // Counts are told a pixel, so that sizes can be compared.
-    let pixels = f64::from(result.width) * f64::from(result.height);
-    let each = |total: u64| total as f64 / pixels;
-    Ok(MeasuredVariant {
-        scene: result.scene.clone(),
-        variant: variant.to_string(),
-        profile: variant.profile.name(),
-        word: variant.word,
-        rounding: variant.rounding.name(),
-        layout: variant.layout.name(),
-        bounces: variant.bounces,
-        cutoff: variant.cutoff,
-        interpolate: variant.interpolate,
-        error: error(&exact),
-        ssim: similarity::structural_similarity(&drawing.picture, &exact),
-        stored_error: error(&stored),
-        rays,
-        clocks: each(result.clocks),
-        operations: result.counts,
-        instructions: each(result.instructions),
-        octets: each(result.octets),
-        energy: EnergyResult::of(&job, &drawing, None).summary,
-        host_nanoseconds: has_times.then(|| host.as_nanos() as f64 / pixels),
-        formats: result.formats,
-        is_on_front: false,
-        dominated_by: None,
-    })
 }

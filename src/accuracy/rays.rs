@@ -3,7 +3,7 @@
 
 use isa::number::ray::{self as exact, TriangleEnd};
 use isa::number::{Modes, Vector};
-use kernels::build::SceneFeatures;
+use kernels::build::{Crop, SceneFeatures};
 use kernels::set::{Decisions, Formulas};
 use kernels::twin::planes::Packets;
 use kernels::twin::ray::{TwinRay, TwinSearch};
@@ -47,15 +47,15 @@ struct RayOutcome {
 }
 
 impl RayErrors {
-    /// Measures the camera rays of a job's picture on the image that was built for it.
-    pub fn new(image: &MemoryImage, job: &Job, (width, height): (u32, u32)) -> RayErrors {
+    /// Measures the camera rays of the drawn part of a job's picture on the image that was built for it.
+    pub fn new(image: &MemoryImage, job: &Job, crop: &Crop) -> RayErrors {
         let (profile, modes) = (job.kernels.profile, job.machine.arithmetic.modes());
         let features = SceneFeatures::new(&job.scene, &job.view, &image.formats, &kernels::KernelOptions::default());
         let twin = Twin::new(image, &features, profile, modes).expect("an image that was built can be read");
         // Trace all camera rays on the native twin, and decide each again exactly.
-        let ended: Vec<RayOutcome> = (0..width * height)
+        let ended: Vec<RayOutcome> = (0..crop.width * crop.height)
             .into_par_iter()
-            .map(|pixel| end(&twin, &twin.camera_ray(pixel % width, pixel / width)))
+            .map(|pixel| end(&twin, &twin.camera_ray(crop.column + pixel % crop.width, crop.row + pixel / crop.width)))
             .collect();
         let wrong = ended.iter().filter(|ray| !ray.is_right).count();
         // Sort each kind of error, without those of quantities that the kernels do not compute.
@@ -77,6 +77,23 @@ impl RayErrors {
             v_max: v.last().copied(),
             normal_p99: p99(&normals),
             normal_max: normals.last().copied(),
+        }
+    }
+
+    /// Errors over several shifts: the mean of the misclassified, of all others the largest.
+    pub fn worst<'a>(shifts: impl Iterator<Item = &'a RayErrors> + Clone) -> RayErrors {
+        let largest = |part: fn(&RayErrors) -> Option<f64>| shifts.clone().filter_map(part).reduce(f64::max);
+        let wrong: f64 = shifts.clone().map(|rays| rays.misclassified_per_million).sum();
+        RayErrors {
+            misclassified_per_million: wrong / shifts.clone().count().max(1) as f64,
+            t_p99: largest(|rays| rays.t_p99),
+            t_max: largest(|rays| rays.t_max),
+            u_p99: largest(|rays| rays.u_p99),
+            u_max: largest(|rays| rays.u_max),
+            v_p99: largest(|rays| rays.v_p99),
+            v_max: largest(|rays| rays.v_max),
+            normal_p99: largest(|rays| rays.normal_p99),
+            normal_max: largest(|rays| rays.normal_max),
         }
     }
 }

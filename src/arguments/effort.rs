@@ -19,15 +19,24 @@ pub struct EffortArguments {
     /// Weight that a reflected or refracted ray must exceed to be followed, 0 to 1.
     #[arg(long, value_name = "WEIGHT", value_parser = weight, allow_hyphen_values = true, default_value = "0")]
     pub weight_cutoff: f64,
-    /// Skips not to make, names between commas, or `all`; `lancer skips` lists them and what they save.
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = unskipped())]
-    pub no_skip: Vec<Vec<Skip>>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub skips: SkipArguments,
     /// Interpolates pixels between four corners that differ by at most this in each component, 0 to 1 (without a number: 0.01).
     #[arg(long, value_name = "DIFFERENCE", value_parser = difference, num_args = 0..=1, require_equals = true, default_missing_value = "0.01")]
     pub interpolate: Option<f64>,
 }
 
-impl EffortArguments {
+/// Option of what the kernels leave out.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Effort")]
+pub struct SkipArguments {
+    /// Skips not to make, names between commas, or `all`; `lancer skips` lists them and what they save.
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = unskipped())]
+    pub no_skip: Vec<Vec<Skip>>,
+}
+
+impl SkipArguments {
     /// The skips of the program.
     pub fn skips(&self) -> Skips {
         self.no_skip.iter().flatten().fold(Skips::ALL, |skips, &skip| skips.without(skip))

@@ -62,22 +62,23 @@ impl JobArguments {
             kernels: KernelSettings {
                 profile: kernels.profile,
                 replaced: kernels
+                    .files
                     .replaced
                     .iter()
                     .map(|(function, path)| (function.name().to_owned(), file(path)))
                     .collect(),
                 hash: None,
-                extensions: kernels.extensions.extensions.iter().map(file).collect(),
+                extensions: kernels.files.extensions.extensions.iter().map(file).collect(),
             },
             effort: EffortSettings {
                 bounces: effort.bounces,
                 weight_cutoff: effort.weight_cutoff,
-                skips: effort.skips(),
+                skips: effort.skips.skips(),
                 interpolate: effort.interpolate,
             },
             tree: effort.tree.settings(),
             layout: machine.layout,
-            formats: FormatSettings::from(&overrides::collect(&numbers.formats)),
+            formats: FormatSettings::from(&overrides::collect(&numbers.formats.formats)),
             machine: machine.keys.chosen(&numbers.arithmetic)?,
             engine: machine.engine,
             results: ResultSettings::default(),

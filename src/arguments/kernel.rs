@@ -16,6 +16,15 @@ pub struct KernelArguments {
     /// Set of kernels.
     #[arg(long, value_name = "NAME", value_parser = profile(), default_value = KernelSet::default().name())]
     pub profile: KernelSet,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub files: KernelFileArguments,
+}
+
+/// Files of the user's own.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Kernels")]
+pub struct KernelFileArguments {
     /// Assembly file that serves one function instead of the profile's own; may be repeated.
     #[arg(long = "kernel", value_name = "FUNCTION=FILE", value_parser = replacement)]
     pub replaced: Vec<(Function, PathBuf)>,

@@ -1,6 +1,6 @@
 //! Which machine runs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -93,6 +93,17 @@ impl MachineKeyArguments {
         }
         let settings = Settings { machine: self.chosen(arithmetic)?, ..Settings::default() };
         Ok(settings.with(&self.sets.sets)?.machine)
+    }
+}
+
+/// Machines between commas; a file or a machine in braces may have commas in it.
+///
+/// # Errors
+/// None: a machine that does not exist is named when it is looked for.
+pub fn machines(text: &str) -> Result<Vec<String>, String> {
+    match text.starts_with('{') || Path::new(text).exists() {
+        true => Ok(vec![text.to_owned()]),
+        false => Ok(text.split(',').map(|name| name.trim().to_owned()).collect()),
     }
 }
 

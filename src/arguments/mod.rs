@@ -13,12 +13,14 @@ mod value;
 mod view;
 
 pub use chart::{ChartArguments, chart_file};
-pub use effort::EffortArguments;
+pub use effort::{EffortArguments, SkipArguments};
 pub use extension::ExtensionArguments;
 pub use job::JobArguments;
-pub use kernel::{KernelArguments, plain};
-pub use machine::{MachineArguments, MachineKeyArguments, SetArguments, SettingsArguments, arbiter, engine, layout};
-pub use numbers::{ArithmeticArguments, NumberArguments};
+pub use kernel::{KernelArguments, KernelFileArguments, plain};
+pub use machine::{
+    MachineArguments, MachineKeyArguments, SetArguments, SettingsArguments, arbiter, engine, layout, machines,
+};
+pub use numbers::{ArithmeticArguments, FormatArguments, NumberArguments, OverflowArguments};
 pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, positive, rectangle, setting, size, ungrouped, whole};
 pub use view::{CameraArguments, ViewArguments};

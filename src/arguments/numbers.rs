@@ -14,6 +14,15 @@ pub struct NumberArguments {
     #[command(flatten)]
     #[allow(missing_docs, reason = "the group has its own")]
     pub arithmetic: ArithmeticArguments,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub formats: FormatArguments,
+}
+
+/// Option of the fraction bits.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Numbers")]
+pub struct FormatArguments {
     /// Fraction bits of pos, dir, bary, t, weight or colour; may be repeated [default: by the scene].
     #[arg(long = "format", value_name = "QUANTITY=BITS", value_delimiter = ',', value_parser = overrides::check)]
     pub formats: Vec<String>,
@@ -29,6 +38,15 @@ pub struct ArithmeticArguments {
     /// Rounding mode, by its IEEE 1666 name [default: the machine's, RND].
     #[arg(long, value_name = "MODE", ignore_case = true, value_parser = rounding())]
     pub rounding: Option<Quantization>,
+    #[command(flatten)]
+    #[allow(missing_docs, reason = "the group has its own")]
+    pub overflow: OverflowArguments,
+}
+
+/// Option of the overflow mode.
+#[derive(Args, Clone, Debug, Default)]
+#[command(next_help_heading = "Numbers")]
+pub struct OverflowArguments {
     /// Overflow mode, by its IEEE 1666 name: SAT, SAT_ZERO, SAT_SYM, WRAP or WRAP_SM; WRAP:3 saturates three bits
     /// [default: the machine's, SAT].
     #[arg(long, value_name = "MODE", value_parser = overflow)]
@@ -41,7 +59,7 @@ impl ArithmeticArguments {
         let arithmetic = &mut config.arithmetic;
         arithmetic.word = self.word.unwrap_or(arithmetic.word);
         arithmetic.quantization = self.rounding.unwrap_or(arithmetic.quantization);
-        arithmetic.overflow = self.overflow.unwrap_or(arithmetic.overflow);
+        arithmetic.overflow = self.overflow.overflow.unwrap_or(arithmetic.overflow);
     }
 }
 

@@ -17,6 +17,9 @@ const GAP: f64 = 5.0;
 /// Length of a line in the legend.
 const SAMPLE: f64 = 18.0;
 
+/// Half the length of the lines across the ends of a bar, in points.
+const CAP: f64 = 1.6;
+
 /// Distance that names of ticks keep.
 const TICK_GAP: f64 = 5.0;
 
@@ -107,7 +110,9 @@ impl Page {
             |value: fn(&super::ChartPoint) -> f64| plot.series.iter().flat_map(|series| &series.points).map(value);
         // The names of the upward axis decide how much room is left for the one to the right.
         let rows = ((height / 26.0) as usize).clamp(2, 8);
-        let up = AxisScale::new(&plot.y.kind, numbers(|point| point.y), rows);
+        let ends =
+            plot.series.iter().flat_map(|series| &series.points).flat_map(|point| point.bar.into_iter().flatten());
+        let up = AxisScale::new(&plot.y.kind, numbers(|point| point.y).chain(ends), rows);
         let ticks_up = apart(up.ticks(rows), |place| height * up.place(place), |_| SMALL);
         let widest = ticks_up.iter().map(|(_, name)| font::width(name, SMALL, false)).fold(0.0, f64::max);
         let start = left + TEXT * 1.3 + widest + 4.0;
@@ -189,6 +194,20 @@ impl Page {
             if series.line != ChartLine::None {
                 lines.extend(points.windows(2).map(|pair| (pair[0], pair[1])));
                 self.series_line(points, series);
+            }
+        }
+        // Bars stand below all marks, with short lines across their ends.
+        for series in &plot.series {
+            for point in &series.points {
+                let Some([low, high]) = point.bar else { continue };
+                let (x, low, high) = (frame.x(point.x), frame.y(low), frame.y(high));
+                let colour = theme.of(series.look);
+                for line in
+                    [[(x, low), (x, high)], [(x - CAP, low), (x + CAP, low)], [(x - CAP, high), (x + CAP, high)]]
+                {
+                    self.canvas.line(line.to_vec(), colour, 0.6, &[]);
+                    lines.push((line[0], line[1]));
+                }
             }
         }
         let mut boxes = Vec::new();
@@ -293,6 +312,7 @@ mod tests {
         // Four at each of ten places, as words of four lengths that make hardly a difference.
         let point = |k: u32| ChartPoint {
             label: Some(PointLabel { words: format!("variant {k} of cutoff 0.0078125"), is_important: k < 8 }),
+            bar: (k % 5 == 0).then_some([15.0 + 14.0 * f64::from(k % 10), 24.0 + 14.0 * f64::from(k % 10)]),
             ..ChartPoint::new(5000.0 + 700.0 * f64::from(k % 10), 20.0 + 14.0 * f64::from(k % 10) + 0.01 * f64::from(k))
         };
         let axis = |name: &str, kind| ChartAxis { name: name.to_owned(), kind };

@@ -114,6 +114,8 @@ pub struct ChartPoint {
     pub label: Option<PointLabel>,
     /// Words that a viewer of SVG shows over it; empty for none.
     pub tip: String,
+    /// Ends of an upright bar through it, on the axis upwards.
+    pub bar: Option<[f64; 2]>,
 }
 
 /// Name of a point.
@@ -128,7 +130,7 @@ pub struct PointLabel {
 impl ChartPoint {
     /// A point without a name.
     pub fn new(x: f64, y: f64) -> ChartPoint {
-        ChartPoint { x, y, label: None, tip: String::new() }
+        ChartPoint { x, y, label: None, tip: String::new(), bar: None }
     }
 }
 

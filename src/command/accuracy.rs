@@ -1,28 +1,37 @@
-//! `lancer accuracy`: run time against error, in many arithmetics.
+//! `lancer accuracy`: run time against error, in many arithmetics and on several machines.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::sync::Arc;
 
 use clap::Args;
+use emu::engine::EngineKind;
+use emu::machine::arbiter::ArbiterKind;
+use emu::machine::config::MOST_CORES;
 use isa::number::Quantization;
 use kernels::KernelSet;
 use messages::Diagnostic;
 use scenes::layout::Layout;
-use scenes::model::View;
-use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::invocation::{CommandSettings, scene_hashes};
-use crate::accuracy::{self, Choices, CostAxis, MeasuredVariant};
-use crate::arguments::{self, ChartArguments, SettingsArguments, Size, TreeArguments};
+use crate::accuracy::{
+    self, ChartAxes, Choices, CostAxis, ErrorAxis, MeasuredVariant, OverScenes, OverallVariant, PLACES, RefusedVariant,
+    StudyBase,
+};
+use crate::arguments::{
+    self, ArithmeticArguments, ChartArguments, EffortArguments, FormatArguments, JobArguments, KernelArguments,
+    KernelFileArguments, MachineArguments, MachineKeyArguments, NumberArguments, OverflowArguments, SetArguments,
+    SkipArguments, TreeArguments, ViewArguments,
+};
 use crate::failure::{Exit, Failure};
-use crate::numeral::{numbers, short};
+use crate::numeral::numbers;
 use crate::result::WithSettings;
-use crate::table::{row, table};
+use crate::settings::{MachineSettings, key};
+use crate::sweep::contents::Contents;
 use crate::terminal::Terminal;
-use crate::{files, input, result};
+use crate::{files, machine, result};
 
 /// Version of what `--json` prints.
 pub(super) const SCHEMA: &str = "lancer-accuracy-1";
@@ -31,22 +40,26 @@ const EXAMPLES: &str = "\
 Examples:
   lancer accuracy
   lancer accuracy cornell terrain --words 32,24,20 --size 160x120 --svg accuracy.svg --pdf accuracy.pdf
-  lancer accuracy slabs --profiles ray --roundings RND,TRN,RND_CONV --bounces 5 --cutoffs 0 --json";
+  lancer accuracy slabs --profiles ray --roundings RND,TRN,RND_CONV --bounces 5 --cutoffs 0 --json
+  lancer accuracy cornell --profiles ray --layouts packed,wide --machine report,wide32 --shifts 8 --axis seconds --error off
+  lancer accuracy cornell slabs terrain --axis nj --error others --over worst --svg all.svg";
 
-/// Draws scenes in many arithmetics and sets clocks against error.
+/// Draws scenes in many arithmetics and sets cost against error.
 ///
 /// Every profile is drawn in every word length, and for each further value of another option the first profile in every
-/// word length. The first value of each option is the base. A variant is dominated when another one of the scene
-/// takes no more clocks, has no larger error, and is better in one of them; the others are the front.
+/// word length; all of these on every machine, where machines that compute alike share a recording. The first value of
+/// each option is the base. A variant is dominated when another one of the scene costs no more, has no larger error,
+/// and is better in one of them; the others are the front. Pixels off by 1/255 or more are told first: a single one that
+/// has changed sides moves the PSNR by tens of dB.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, mut_arg("size", |size| size.default_value(SIZE).help("Size of the pictures in pixels")))]
 pub struct AccuracyArguments {
     /// Scenes: .dsc or mesh files, or names of generated ones.
     #[arg(value_name = "SCENE", default_value = "cornell")]
     scenes: Vec<String>,
-    /// Size of the pictures in pixels.
-    #[arg(long, value_name = "WxH", value_parser = arguments::size, default_value = "64x48")]
-    size: Size,
+    /// Mesh that belongs to the .dsc [default: the file of the same name beside it].
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
     /// Bits of a word, 8 to 32: numbers and ranges such as 16-24.
     #[arg(long, value_name = "BITS,..", value_parser = words, default_value = "32,28,24,20,16")]
     words: Vec<Vec<u32>>,
@@ -68,13 +81,45 @@ pub struct AccuracyArguments {
     /// Differences of a component up to which the corners around a pixel agree, so that it is interpolated, in [0, 1]; or `none`.
     #[arg(long, value_name = "D,..", value_delimiter = ',', value_parser = difference, default_value = "none,0.01")]
     interpolate: Vec<CornerAgreement>,
+    /// Pictures of each variant, at as many places of the samples in their pixels, 1 to 8; the first place is --shift, the others lie
+    /// around it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=PLACES.len() as i64), default_value = "1")]
+    shifts: u8,
     #[command(flatten)]
     tree: TreeArguments,
     #[command(flatten)]
-    settings: SettingsArguments,
-    /// Cost that charts set errors against: clocks of the machine, or the host's time, which is then measured.
+    view: ViewArguments,
+    #[command(flatten)]
+    kernels: KernelFileArguments,
+    #[command(flatten)]
+    skips: SkipArguments,
+    #[command(flatten)]
+    formats: FormatArguments,
+    #[command(flatten)]
+    overflow: OverflowArguments,
+    /// Machines between commas: presets' names or TOML files; may be repeated.
+    #[arg(long = "machine", value_name = "NAME|FILE,..", value_parser = arguments::machines, default_value = machine::DEFAULT, help_heading = "Machine")]
+    machines: Vec<Vec<String>>,
+    /// Numbers of cores of each machine, and ranges, such as 1-4,8 [default: the machine's].
+    #[arg(long, value_name = "LIST", value_parser = core_list, help_heading = "Machine")]
+    cores: Vec<Vec<u32>>,
+    /// Arbiters of each machine, between commas [default: the machine's].
+    #[arg(long = "arbiter", value_name = "NAME,..", value_delimiter = ',', value_parser = arguments::arbiter(), help_heading = "Machine")]
+    arbiters: Vec<ArbiterKind>,
+    /// Engine that executes the programs; only the host's time depends on it. auto: the fastest that suits.
+    #[arg(long, value_name = "NAME", value_parser = arguments::engine(), default_value = AUTO, help_heading = "Machine")]
+    engine: EngineKind,
+    #[command(flatten)]
+    sets: SetArguments,
+    /// Cost that errors are set against, in fronts and charts; the host's time is then measured.
     #[arg(long, value_enum, default_value_t = CostAxis::Clocks, help_heading = "Charts and data")]
     axis: CostAxis,
+    /// Error that costs are set against.
+    #[arg(long, value_enum, default_value_t = ErrorAxis::Psnr, help_heading = "Charts and data")]
+    error: ErrorAxis,
+    /// Scenes that a chart's front goes over.
+    #[arg(long, value_enum, default_value_t = OverScenes::Each, help_heading = "Charts and data")]
+    over: OverScenes,
     #[command(flatten)]
     chart: ChartArguments,
     /// Prints the results as JSON.
@@ -88,12 +133,35 @@ pub struct AccuracyArguments {
     timing: bool,
 }
 
+/// The engine is chosen.
+const AUTO: &str = crate::settings::named::AUTO;
+
+/// Size of pictures where none is asked for: there are dozens of them.
+const SIZE: &str = "64x48";
+
+/// Keys that variants vary, with the options that say so.
+const VARIED: [(&str, &str); 9] = [
+    ("scene", "the operand SCENE"),
+    ("scene.name", "the operand SCENE"),
+    ("kernels.profile", "--profiles"),
+    ("machine.arithmetic.word", "--words"),
+    ("machine.arithmetic.quantization", "--roundings"),
+    ("layout", "--layouts"),
+    ("effort.bounces", "--bounces"),
+    ("effort.weight_cutoff", "--cutoffs"),
+    ("effort.interpolate", "--interpolate"),
+];
+
 /// Difference up to which corners agree; none when every pixel has its ray.
 #[derive(Clone, Copy, Debug)]
 struct CornerAgreement(Option<f64>);
 
 fn words(text: &str) -> Result<Vec<u32>, String> {
     numbers(text, 8, 32, "number of bits")
+}
+
+fn core_list(text: &str) -> Result<Vec<u32>, String> {
+    numbers(text, 1, MOST_CORES, "number of cores")
 }
 
 fn bounces(text: &str) -> Result<Vec<u32>, String> {
@@ -139,21 +207,92 @@ pub(super) struct AccuracyResults {
     height: u32,
     /// Place of a ray in its pixel, in pixels to the right of the middle and above it.
     shift: [f64; 2],
+    /// Places of the samples, one a picture of each variant.
+    shifts: Vec<[f64; 2]>,
+    /// Cost by which variants are dominated.
+    cost_axis: CostAxis,
+    /// Error by which variants are dominated.
+    error_axis: ErrorAxis,
+    /// Times that the work items of a picture ran.
+    recordings: u64,
+    /// Frames that recordings were put on a machine's clocks for.
+    replays: u64,
+    /// Frames that were executed clock by clock.
+    stepped: u64,
     /// Measured variants, scene by scene.
     variants: Vec<MeasuredVariant>,
+    /// Variants over all scenes, where there are several.
+    overall: Vec<OverallVariant>,
     /// Variants that a scene does not fit, and why.
-    refused: Vec<Refused>,
+    refused: Vec<RefusedVariant>,
 }
 
-/// A variant that a scene does not fit.
-#[derive(Serialize, JsonSchema)]
-struct Refused {
-    /// Name of the scene.
-    scene: String,
-    /// The variant in words.
-    variant: String,
-    /// Reason for which there is no picture.
-    reason: String,
+impl AccuracyArguments {
+    /// Settings that all variants share, on each machine.
+    fn bases(&self) -> Result<Vec<Arc<StudyBase>>, Failure> {
+        for set in &self.sets.sets {
+            let key = key::resolve(set.split('=').next().unwrap_or_default())?;
+            if let Some((_, option)) = VARIED.iter().find(|(varied, _)| key == *varied) {
+                let message = format!("`--set {set}` sets what the variants vary");
+                return Err(Failure::usage(Diagnostic::error(message).hint(format!("{option} has its values"))));
+            }
+        }
+        if self.mesh.is_some() && self.scenes.len() > 1 {
+            let message = Diagnostic::error("`--mesh` belongs to one scene, and there are several");
+            return Err(Failure::usage(message.hint("a mesh of a scene's own name lies beside it")));
+        }
+        // Each machine with each number of cores and each arbiter, or with its own.
+        fn or_own<T: Copy>(values: impl Iterator<Item = T>) -> Vec<Option<T>> {
+            let values: Vec<Option<T>> = values.map(Some).collect();
+            if values.is_empty() { vec![None] } else { values }
+        }
+        let numbers_of_cores = or_own(self.cores.iter().flatten().copied());
+        let arbiters = or_own(self.arbiters.iter().copied());
+        let machines: Vec<&String> = self.machines.iter().flatten().collect();
+        let mut bases = Vec::new();
+        for &machine in &machines {
+            for &cores in &numbers_of_cores {
+                for &arbiter in &arbiters {
+                    let settings = self.job(machine, cores, arbiter).settings()?;
+                    // Only what differs between machines is part of a variant's name.
+                    let words = [
+                        (machines.len() > 1).then(|| settings.machine.name.clone()),
+                        cores.filter(|_| numbers_of_cores.len() > 1).map(|cores| format!("{cores} cores")),
+                        arbiter.filter(|_| arbiters.len() > 1).map(|arbiter| arbiter.name().to_owned()),
+                    ];
+                    let words = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
+                    bases.push(Arc::new(StudyBase { settings, words }));
+                }
+            }
+        }
+        Ok(bases)
+    }
+
+    /// The options of a picture, on one machine.
+    fn job(&self, machine: &str, cores: Option<u32>, arbiter: Option<ArbiterKind>) -> JobArguments {
+        let AccuracyArguments { mesh, view, kernels, skips, tree, formats, overflow, sets, engine, .. } = self.clone();
+        let keys = MachineKeyArguments { machine: machine.to_owned(), cores, arbiter, sets };
+        let arithmetic = ArithmeticArguments { word: None, rounding: None, overflow };
+        // What variants vary is set for each of them.
+        JobArguments {
+            scene: String::new(),
+            mesh,
+            view,
+            kernels: KernelArguments { profile: KernelSet::default(), files: kernels },
+            machine: MachineArguments { keys, layout: None, engine },
+            numbers: NumberArguments { arithmetic, formats },
+            effort: EffortArguments { bounces: 0, tree, weight_cutoff: 0.0, skips, interpolate: None },
+        }
+    }
+
+    /// Files that are read, none of which a result may overwrite.
+    fn sources(&self) -> Vec<PathBuf> {
+        let machines = self.machines.iter().flatten().map(PathBuf::from);
+        let kernels = self.kernels.replaced.iter().map(|(_, path)| path.clone());
+        let scenes = self.scenes.iter().map(PathBuf::from).chain(self.mesh.clone());
+        let extensions = self.kernels.extensions.extensions.iter().cloned();
+        machines.chain(kernels).chain(scenes).chain(extensions).chain(self.sets.settings.settings.clone()).collect()
+    }
 }
 
 /// Draws and prints.
@@ -164,8 +303,12 @@ pub(super) fn execute(
 ) -> Result<Exit, Failure> {
     let targets = arguments.chart.targets(&[])?;
     let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
+    let sources = arguments.sources();
+    files::check_spared(targets.iter().map(PathBuf::as_path), sources.iter().filter(|path| path.exists()))
+        .map_err(Failure::usage)?;
     let has_times = arguments.timing || arguments.axis == CostAxis::Host;
     let choice = Choices {
+        bases: arguments.bases()?,
         profiles: arguments.profiles.clone(),
         words: arguments.words.concat(),
         roundings: arguments.roundings.clone(),
@@ -175,162 +318,64 @@ pub(super) fn execute(
         interpolate: arguments.interpolate.iter().map(|agreement| agreement.0).collect(),
     };
     let variants = choice.variants().ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
-    let (mut measured, mut refused, mut read) = (Vec::new(), Vec::new(), Vec::new());
+    // Read the scenes, which the study then knows.
+    let contents = Contents::default();
+    let mut read = Vec::new();
     for name in &arguments.scenes {
-        let loaded = input::scene(name, None, Some(arguments.size))?;
-        terminal.show(&loaded.warnings);
-        let view = View::new(arguments.size);
-        let reference = Reference::new(&loaded.scene, &view, SearchMethod::Hierarchy)?;
-        let bar = terminal.progress(&loaded.scene.name, variants.len() as u64);
-        for variant in &variants {
-            match accuracy::measure(&loaded.scene, &view, &reference, variant, &arguments.tree.settings(), has_times) {
-                Ok(one) => measured.push(one),
-                // A word that the scene does not fit, or in which a ray is stuck, is a result, not a mistake.
-                Err(Failure::Message { report, exit: Exit::Input | Exit::Trap }) => refused.push(Refused {
-                    scene: loaded.scene.name.clone(),
-                    variant: variant.to_string(),
-                    reason: report.0.iter().map(|message| message.message.as_str()).collect::<Vec<_>>().join("; "),
-                }),
-                Err(failure) => return Err(failure),
-            }
-            bar.inc(1);
-        }
-        bar.finish_and_clear();
-        read.push(loaded.scene.clone());
+        let scene = contents.scene(&variants[0].settings(name, [0.0; 2]))?;
+        files::check_spared(targets.iter().map(PathBuf::as_path), &scene.loaded.files).map_err(Failure::usage)?;
+        terminal.show(&scene.loaded.warnings);
+        read.push(scene.loaded.scene.clone());
     }
-    accuracy::rank(&mut measured);
-    let figure = || accuracy::figure(&measured, arguments.size, arguments.axis);
-    files::write_all(&arguments.chart.files(figure, || csv(&measured)))?;
-    let (width, height) = arguments.size;
-    let results = AccuracyResults {
-        schema: SCHEMA,
-        width,
-        height,
-        shift: View::new(arguments.size).shift,
-        variants: measured,
-        refused,
+    // Measure, and rank by the axes that are asked for.
+    let shifts = &PLACES[..usize::from(arguments.shifts)];
+    let bar = terminal.progress("pictures", (read.len() * variants.len() * shifts.len()) as u64);
+    let study = accuracy::run(&arguments.scenes, &variants, shifts, has_times, &contents, &mut |done| bar.inc(done));
+    bar.finish_and_clear();
+    let mut study = study?;
+    // Where no picture came of the user's own files, they are what is wrong.
+    let has_own = !arguments.kernels.replaced.is_empty() || !arguments.kernels.extensions.extensions.is_empty();
+    if let Some(failure) = study.first_refusal.take().filter(|_| study.measured.is_empty() && has_own) {
+        return Err(failure);
+    }
+    accuracy::rank(&mut study.measured, arguments.axis, arguments.error);
+    let overall = match read.len() {
+        0 | 1 => Vec::new(),
+        scenes => accuracy::overall(&study.measured, scenes, arguments.axis, arguments.error),
     };
-    let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
+    let base = &variants[0].base.settings.view;
+    let size = base.size.map_or(read[0].size, <(u32, u32)>::from);
+    // Write and print.
+    let axes = ChartAxes { cost: arguments.axis, error: arguments.error, over: arguments.over };
+    let figure = || accuracy::figure(&study, &overall, size, axes);
+    files::write_all(&arguments.chart.files(figure, || accuracy::csv(&study.measured)))?;
+    let machines = arguments.machines.iter().flatten().map(|name| MachineSettings::find(name));
+    let machines = machines.collect::<Result<Vec<_>, _>>()?;
+    let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read)).with_machines(&machines);
     match (is_taken, arguments.json) {
         (true, _) => {}
-        (false, true) => terminal.print(&result::json(&WithSettings::new(&results, settings)))?,
-        (false, false) => terminal.tell(&text(&results, arguments.energy))?,
+        (false, true) => {
+            let results = AccuracyResults {
+                schema: SCHEMA,
+                width: size.0,
+                height: size.1,
+                shift: base.shift,
+                shifts: shifts.iter().map(|place| [0, 1].map(|k| base.shift[k] + place[k])).collect(),
+                cost_axis: arguments.axis,
+                error_axis: arguments.error,
+                recordings: study.recordings,
+                replays: study.replays,
+                stepped: study.stepped,
+                variants: study.measured,
+                overall,
+                refused: study.refused,
+            };
+            terminal.print(&result::json(&WithSettings::new(&results, settings)))?;
+        }
+        (false, false) => {
+            let axes = (arguments.axis, arguments.error);
+            terminal.tell(&accuracy::text(&study, &overall, size, axes, arguments.energy))?;
+        }
     }
     Ok(Exit::Done)
-}
-
-fn decibels(psnr: Option<f64>) -> String {
-    psnr.map_or_else(|| "-".into(), |psnr| format!("{psnr:.1}"))
-}
-
-fn text(results: &AccuracyResults, has_energy: bool) -> String {
-    // Scenes in the order in which they were measured, a table each.
-    let mut scenes: Vec<&str> = results.variants.iter().map(|one| one.scene.as_str()).collect();
-    scenes.dedup();
-    let mut text = String::new();
-    for scene in scenes {
-        let _ = writeln!(
-            text,
-            "{scene}, {} x {} pixels; clocks and octets a pixel, * on the front",
-            results.width, results.height
-        );
-        let mut rows = vec![row([
-            "variant",
-            "clocks",
-            "octets",
-            "PSNR",
-            "off",
-            "SSIM",
-            "stored",
-            "wrong/M",
-            "t p99",
-            "u p99",
-            "v p99",
-            "N p99",
-            "dominated by",
-        ])];
-        if has_energy {
-            rows[0].insert(3, "nJ".to_owned());
-        }
-        for one in results.variants.iter().filter(|one| one.scene == scene) {
-            let ulp = |error: Option<f64>| error.map_or_else(|| "-".into(), |error| format!("{error:.2}"));
-            rows.push(vec![
-                format!("{}{}", if one.is_on_front { "* " } else { "  " }, one.variant),
-                short(one.clocks.round() as u64),
-                short(one.octets.round() as u64),
-                decibels(one.error.psnr_db),
-                short(one.error.off_pixels),
-                one.ssim.map_or_else(|| "-".into(), |ssim| format!("{ssim:.4}")),
-                decibels(one.stored_error.psnr_db),
-                format!("{:.0}", one.rays.misclassified_per_million),
-                ulp(one.rays.t_p99),
-                ulp(one.rays.u_p99),
-                ulp(one.rays.v_p99),
-                ulp(one.rays.normal_p99),
-                one.dominated_by.clone().unwrap_or_default(),
-            ]);
-            if has_energy && let Some(last) = rows.last_mut() {
-                last.insert(3, one.energy.pixel_nj.to_string());
-            }
-        }
-        text += &table(rows);
-        text.push('\n');
-    }
-    // Variants that a scene does not fit come last.
-    for Refused { scene, variant, reason } in &results.refused {
-        let _ = writeln!(text, "{scene}, {variant}: {reason}");
-    }
-    text
-}
-
-fn csv(measured: &[MeasuredVariant]) -> String {
-    let mut text = String::from(
-        "scene,variant,profile,word,rounding,layout,bounces,cutoff,interpolate,clocks,instructions,octets,rmse,psnr_db,max,off_pixels,ssim,stored_psnr_db,\
-         stored_off_pixels,misclassified_per_million,t_p99,t_max,u_p99,u_max,v_p99,v_max,normal_p99,normal_max,host_nanoseconds,dominated_by,pixel_nj_least,pixel_nj_most,energy_delay_js_least,energy_delay_js_most,area_um2_least,area_um2_most\n",
-    );
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-    // Names may hold commas; RFC 4180 doubles the quotes inside.
-    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-    for one in measured {
-        let cells = [
-            quoted(&one.scene),
-            quoted(&one.variant),
-            one.profile.to_owned(),
-            one.word.to_string(),
-            one.rounding.to_owned(),
-            one.layout.to_owned(),
-            one.bounces.to_string(),
-            one.cutoff.to_string(),
-            number(one.interpolate),
-            one.clocks.to_string(),
-            one.instructions.to_string(),
-            one.octets.to_string(),
-            one.error.rmse.to_string(),
-            number(one.error.psnr_db),
-            one.error.max.to_string(),
-            one.error.off_pixels.to_string(),
-            number(one.ssim),
-            number(one.stored_error.psnr_db),
-            one.stored_error.off_pixels.to_string(),
-            one.rays.misclassified_per_million.to_string(),
-            number(one.rays.t_p99),
-            number(one.rays.t_max),
-            number(one.rays.u_p99),
-            number(one.rays.u_max),
-            number(one.rays.v_p99),
-            number(one.rays.v_max),
-            number(one.rays.normal_p99),
-            number(one.rays.normal_max),
-            number(one.host_nanoseconds),
-            quoted(one.dominated_by.as_deref().unwrap_or("")),
-            one.energy.pixel_nj.least.to_string(),
-            one.energy.pixel_nj.most.to_string(),
-            one.energy.energy_delay_js.least.to_string(),
-            one.energy.energy_delay_js.most.to_string(),
-            one.energy.area_um2.least.to_string(),
-            one.energy.area_um2.most.to_string(),
-        ];
-        text += &(cells.join(",") + "\n");
-    }
-    text
 }

@@ -55,7 +55,7 @@ pub struct CoresArguments {
     #[arg(long, value_name = "LIST", value_parser = core_list, default_value = "1..8,12,16")]
     cores: Vec<Vec<u32>>,
     /// Machines between commas: presets' names or TOML files; may be repeated.
-    #[arg(long = "machine", value_name = "NAME|FILE,..", value_parser = machine_list, default_value = machine::DEFAULT)]
+    #[arg(long = "machine", value_name = "NAME|FILE,..", value_parser = arguments::machines, default_value = machine::DEFAULT)]
     machines: Vec<Vec<String>>,
     /// Arbiters instead of the machine's, between commas; may be repeated.
     #[arg(long = "arbiter", value_name = "NAME,..", value_delimiter = ',', value_parser = arguments::arbiter())]
@@ -100,14 +100,6 @@ pub(super) struct CoresSettings {
 
 fn core_list(text: &str) -> Result<Vec<u32>, String> {
     numbers(text, 1, MOST_CORES, "number of cores")
-}
-
-/// Machines between commas; a file or a machine in braces may have commas in it.
-fn machine_list(text: &str) -> Result<Vec<String>, String> {
-    match text.starts_with('{') || Path::new(text).exists() {
-        true => Ok(vec![text.to_owned()]),
-        false => Ok(text.split(',').map(|name| name.trim().to_owned()).collect()),
-    }
 }
 
 /// Measures, writes and prints.

@@ -134,7 +134,7 @@ fn target(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure>
 
 fn pixel(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure> {
     let job = &arguments.job;
-    for text in &job.numbers.formats {
+    for text in &job.numbers.formats.formats {
         arguments::overrides::check(text).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
     }
     if !arguments.defines.is_empty() || !arguments.registers.is_empty() || !arguments.files.is_empty() {
@@ -153,8 +153,8 @@ fn program(arguments: &TargetArguments) -> Result<(DebugTarget, Report), Failure
     let job = &arguments.job;
     let path = Path::new(&job.scene);
     let config = job.machine.keys.machine(&job.numbers.arithmetic)?.config;
-    let isa = job.kernels.extensions.isa()?;
-    let formats = job.numbers.formats.iter().map(|text| arguments::setting::<i64>(text));
+    let isa = job.kernels.files.extensions.isa()?;
+    let formats = job.numbers.formats.formats.iter().map(|text| arguments::setting::<i64>(text));
     let formats = formats.collect::<Result<_, _>>().map_err(|message| Failure::usage(Diagnostic::error(message)))?;
     let source = SourceArguments { defines: arguments.defines.clone(), formats, folders: arguments.folders.clone() };
     // The name of a scene without a pixel is a likely slip.

@@ -16,7 +16,7 @@ use serde_json::{Map, Value};
 use super::Lancer;
 use crate::settings::command_line::{OptionList, written};
 use crate::settings::read::{self, COMMAND, StoredSettings};
-use crate::settings::{MachineSettings, hash};
+use crate::settings::{MachineSettings, Settings, hash};
 
 /// Arguments on which no result depends but for its form, place and time, by their long names.
 const NO_SETTINGS: [&str; 20] = [
@@ -93,6 +93,13 @@ impl CommandSettings {
         self
     }
 
+    /// The settings with several machines key by key in the place of their names; what other options change of them is still to be changed.
+    #[must_use]
+    pub fn with_machines(mut self, machines: &[MachineSettings]) -> CommandSettings {
+        self.0.insert("machine".to_owned(), serde_json::json!(machines));
+        self
+    }
+
     /// The settings with the hash of each scene beside its name.
     #[must_use]
     pub fn with_scenes(mut self, scenes: &[(String, String)]) -> CommandSettings {
@@ -133,6 +140,7 @@ pub fn expanded(mut line: Vec<OsString>) -> Result<Vec<OsString>, Report> {
     let stored = read::read(file)?;
     let options = match takes_pictures(&command) {
         true => picture(&stored)?,
+        false if is_varied(&stored, &command) => varied(&stored)?,
         false => others(&stored, &path, &command, file)?,
     };
     let is_given = |argument: &Arg| matches.value_source(argument.get_id().as_str()) == Some(ValueSource::CommandLine);
@@ -228,6 +236,34 @@ fn picture(stored: &StoredSettings) -> Result<OptionList, Report> {
         options.retain(|(option, _)| option != "machine");
     }
     options.extend(more);
+    Ok(options)
+}
+
+/// True of the settings of a picture for a command that varies them.
+fn is_varied(stored: &StoredSettings, command: &Command) -> bool {
+    let groups = Settings::default().value();
+    command.get_name() == "accuracy" && stored.keys.keys().all(|key| groups.get(key).is_some())
+}
+
+/// Options of a picture's settings for a command that varies them: one value of each.
+fn varied(stored: &StoredSettings) -> Result<OptionList, Report> {
+    let settings = stored.clone().settings()?;
+    let (arithmetic, effort) = (&settings.machine.config.arithmetic, &settings.effort);
+    let layout = settings.layout.unwrap_or(settings.kernels.profile.layout());
+    let mut options = settings.options();
+    options.retain(|(option, _)| {
+        !["profile", "layout", "bounces", "weight-cutoff", "interpolate"].contains(&option.as_str())
+    });
+    let lists = [
+        ("profiles", settings.kernels.profile.name().to_owned()),
+        ("layouts", layout.name().to_owned()),
+        ("words", arithmetic.word.to_string()),
+        ("roundings", arithmetic.quantization.name().to_owned()),
+        ("bounces", effort.bounces.to_string()),
+        ("cutoffs", effort.weight_cutoff.to_string()),
+        ("interpolate", effort.interpolate.map_or_else(|| "none".to_owned(), |difference| difference.to_string())),
+    ];
+    options.extend(lists.map(|(option, value)| (option.to_owned(), Some(value))));
     Ok(options)
 }
 

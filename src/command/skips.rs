@@ -39,7 +39,7 @@ pub struct SkipsArguments {
 
 /// Draws the pictures and prints.
 pub(super) fn execute(arguments: &SkipsArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    if !arguments.job.effort.no_skip.is_empty() {
+    if !arguments.job.effort.skips.no_skip.is_empty() {
         return Err(Failure::usage(
             Diagnostic::error("skips are switched one by one here").hint("leave out --no-skip"),
         ));

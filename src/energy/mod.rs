@@ -63,7 +63,7 @@ impl fmt::Display for FigureRange {
 }
 
 /// The tables disagree on the larger part.
-const UNDECIDED: &str = "undecided";
+pub(crate) const UNDECIDED: &str = "undecided";
 
 /// Energy and area in a few figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use emu::code::Code;
+use emu::machine::outcome::Method;
 use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
 use kernels::build::Crop;
 use kernels::twin::samples::Samples;
@@ -13,6 +14,7 @@ use scenes::model::Picture;
 use scenes::reference::{Reference, SearchMethod};
 
 use super::contents::Contents;
+use super::identity;
 use super::row::{PointFigures, PointLabels};
 use crate::drawing::{colour_words, part, picture};
 use crate::failure::{Exit, Failure};
@@ -28,36 +30,76 @@ const MOST_KEPT: u64 = 8_192;
 /// Outcome of a point: its labels, and its figures or the reason for which it cannot be drawn.
 pub type GroupResult = (PointLabels, Result<PointFigures, String>);
 
+/// Points that share a recording, on their machines.
+pub struct DrawnGroup {
+    /// Programs and global memory as it is before the frame.
+    pub load: Load,
+    /// Description of that memory.
+    pub image: MemoryImage,
+    /// Frame of each point.
+    pub frames: Vec<Result<RunOutcome, RunFailure>>,
+    /// Times that the work items ran: once, again for more machines than take a recording at once, never where all frames were stepped.
+    pub recordings: u64,
+}
+
+/// Numbers of the settings that share each recording, in the order in which they come.
+pub fn by_recording(points: &[Settings]) -> Vec<Vec<usize>> {
+    let (mut groups, mut known): (Vec<Vec<usize>>, HashMap<[u8; 32], usize>) = (Vec::new(), HashMap::new());
+    for (number, settings) in points.iter().enumerate() {
+        let group = *known.entry(identity::recording(settings)).or_insert(groups.len());
+        if group == groups.len() {
+            groups.push(Vec::new());
+        }
+        groups[group].push(number);
+    }
+    groups
+}
+
+/// Draws points whose settings have the same recording: the job of the first one, and the frames of all or the reason for which there are none.
+///
+/// # Errors
+/// Files that cannot be read.
+pub fn draw(points: &[&Settings], contents: &Contents) -> Result<(Job, Result<DrawnGroup, Failure>), Failure> {
+    let first = points.first().expect("a group has a point");
+    let scene = contents.scene(first)?;
+    let job = first.job_of(scene.loaded.clone())?;
+    let (load, image) = match Load::picture(&job) {
+        Ok(made) => made,
+        Err(failure) => return Ok((job, Err(failure))),
+    };
+    // Each machine's frame, from one recording.
+    let configs: Vec<Config> = points.iter().map(|settings| settings.machine.config.clone()).collect();
+    let (frames, recordings) = frames(&load, &configs);
+    Ok((job, Ok(DrawnGroup { load, image, frames, recordings })))
+}
+
 /// Runs points whose settings have the same recording.
 ///
 /// # Errors
 /// Files that cannot be read. A scene that does not fit its formats, or a trap, is a result.
 pub fn run(points: &[Settings], contents: &Contents) -> Result<Vec<GroupResult>, Failure> {
     let Some(first) = points.first() else { return Ok(Vec::new()) };
-    let scene = contents.scene(first)?;
-    let job = first.job_of(scene.loaded.clone())?;
+    let (job, drawn) = draw(&points.iter().collect::<Vec<_>>(), contents)?;
     let labels = |settings: &Settings| labels(settings, &job);
-    let (load, image) = match Load::picture(&job) {
-        Ok(made) => made,
+    let DrawnGroup { load, image, frames, .. } = match drawn {
+        Ok(drawn) => drawn,
         Err(failure) => {
-            let reason = reason(failure)?;
+            let reason = reason(&failure).ok_or(failure)?;
             return Ok(points.iter().map(|settings| (labels(settings), Err(reason.clone()))).collect());
         }
     };
-    // Each machine's frame, from one recording.
-    let configs: Vec<Config> = points.iter().map(|settings| settings.machine.config.clone()).collect();
-    let frames = frames(&load, &configs);
     // Pictures differ only where a machine was stepped and its programs depend on time.
     let crop = load.build.crop;
     let mut errors: HashMap<String, PictureError> = HashMap::new();
     let mut reference: Option<Picture> = None;
-    let code = Code::new(&load.build.cores, &load.isa, configs[0].timing());
+    let code = Code::new(&load.build.cores, &load.isa, first.machine.config.timing());
     let mut results = Vec::with_capacity(points.len());
     for (settings, frame) in points.iter().zip(frames) {
         let frame = match frame {
             Ok(frame) => frame,
             Err(failure) => {
-                results.push((labels(settings), Err(reason(failure.into())?)));
+                let failure = Failure::from(failure);
+                results.push((labels(settings), Err(reason(&failure).ok_or(failure)?)));
                 continue;
             }
         };
@@ -86,23 +128,29 @@ fn in_double_precision(job: &Job, image: &MemoryImage, crop: &Crop) -> Result<Pi
 }
 
 /// The reason for which a point cannot be drawn, where that is a result and not a mistake of the user's.
-fn reason(failure: Failure) -> Result<String, Failure> {
+pub fn reason(failure: &Failure) -> Option<String> {
     match failure {
         Failure::Message { report, exit: Exit::Input | Exit::Trap | Exit::StepLimit } => {
-            Ok(report.0.iter().map(|message| message.message.as_str()).collect::<Vec<_>>().join("; "))
+            Some(report.0.iter().map(|message| message.message.as_str()).collect::<Vec<_>>().join("; "))
         }
-        other => Err(other),
+        _ => None,
     }
 }
 
-/// Each machine's frame.
-fn frames(load: &Load, configs: &[Config]) -> Vec<Result<RunOutcome, RunFailure>> {
+/// Each machine's frame, and how often the work items were recorded.
+fn frames(load: &Load, configs: &[Config]) -> (Vec<Result<RunOutcome, RunFailure>>, u64) {
     let options = || RunOptions { engine: load.engine, ..RunOptions::default() };
     let first = load.setup(&configs[0], options());
     let crop = load.build.crop;
     // A few machines take recordings as they come; many would have them made again.
     if configs.len() == 1 || u64::from(crop.width) * u64::from(crop.height) > MOST_KEPT {
-        return emu::run_all(&first, configs, &load.memory, &mut |_| {});
+        let (mut frames, mut recordings) = (Vec::with_capacity(configs.len()), 0);
+        for some in configs.chunks(emu::machines_at_once(&load.memory)) {
+            let some = emu::run_all(&first, some, &load.memory, &mut |_| {});
+            recordings += u64::from(some.iter().flatten().any(|frame| frame.method == Method::Replayed));
+            frames.extend(some);
+        }
+        return (frames, recordings);
     }
     let step = |setup: &Setup| emu::step(setup, load.memory.clone(), &mut |_| {});
     let recorded = emu::replay::Recorded::new(&first, &load.memory);
@@ -113,7 +161,7 @@ fn frames(load: &Load, configs: &[Config]) -> Vec<Result<RunOutcome, RunFailure>
             Err(_) => step(&setup),
         }
     };
-    configs.par_iter().map(one).collect()
+    (configs.par_iter().map(one).collect(), recorded.is_ok().into())
 }
 
 fn labels(settings: &Settings, job: &Job) -> PointLabels {

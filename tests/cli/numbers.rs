@@ -109,6 +109,131 @@ fn variants_are_measured_and_the_front_is_marked() {
     assert_eq!(session.run("accuracy no_such_scene").code, 1);
 }
 
+#[test]
+fn machines_that_compute_alike_share_a_recording() {
+    let session = Session::new();
+    session.write("slow.toml", "clock_hz = 1000000\n");
+    let study = "accuracy cornell --size 8x6 --words 32,28,24,20,16 --profiles ray --layouts packed,wide --roundings RND --bounces 5 --cutoffs 0 --interpolate none";
+    let measured = session.json(&format!("{study} --machine report,double_buffer,node_cache --machine slow.toml"));
+    assert_eq!(measured["recordings"], 10);
+    assert_eq!(measured["replays"], 40);
+    assert_eq!(measured["stepped"], 0);
+    let variants = measured["variants"].as_array().unwrap();
+    assert_eq!(variants.len(), 40);
+    // Each machine's figures are those of a study of that machine alone.
+    for (at, machine) in ["report", "double_buffer", "node_cache", "slow.toml"].into_iter().enumerate() {
+        let alone = session.json(&format!("{study} --machine {machine} --words 20 --layouts wide"));
+        let (one, other) = (&variants[10 * at + 8], &alone["variants"][0]);
+        assert_eq!((&one["word"], &one["layout"]), (&20.into(), &"wide".into()), "{one}");
+        for key in ["clocks", "seconds", "octets", "energy", "error", "rays", "operations"] {
+            assert_eq!(one[key], other[key], "{machine}, {key}");
+        }
+        let name = machine.trim_end_matches(".toml");
+        assert_eq!((&one["variant"], &one["machine"]), (&format!("ray 20 {name}").into(), &name.into()));
+        assert_eq!(other["variant"], "ray 20");
+    }
+    // The slow machine is dominated in seconds, and not by its twin in clocks.
+    let front = |axis: &str| {
+        let measured = session.json(&format!("{study} --machine report --machine slow.toml --axis {axis}"));
+        let variants = measured["variants"].as_array().unwrap().clone();
+        variants.into_iter().filter(|one| one["machine"] == "slow" && one["is_on_front"] == true).count()
+    };
+    assert_eq!(front("seconds"), 0);
+    assert!(front("clocks") > 0);
+}
+
+#[test]
+fn errors_of_several_shifts_are_pooled() {
+    let session = Session::new();
+    let study = "accuracy slabs --size 16x12 --words 20 --profiles ray --roundings RND --layouts wide --bounces 5 --cutoffs 0 --interpolate none";
+    let measured = session.json(&format!("{study} --shifts 3"));
+    let one = &measured["variants"][0];
+    let shifts = one["shifts"].as_array().unwrap();
+    assert_eq!((shifts.len(), &measured["recordings"], &measured["replays"]), (3, &3.into(), &3.into()));
+    let mut off = Vec::new();
+    let mut clocks = 0.0;
+    for shift in shifts {
+        let [x, y] = [0, 1].map(|k| shift["shift"][k].as_f64().unwrap());
+        // The picture of that shift alone, as other commands have it.
+        let alone = session.json(&format!("{study} --shift {x},{y}"));
+        let drawn = session.json(&format!("render slabs --size 16x12 --word 20 --profile ray --shift {x},{y}"));
+        assert_eq!(alone["variants"][0]["error"], drawn["error"]);
+        for key in ["rmse", "off_pixels", "max", "psnr_db"] {
+            assert_eq!(shift[key], drawn["error"][key], "{key} at {x}, {y}");
+        }
+        off.push(shift["off_pixels"].as_f64().unwrap());
+        clocks += drawn["clocks"].as_f64().unwrap();
+    }
+    assert_eq!(one["off"]["mean"].as_f64().unwrap(), off.iter().sum::<f64>() / 3.0);
+    assert_eq!(one["off"]["worst"].as_f64().unwrap(), off.iter().copied().fold(0.0, f64::max));
+    assert_eq!(one["clocks"].as_f64().unwrap(), clocks / (3.0 * 16.0 * 12.0));
+    let text = session.succeed(&format!("{study} --shifts 2"));
+    let head = text.lines().find(|line| line.contains("variant")).unwrap();
+    assert!(head.find("off, mean") < head.find("PSNR") && head.contains("off, worst"), "{head}");
+    session.fail(&format!("{study} --shifts 9"), 2, "9 is not in 1..=8");
+}
+
+#[test]
+fn one_front_goes_over_several_scenes() {
+    let session = Session::new();
+    let study = "accuracy cornell slabs --size 8x6 --words 32,16 --profiles ray,report --roundings RND --layouts wide --bounces 5 --cutoffs 0 --interpolate none";
+    let measured = session.json(&format!("{study} --axis octets --error off --over worst --svg all.svg"));
+    let overall = measured["overall"].as_array().unwrap();
+    assert_eq!(overall.len(), 4);
+    for one in overall {
+        let of_scenes: Vec<&Value> =
+            measured["variants"].as_array().unwrap().iter().filter(|v| v["variant"] == one["variant"]).collect();
+        let octets: Vec<f64> = of_scenes.iter().map(|v| v["octets"].as_f64().unwrap()).collect();
+        assert_eq!(one["cost"]["mean"].as_f64().unwrap(), (octets[0] + octets[1]) / 2.0);
+        assert_eq!(one["cost"]["worst"].as_f64().unwrap(), octets[0].max(octets[1]));
+        let off: Vec<f64> = of_scenes.iter().map(|v| v["off"]["worst"].as_f64().unwrap()).collect();
+        assert_eq!(one["error"]["worst"].as_f64().unwrap(), off[0].max(off[1]));
+    }
+    assert!(overall.iter().any(|one| one["worst_dominated_by"].is_null()));
+    assert!(overall.iter().any(|one| one["worst_dominated_by"].is_string()));
+    let svg = String::from_utf8(session.read("all.svg")).unwrap();
+    assert!(svg.contains("worst of all scenes") && svg.contains("octets a pixel"), "{svg}");
+    // One scene has no front over all.
+    assert_eq!(session.json("accuracy triangle --size 4x3 --words 32")["overall"], serde_json::json!([]));
+}
+
+#[test]
+fn variants_take_the_options_of_a_picture() {
+    let session = Session::new();
+    let one = "--words 24 --profiles ray --roundings TRN --layouts wide --bounces 2 --cutoffs 0 --interpolate none";
+    let options = "--size 12x9 --eye 2,2,6 --fov 30 --crop 2,1,8,6 --ambient 0.3 --background 0,0.5,1 --overflow WRAP --format dir=20 \
+                   --kd-depth 6 --no-skip unlit --machine wide32 --cores 3 --arbiter tdma --set bus.setup_clocks=9";
+    let drawn = session.json(&format!("render cornell {options} --word 24 --profile ray --rounding TRN --bounces 2"));
+    let measured = session.json(&format!("accuracy cornell {options} {one}"));
+    let variant = &measured["variants"][0];
+    let pixels = 8.0 * 6.0;
+    assert_eq!(variant["clocks"].as_f64().unwrap(), drawn["clocks"].as_f64().unwrap() / pixels);
+    assert_eq!(variant["octets"].as_f64().unwrap(), drawn["octets"].as_f64().unwrap() / pixels);
+    assert_eq!(variant["operations"], drawn["counts"]);
+    assert_eq!((&variant["cores"], &variant["arbiter"]), (&3.into(), &"tdma".into()));
+    // The same through the settings of that picture, which is then the only variant.
+    session.write("one.json", &serde_json::to_string(&drawn).unwrap());
+    let again = session.json("accuracy cornell --settings one.json");
+    assert_eq!(again["variants"].as_array().unwrap().len(), 1);
+    assert_eq!(again["variants"][0]["clocks"], variant["clocks"]);
+    session.fail(&format!("accuracy cornell {one} --set word=20"), 2, "--words has its values");
+    session.fail("accuracy cornell slabs --mesh a.off", 2, "belongs to one scene");
+    session.write("bad.s", "    no_such_row\n");
+    session.fail(&format!("accuracy triangle --size 4x3 {one} --kernel triangle=bad.s"), 1, "no_such_row");
+}
+
+#[test]
+fn a_machine_tells_what_its_laws_come_to() {
+    let session = Session::new();
+    let machine = session.json("machine bit_serial --word 16");
+    let drawn = session.json("render triangle --size 4x3 --machine bit_serial --word 16");
+    assert_eq!(machine["resolved"], drawn["timing"]);
+    assert_eq!((&machine["resolved"]["word"], &machine["resolved"]["is_by_word"]), (&16.into(), &true.into()));
+    assert!(machine["machine"]["clocks"].to_string().contains("linear"), "{machine}");
+    let plain = session.json("machine report");
+    assert_eq!((&plain["resolved"]["is_by_word"], &plain["resolved"]["word"]), (&false.into(), &32.into()));
+}
+
 /// The front of word lengths, as docs/accuracy.md has its chart and its command line.
 #[test]
 fn word_length_buys_what_the_documents_say() {

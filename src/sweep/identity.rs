@@ -1,22 +1,164 @@
-//! Identity of points and of recordings: which settings a result depends on, and which of them decide what the work items do.
+//! Identity of points and of recordings: which settings a result depends on, and which of them decide what the work items do. Settings are digested
+//! in parts, so that a plan digests a part once for all points that share its values.
 
-use emu::engine::EngineKind;
 use emu::machine::Config;
-use emu::machine::config::law::Law;
-use isa::Class;
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::result::hexadecimal;
 use crate::settings::{FileSettings, ResultSettings, Settings, VERSION};
 
-/// SHA-256 of what a point's result depends on: the version of this program and the settings with the contents of their files.
+/// Part of the settings that is digested by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SettingsPart {
+    /// Everything but the machine.
+    Picture,
+    /// Keys of the machine that stand in no group.
+    Whole,
+    /// Arithmetic, clocks and units, which depend on the word.
+    Timing,
+    /// The bus.
+    Bus,
+    /// The caches.
+    Cache,
+    /// The main processor.
+    Main,
+    /// Prices of energy.
+    Energy,
+    /// Prices of area.
+    Area,
+}
+
+impl SettingsPart {
+    /// Every part of the machine.
+    pub const MACHINE: [SettingsPart; 7] = [
+        SettingsPart::Whole,
+        SettingsPart::Timing,
+        SettingsPart::Bus,
+        SettingsPart::Cache,
+        SettingsPart::Main,
+        SettingsPart::Energy,
+        SettingsPart::Area,
+    ];
+
+    /// True where setting a key may change the part.
+    pub fn has(self, key: &str) -> bool {
+        let mut names = key.split('.');
+        let (is_machine, group) = (names.next() == Some("machine"), names.next());
+        match (is_machine, group) {
+            (false, _) => self == SettingsPart::Picture,
+            (true, None | Some("from")) => self != SettingsPart::Picture,
+            (true, Some("arithmetic" | "clocks" | "units")) => self == SettingsPart::Timing,
+            (true, Some("bus")) => self == SettingsPart::Bus,
+            (true, Some("cache")) => self == SettingsPart::Cache,
+            (true, Some("main")) => self == SettingsPart::Main,
+            (true, Some("energy")) => self == SettingsPart::Energy,
+            (true, Some("area")) => self == SettingsPart::Area,
+            (true, Some(_)) => self == SettingsPart::Whole,
+        }
+    }
+}
+
+/// Digests of a part, or of several together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PartDigest {
+    /// SHA-256 of all that a point's result depends on.
+    pub point: [u8; 32],
+    /// SHA-256 of what a recording depends on; zeros where it depends on nothing of the part.
+    pub recording: [u8; 32],
+}
+
+impl PartDigest {
+    /// The digest of a part that decides what work items do, where two values may differ in what only a replay depends on.
+    fn new(point: &impl Serialize, recording: &impl Serialize) -> PartDigest {
+        PartDigest { point: digest(point), recording: digest(recording) }
+    }
+
+    /// The digest of a part that only replays depend on.
+    fn replayed(point: &impl Serialize) -> PartDigest {
+        PartDigest { point: digest(point), recording: [0; 32] }
+    }
+
+    /// The digest of all but the machine. A file is its contents, and what results depend on neither: names, and how the host works, are left out.
+    pub fn of_picture(settings: &Settings) -> PartDigest {
+        let mut settings = settings.clone();
+        settings.scene.name.clear();
+        settings.scene.mesh = None;
+        let nameless = |file: &mut FileSettings| file.file.clear();
+        settings.kernels.replaced.values_mut().for_each(nameless);
+        settings.kernels.extensions.iter_mut().for_each(nameless);
+        // Every key stands here, so that a new one does not compile before it is part of the digest.
+        let Settings { scene, view, kernels, effort, tree, layout, formats, machine: _, engine: _, results } = settings;
+        let layout = layout.map(scenes::layout::Layout::name);
+        let point = (&scene, &view, &kernels, &effort, &tree, layout, &formats, &results);
+        // A recording does not depend on what is measured of the picture.
+        PartDigest::new(&point, &(&scene, &view, &kernels, &effort, &tree, layout, &formats, ResultSettings::default()))
+    }
+
+    /// The digest of a part of the machine.
+    ///
+    /// A recording does not depend on cores, clock rate, bus, caches, main processor and the prices of energy and area, as
+    /// [`Config::computes_like`] has it. Clocks and units count as what they come to for the word.
+    pub fn of_machine(part: SettingsPart, config: &Config) -> PartDigest {
+        let Config {
+            cores,
+            clock_hz,
+            buffer_octets,
+            step_limit,
+            packet_lanes,
+            arithmetic,
+            clocks,
+            units,
+            bus,
+            cache,
+            main,
+            energy,
+            area,
+        } = config;
+        match part {
+            SettingsPart::Picture => PartDigest { point: [0; 32], recording: [0; 32] },
+            SettingsPart::Whole => {
+                let computing = (buffer_octets, step_limit, packet_lanes);
+                PartDigest::new(&(cores, clock_hz, computing), &computing)
+            }
+            SettingsPart::Timing => {
+                let timing = config.timing();
+                PartDigest::new(&(arithmetic, clocks, units), &(arithmetic, timing.clocks.0, timing.units.0))
+            }
+            SettingsPart::Bus => PartDigest::replayed(bus),
+            SettingsPart::Cache => PartDigest::replayed(cache),
+            SettingsPart::Main => PartDigest::replayed(main),
+            SettingsPart::Energy => PartDigest::replayed(energy),
+            SettingsPart::Area => PartDigest::replayed(area),
+        }
+    }
+
+    /// The digest of several parts, in their order.
+    pub fn joined(parts: &[PartDigest]) -> PartDigest {
+        let of = |part: fn(&PartDigest) -> &[u8; 32]| {
+            let mut hash = Sha256::new();
+            parts.iter().for_each(|digest| hash.update(part(digest)));
+            hash.update(VERSION);
+            hash.finalize().into()
+        };
+        PartDigest { point: of(|digest| &digest.point), recording: of(|digest| &digest.recording) }
+    }
+}
+
+/// Digests of a point and of its recording, which cover the version of this program and the settings with the contents of their files.
+pub fn digests(settings: &Settings) -> PartDigest {
+    let machine = SettingsPart::MACHINE.map(|part| PartDigest::of_machine(part, &settings.machine.config));
+    PartDigest::joined(&[PartDigest::of_picture(settings), PartDigest::joined(&machine)])
+}
+
+/// SHA-256 of what a point's result depends on.
 pub fn point(settings: &Settings) -> [u8; 32] {
-    digest(&of_point(settings))
+    digests(settings).point
 }
 
 /// SHA-256 of what a recording depends on.
 pub fn recording(settings: &Settings) -> [u8; 32] {
-    digest(&of_recording(settings))
+    digests(settings).recording
 }
 
 /// A digest in hexadecimal.
@@ -24,44 +166,13 @@ pub fn shown(digest: &[u8; 32]) -> String {
     hexadecimal(digest)
 }
 
-/// The settings without what no result depends on: names, and how the host works.
-fn of_point(settings: &Settings) -> Settings {
-    let mut settings = settings.clone();
-    settings.scene.name.clear();
-    settings.scene.mesh = None;
-    settings.machine.name.clear();
-    settings.engine = EngineKind::default();
-    // A file is its contents.
-    let nameless = |file: &mut FileSettings| file.file.clear();
-    settings.kernels.replaced.values_mut().for_each(nameless);
-    settings.kernels.extensions.iter_mut().for_each(nameless);
-    settings
-}
-
-/// The settings without that in which only replays differ: cores, clock rate, bus, caches, main processor and the prices
-/// of energy and area, as [`Config::computes_like`] has it, and what is measured of the picture. Clocks and units count as what they come to for the word.
-fn of_recording(settings: &Settings) -> Settings {
-    let mut settings = of_point(settings);
-    settings.results = ResultSettings::default();
-    let config = &mut settings.machine.config;
-    let timing = config.timing();
-    for &class in Class::ALL {
-        config.clocks.0[class] = Law::Constant(timing.clocks[class]);
-        config.units.0[class] = Law::Constant(timing.units[class]);
-    }
-    let Config { cores, clock_hz, bus, cache, main, energy, area, .. } = Config::default();
-    *config = Config { cores, clock_hz, bus, cache, main, energy, area, ..config.clone() };
-    settings
-}
-
-fn digest(settings: &Settings) -> [u8; 32] {
-    let mut text = serde_json::to_vec(settings).expect("settings have string keys");
-    text.extend(VERSION.bytes());
-    Sha256::digest(text).into()
+fn digest(part: &impl Serialize) -> [u8; 32] {
+    Sha256::digest(serde_json::to_vec(part).expect("settings have string keys")).into()
 }
 
 #[cfg(test)]
 mod tests {
+    use isa::Class;
     use serde_json::Value;
 
     use crate::settings::key::KEYS;
@@ -131,6 +242,15 @@ mod tests {
             let is_replayed = REPLAYED.iter().any(|group| key.starts_with(group));
             let is_shared = recording(&changed) == recording(&settings);
             assert_eq!(is_shared, is_named || is_replayed, "recording, {key}");
+            // Just the parts that have the key may change, of which the plan makes use.
+            for part in SettingsPart::MACHINE {
+                let of = |settings: &Settings| PartDigest::of_machine(part, &settings.machine.config);
+                let is_other = of(&changed) != of(&settings);
+                assert!(part.has(key) || !is_other, "{part:?}, {key}");
+            }
+            assert!(
+                SettingsPart::Picture.has(key) || PartDigest::of_picture(&changed) == PartDigest::of_picture(&settings)
+            );
             // The machine's own rule is the same.
             if key.starts_with("machine.") && !is_named {
                 assert_eq!(is_shared, machine.computes_like(&changed.machine.config), "{key}");

@@ -14,6 +14,12 @@ use crate::numeral::count;
 /// Mistakes of a kind that are listed, at most.
 const LISTED: usize = 20;
 
+/// Number of a part, and of a row in it.
+type RowPlace = (usize, usize);
+
+/// Keys that a point sets.
+type KeySet = serde_json::Map<String, Value>;
+
 /// Keys that have a column of their own name among the labels, or part of one.
 const LABELLED: [&str; 15] = [
     "scene",
@@ -38,33 +44,35 @@ const LABELLED: [&str; 15] = [
 /// # Errors
 /// Parts that were cut short or changed; points of the plan that are missing; points that are in two parts, with the same result or with
 /// another. All of them are named.
-pub fn merge(parts: &[StudyPart], damaged: &[DamagedPart], plan: Option<&StudyPlan>) -> Result<Dataset, Report> {
+pub fn merge(parts: Vec<StudyPart>, damaged: &[DamagedPart], plan: Option<&StudyPlan>) -> Result<Dataset, Report> {
     let mut messages: Vec<Diagnostic> = Vec::new();
     for (path, reason) in damaged {
         let message = Diagnostic::error(format!("{} is no whole part: {reason}", path.display()));
         messages.push(message.hint("`lancer sweep run` makes it again"));
     }
     // Each point once: the same result in two parts is as wrong as another one, since somebody has copied or mixed parts.
-    let mut found: HashMap<&str, (&PointRow, &StudyPart)> = HashMap::new();
+    let mut found: HashMap<&str, RowPlace> = HashMap::new();
     let (mut double, mut conflicting) = (Vec::new(), Vec::new());
-    for part in parts {
-        for row in &part.rows {
-            if let Some((other, before)) = found.insert(&row.point, (row, part)) {
+    for (number, part) in parts.iter().enumerate() {
+        for (at, row) in part.rows.iter().enumerate() {
+            if let Some((before, place)) = found.insert(&row.point, (number, at)) {
+                let before = &parts[before];
+                let other = &before.rows[place];
                 let named = format!("{} ({} and {})", row.point, before.path.display(), part.path.display());
                 let is_same = (&other.figures, &other.refused) == (&row.figures, &row.refused);
                 if is_same { double.push(named) } else { conflicting.push(named) }
             }
         }
     }
-    let rows: Vec<&PointRow> = match plan {
+    let places: Vec<RowPlace> = match plan {
         None => {
-            let mut rows: Vec<&PointRow> = found.values().map(|(row, _)| *row).collect();
-            rows.sort_by(|one, other| one.point.cmp(&other.point));
-            rows
+            let mut points: Vec<(&str, RowPlace)> = found.iter().map(|(&point, &place)| (point, place)).collect();
+            points.sort_unstable();
+            points.into_iter().map(|(_, place)| place).collect()
         }
         Some(plan) => {
             let missing = plan.points.iter().filter(|point| !found.contains_key(point.point.as_str()));
-            let named = |set: &serde_json::Map<String, Value>| {
+            let named = |set: &KeySet| {
                 set.iter()
                     .map(|(key, value)| {
                         format!("{key}={}", value.as_str().map_or_else(|| value.to_string(), str::to_owned))
@@ -79,7 +87,7 @@ pub fn merge(parts: &[StudyPart], damaged: &[DamagedPart], plan: Option<&StudyPl
                 &missing,
                 "run `lancer sweep run` with the same plan and folder: it makes what is not there",
             ));
-            plan.points.iter().filter_map(|point| found.get(point.point.as_str()).map(|(row, _)| *row)).collect()
+            plan.points.iter().filter_map(|point| found.get(point.point.as_str()).copied()).collect()
         }
     };
     messages.extend(listed("in two parts", &double, "remove one of the parts"));
@@ -91,12 +99,20 @@ pub fn merge(parts: &[StudyPart], damaged: &[DamagedPart], plan: Option<&StudyPl
     if !messages.is_empty() {
         return Err(Report(messages));
     }
+    // Rows become cells one by one, so that texts are moved and a row goes when its cells are there.
+    let mut taken: Vec<Vec<Option<PointRow>>> =
+        parts.into_iter().map(|part| part.rows.into_iter().map(Some).collect()).collect();
+    let mut rows: Vec<PointRow> = places.into_iter().filter_map(|(part, row)| taken[part][row].take()).collect();
     // The plan's own names and keys, where there is one: a part may have been run for another study.
-    let sets: Vec<&serde_json::Map<String, Value>> = match plan {
-        Some(plan) => plan.points.iter().map(|point| &point.set).collect(),
-        None => rows.iter().map(|row| &row.set).collect(),
+    let own: Vec<KeySet> = match plan {
+        Some(_) => Vec::new(),
+        None => rows.iter_mut().map(|row| std::mem::take(&mut row.set)).collect(),
     };
-    Ok(table(&rows, &sets))
+    let sets: Vec<&KeySet> = match plan {
+        Some(plan) => plan.points.iter().map(|point| &point.set).collect(),
+        None => own.iter().collect(),
+    };
+    Ok(table(rows, &sets))
 }
 
 fn listed(what: &str, points: &[String], hint: &str) -> Option<Diagnostic> {
@@ -113,22 +129,27 @@ fn listed(what: &str, points: &[String], hint: &str) -> Option<Diagnostic> {
 }
 
 /// Rows with their columns: the hash, the labels, keys that vary and have no label, the figures, the reason of a refusal.
-fn table(rows: &[&PointRow], sets: &[&serde_json::Map<String, Value>]) -> Dataset {
+fn table(rows: Vec<PointRow>, sets: &[&KeySet]) -> Dataset {
     let is_labelled = |key: &str| LABELLED.contains(&key);
     let mut keys: Vec<&str> =
         sets.iter().flat_map(|set| set.keys()).map(String::as_str).filter(|key| !is_labelled(key)).collect();
     keys.sort_unstable();
     keys.dedup();
     let figures = PointFigures::columns().len();
-    let cells = |(row, set): (&&PointRow, &&serde_json::Map<String, Value>)| {
-        let mut cells = vec![Cell::Text(row.point.clone())];
+    let labels = PointLabels::columns().len();
+    let cells = |(row, set): (PointRow, &&KeySet)| {
+        let mut cells = Vec::with_capacity(2 + labels + keys.len() + figures);
+        cells.push(Cell::Text(row.point));
         cells.extend(row.labels.cells());
         cells.extend(keys.iter().map(|key| set.get(*key).map_or(Cell::Empty, cell)));
-        cells.extend(row.figures.as_ref().map_or_else(|| vec![Cell::Empty; figures], PointFigures::cells));
-        cells.push(row.refused.clone().map_or(Cell::Empty, Cell::Text));
+        match row.figures {
+            Some(figures) => cells.extend(figures.cells()),
+            None => cells.extend(std::iter::repeat_n(Cell::Empty, figures)),
+        }
+        cells.push(row.refused.map_or(Cell::Empty, Cell::Text));
         cells
     };
-    let rows: Vec<Vec<Cell>> = rows.iter().zip(sets).map(cells).collect();
+    let rows: Vec<Vec<Cell>> = rows.into_iter().zip(sets).map(cells).collect();
     let mut columns = vec![("point".to_owned(), CellKind::Text)];
     columns.extend(PointLabels::columns().into_iter().map(|(name, kind, _)| (name.to_owned(), kind)));
     for key in keys {

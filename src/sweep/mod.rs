@@ -5,6 +5,7 @@
 mod chart;
 pub mod contents;
 pub mod dataset;
+mod digest;
 pub mod front;
 pub mod group;
 pub mod identity;

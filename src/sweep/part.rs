@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use messages::{Diagnostic, Report};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use serde_json::Map;
 use sha2::{Digest, Sha256};
 
 use super::PART;
@@ -72,11 +74,12 @@ pub fn write(folder: &Path, recording: &str, rows: &[PointRow]) -> Result<(), Re
     files::write_through(&folder.join(name(recording, &points)), text.as_bytes())
 }
 
-/// The parts of a folder in the order of their names, and those that are none with the reason.
+/// The parts of a folder in the order of their names, and those that are none with the reason. Rows have the keys that their points set only
+/// where they are asked for: a plan has them too.
 ///
 /// # Errors
 /// A folder that cannot be read.
-pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Report> {
+pub fn read_all(folder: &Path, has_sets: bool) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Report> {
     let refuse =
         |error: std::io::Error| Diagnostic::error(format!("the folder {} cannot be read: {error}", folder.display()));
     let mut paths: Vec<PathBuf> = Vec::new();
@@ -91,8 +94,15 @@ pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Rep
     }
     paths.sort();
     let (mut parts, mut damaged) = (Vec::new(), Vec::new());
-    for path in paths {
-        match read(&path) {
+    let read: Vec<(PathBuf, Result<StudyPart, String>)> = paths
+        .into_par_iter()
+        .map(|path| {
+            let part = read(&path, has_sets);
+            (path, part)
+        })
+        .collect();
+    for (path, part) in read {
+        match part {
             Ok(part) => parts.push(part),
             Err(reason) => damaged.push((path, reason)),
         }
@@ -100,7 +110,7 @@ pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Rep
     Ok((parts, damaged))
 }
 
-fn read(path: &Path) -> Result<StudyPart, String> {
+fn read(path: &Path, has_sets: bool) -> Result<StudyPart, String> {
     let shown = |report: Report| report.0.first().map_or_else(String::new, |message| message.message.clone());
     let text = files::text(files::read_up_to(LARGEST, path).map_err(shown)?);
     let (first, rest) = text.split_once('\n').ok_or("it has no line")?;
@@ -112,7 +122,11 @@ fn read(path: &Path) -> Result<StudyPart, String> {
     if hexadecimal(&Sha256::digest(rest)) != head.sha256 {
         return Err("it was cut short or changed".to_owned());
     }
-    let rows = rest.lines().map(serde_json::from_str).collect::<Result<Vec<PointRow>, _>>();
+    let row = |line: &str| {
+        let row: PointRow = serde_json::from_str(line)?;
+        Ok(if has_sets { row } else { PointRow { set: Map::new(), ..row } })
+    };
+    let rows = rest.lines().map(row).collect::<Result<Vec<PointRow>, serde_json::Error>>();
     let rows = rows.map_err(|error| format!("a row cannot be read: {error}"))?;
     Ok(StudyPart { path: path.to_owned(), recording: head.recording, rows })
 }

@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::contents::Contents;
+use super::digest::{PointDigest, StudyDigests};
+use super::identity::PartDigest;
 use super::study::{Assignments, MOST_POINTS, Study, ordered};
 use super::{PLAN, identity};
 use crate::failure::Failure;
@@ -64,9 +66,6 @@ pub struct StudyPlan {
     pub points: Vec<PlannedPoint>,
 }
 
-/// Digests of a point and of its recording, and its pixels.
-type PointDigest = ([u8; 32], [u8; 32], u64);
-
 /// Nanoseconds of a host thread that a pixel's recording, and its reference, take; measured on sphereflake, and good to a factor of a few.
 const RECORDING: f64 = 40_000.0;
 
@@ -79,24 +78,15 @@ impl StudyPlan {
     /// # Errors
     /// Files that cannot be read, and points whose values are out of their ranges or do not go together.
     pub fn new(study: &Study, contents: &Contents) -> Result<StudyPlan, Failure> {
-        // Hash all points on all threads; only the digests are kept until the lines are written.
-        let digests: Vec<Result<PointDigest, Failure>> = (0..study.count())
-            .into_par_iter()
-            .map(|number| {
-                let settings = settings_of(&study.base, &study.assignments(number), contents)?;
-                let [width, height] = settings.view.size.unwrap_or_default();
-                let pixels = settings
-                    .view
-                    .crop
-                    .map_or(u64::from(width) * u64::from(height), |[_, _, w, h]| u64::from(w) * u64::from(h));
-                Ok((identity::point(&settings), identity::recording(&settings), pixels))
-            })
-            .collect();
+        // Digest all points on all threads; only the digests are kept until the lines are written.
+        let all = StudyDigests::new(study, contents);
+        let digests: Vec<Result<PointDigest, Failure>> =
+            (0..study.count()).into_par_iter().map(|number| all.of(number)).collect();
         let mut seen = HashSet::with_capacity(digests.len());
         let mut recordings: HashMap<[u8; 32], u64> = HashMap::new();
         let (mut points, mut repeated, mut nanoseconds) = (Vec::new(), 0, 0.0);
         for (number, digest) in digests.into_iter().enumerate() {
-            let (point, recording, pixels) = digest?;
+            let (PartDigest { point, recording }, pixels) = digest?;
             if !seen.insert(point) {
                 repeated += 1;
                 continue;
@@ -204,7 +194,7 @@ impl StudyPlan {
 }
 
 /// Settings with what a point sets.
-fn settings_of(base: &Value, assignments: &Assignments, contents: &Contents) -> Result<Settings, Failure> {
+pub(super) fn settings_of(base: &Value, assignments: &Assignments, contents: &Contents) -> Result<Settings, Failure> {
     let mut value = base.clone();
     for (key, assigned) in assignments {
         change(&mut value, key, assigned.clone())?;

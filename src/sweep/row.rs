@@ -18,30 +18,30 @@ pub enum Cell {
 
 /// A type that a cell can hold.
 trait Cellular {
-    fn cell(&self) -> Cell;
+    fn cell(self) -> Cell;
 }
 
 impl Cellular for u64 {
-    fn cell(&self) -> Cell {
-        Cell::Whole(*self)
+    fn cell(self) -> Cell {
+        Cell::Whole(self)
     }
 }
 
 impl Cellular for f64 {
-    fn cell(&self) -> Cell {
-        Cell::Real(*self)
+    fn cell(self) -> Cell {
+        Cell::Real(self)
     }
 }
 
 impl Cellular for String {
-    fn cell(&self) -> Cell {
-        Cell::Text(self.clone())
+    fn cell(self) -> Cell {
+        Cell::Text(self)
     }
 }
 
 impl<T: Cellular> Cellular for Option<T> {
-    fn cell(&self) -> Cell {
-        self.as_ref().map_or(Cell::Empty, Cellular::cell)
+    fn cell(self) -> Cell {
+        self.map_or(Cell::Empty, Cellular::cell)
     }
 }
 
@@ -79,8 +79,8 @@ macro_rules! columns {
             }
 
             /// The cells in the order of the columns.
-            pub fn cells(&self) -> Vec<Cell> {
-                vec![$(self.$field.cell(),)*]
+            pub fn cells(self) -> [Cell; [$(stringify!($field),)*].len()] {
+                [$(self.$field.cell(),)*]
             }
         }
     };

@@ -101,15 +101,20 @@ impl Study {
         self.factors.iter().map(|factor| factor.len() as u64).try_fold(1u64, u64::checked_mul).unwrap_or(u64::MAX)
     }
 
-    /// Keys that a point sets, by its number below [`Study::count`]; the last factor varies fastest.
-    pub fn assignments(&self, mut number: u64) -> Assignments {
-        let mut chosen: Vec<&Assignments> = Vec::with_capacity(self.factors.len());
-        for factor in self.factors.iter().rev() {
+    /// Numbers of the alternatives that a point has of each factor, by its number below [`Study::count`]; the last factor varies fastest.
+    pub fn chosen(&self, mut number: u64) -> Vec<u64> {
+        let mut chosen = vec![0; self.factors.len()];
+        for (factor, chosen) in self.factors.iter().zip(&mut chosen).rev() {
             let length = factor.len() as u64;
-            chosen.push(&factor[(number % length) as usize]);
-            number /= length;
+            (*chosen, number) = (number % length, number / length);
         }
-        ordered(chosen.into_iter().rev().flatten().cloned().collect())
+        chosen
+    }
+
+    /// Keys that a point sets, by its number.
+    pub fn assignments(&self, number: u64) -> Assignments {
+        let chosen = self.factors.iter().zip(self.chosen(number)).flat_map(|(factor, chosen)| &factor[chosen as usize]);
+        ordered(chosen.cloned().collect())
     }
 }
 

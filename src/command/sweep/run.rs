@@ -90,7 +90,7 @@ pub(super) fn run(
         Report::from(Diagnostic::error(format!("the folder {} cannot be made: {error}", folder.display())))
     })?;
     // Points that are there: a part that was cut short has none.
-    let (parts, _) = part::read_all(folder)?;
+    let (parts, _) = part::read_all(folder, false)?;
     let known = part::points(&parts);
     let mut work = SweepWork { recordings: 0, points: 0, skipped: 0, refused: 0 };
     let groups: Vec<Vec<&PlannedPoint>> = plan

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::invocation::CommandSettings;
 use crate::failure::{Exit, Failure};
-use crate::result::WithSettings;
+use crate::result::{OperationTimes, WithSettings};
 use crate::settings::MachineSettings;
 use crate::terminal::Terminal;
 use crate::{machine, result};
@@ -46,6 +46,8 @@ pub(super) struct MachineResult {
     schema: &'static str,
     /// All keys of the machine, and its name.
     machine: MachineSettings,
+    /// Clocks and units of each class as what their laws come to for the word.
+    resolved: OperationTimes,
 }
 
 /// Prints the machine.
@@ -60,7 +62,9 @@ pub(super) fn execute(
     match arguments.json {
         true => {
             let settings = given.clone().with_machine(&machine);
-            terminal.print(&result::json(&WithSettings::new(&MachineResult { schema: SCHEMA, machine }, settings)))?;
+            let resolved = OperationTimes::new(&machine.config);
+            let machine = MachineResult { schema: SCHEMA, machine, resolved };
+            terminal.print(&result::json(&WithSettings::new(&machine, settings)))?;
         }
         false => terminal.print(&machine::commented(&machine.name, &machine.config))?,
     }

@@ -312,7 +312,7 @@ mod tests {
         // Four at each of ten places, as words of four lengths that make hardly a difference.
         let point = |k: u32| ChartPoint {
             label: Some(PointLabel { words: format!("variant {k} of cutoff 0.0078125"), is_important: k < 8 }),
-            bar: (k % 5 == 0).then_some([15.0 + 14.0 * f64::from(k % 10), 24.0 + 14.0 * f64::from(k % 10)]),
+            bar: k.is_multiple_of(5).then_some([15.0 + 14.0 * f64::from(k % 10), 24.0 + 14.0 * f64::from(k % 10)]),
             ..ChartPoint::new(5000.0 + 700.0 * f64::from(k % 10), 20.0 + 14.0 * f64::from(k % 10) + 0.01 * f64::from(k))
         };
         let axis = |name: &str, kind| ChartAxis { name: name.to_owned(), kind };

@@ -93,7 +93,7 @@ enum Command {
     Trace(Box<trace::TraceArguments>),
     Debug(Box<debug::DebugArguments>),
     ExplainPixel(Box<explain_pixel::ExplainPixelArguments>),
-    Accuracy(accuracy::AccuracyArguments),
+    Accuracy(Box<accuracy::AccuracyArguments>),
     Formats(formats::FormatsArguments),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),

@@ -158,7 +158,7 @@ impl<'s> StudyDigests<'s> {
     }
 }
 
-/// What is kept by a number, or is made now.
+/// Value that is kept by a number, or is made now.
 fn known<T>(kept: &Kept<T>, number: u64, make: impl FnOnce() -> Result<T, Failure>) -> Result<Arc<T>, Failure> {
     if let Some(known) = kept.read().expect("no reader panics").get(&number) {
         return Ok(known.clone());

@@ -226,10 +226,10 @@ mod tests {
             "settings = { size = \"4x3\" }\n[product]\nscene = [\"triangle\", \"cornell\"]\nword = [32, 24]\n\
              machine = [\"report\", \"wide32\", \"bit_serial\"]\ncores = \"1-3\"\nbus.setup_clocks = [0, 9]\n",
             // Tables that change machines, keys of several parts in one factor, what goes by the kernels.
-            "[settings]\nmachine = \"node_cache\"\nprofile = \"report\"\n[product]\nmachine = [\"report\", { from = \"wide32\", cores = 7, bus.overlap = true }]\n\
+            "[settings]\nscene = \"triangle\"\nmachine = \"node_cache\"\nprofile = \"report\"\n[product]\nmachine = [\"report\", { from = \"wide32\", cores = 7, bus.overlap = true }]\n\
              [[list]]\nprofile = \"ray\"\ncores = 2\n[[list]]\nlayout = \"report\"\nclocks.mul = \"linear\"\ncache.octets = 64\n[[zip]]\nword = [16, 20]\nsize = [\"3x2\", \"5x4\"]\n\
              main.traffic = [true, false]\n",
-            "[product]\narbiter = [\"tdma\", \"weighted\"]\n[latin]\npoints = 9\nkeys = { \"bus.setup_clocks\" = [0, 20], \"cache.octets\" = [0, 8192], word = [8, 32], clock_hz = [1, 9] }\n",
+            "settings = { scene = \"triangle\", size = \"4x3\" }\n[product]\narbiter = [\"tdma\", \"weighted\"]\n[latin]\npoints = 9\nkeys = { \"bus.setup_clocks\" = [0, 20], \"cache.octets\" = [0, 8192], word = [8, 32], clock_hz = [1, 9] }\n",
         ] {
             let study = Study::parse(&Source::new("s.toml", text), "s")
                 .unwrap_or_else(|report| panic!("{}", report.render(false)));

@@ -81,13 +81,14 @@ const SAMPLES: [(&str, &str); 33] = [
 ];
 
 /// Options whose defaults differ between commands on purpose, each with the reason.
-const OWN_DEFAULTS: [(&str, &str); 6] = [
+const OWN_DEFAULTS: [(&str, &str); 7] = [
     ("profile", "`lancer formats` draws hundreds of pictures, with the quickest of the exact sets"),
     ("layout", "`lancer formats` asks what bits cost, which only `packed` makes them"),
     ("size", "measurements of dozens of pictures draw small ones"),
     ("cores", "`lancer cores` varies them"),
     ("profiles", "`lancer bench` times the fastest set, `lancer accuracy` compares all"),
     ("most", "a number of other things in each command"),
+    ("shifts", "`lancer formats` asks for an error at several places, `lancer accuracy` draws one picture a variant"),
 ];
 
 fn session() -> Session {

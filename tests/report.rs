@@ -44,6 +44,10 @@ fn the_page_names_rows_kernels_and_commands_that_are_there() {
         let parsed = Lancer::command().try_get_matches_from(command.split_whitespace());
         assert!(parsed.is_ok(), "{command}: {}", parsed.unwrap_err());
     }
+    for line in table(&text, "## Figures") {
+        let command = quoted(&line[2])[0];
+        assert!(Lancer::command().try_get_matches_from(command.split_whitespace()).is_ok(), "{command}");
+    }
     let listed = table(&text, "## Rows of the annexes");
     assert_eq!(listed.len(), rows().len());
     for (line, row) in listed.iter().zip(rows()) {

@@ -4,6 +4,8 @@
 pub mod as_printed;
 #[cfg(feature = "cli")]
 pub mod erratum_text;
+#[cfg(feature = "cli")]
+pub mod figure;
 pub mod figures;
 pub mod parts;
 pub mod paths;

@@ -3,6 +3,7 @@
 //! dark, as SVG or PDF.
 
 mod canvas;
+mod diagram;
 mod draw;
 mod flame;
 mod font;
@@ -13,6 +14,7 @@ mod scale;
 mod style;
 mod svg;
 
+pub use diagram::{DiagramBox, DiagramFigure, DiagramLink};
 pub use flame::{FlameFigure, FlameKind, FlameNode};
 pub use style::{ChartColumns, ChartStyle, ChartTheme};
 
@@ -152,6 +154,16 @@ pub fn flame_pdf(figure: &FlameFigure, style: ChartStyle) -> Vec<u8> {
 /// The figure as a PDF file of one page.
 pub fn pdf(figure: &ChartFigure, style: ChartStyle) -> Vec<u8> {
     pdf::octets(&drawn(figure, style))
+}
+
+/// The diagram as an SVG file.
+pub fn diagram_svg(figure: &DiagramFigure, style: ChartStyle) -> String {
+    svg::text(&diagram::figure(figure, style), &figure.title)
+}
+
+/// The diagram as a PDF file of one page.
+pub fn diagram_pdf(figure: &DiagramFigure, style: ChartStyle) -> Vec<u8> {
+    pdf::octets(&diagram::figure(figure, style))
 }
 
 fn drawn(figure: &ChartFigure, style: ChartStyle) -> Canvas {

@@ -4,22 +4,28 @@ use std::path::PathBuf;
 
 use clap::Args;
 use kernels::annex::PrintedErratum;
+use kernels::build::Crop;
 use messages::Diagnostic;
 
 use super::invocation::{CommandSettings, scene_hashes};
 use super::render;
 use crate::annex::as_printed::{self, ErratumDrawings, ErratumResult};
+use crate::annex::figure::{self, ReportFigure};
 use crate::annex::result::Annexes;
 use crate::annex::scene::{OnScene, job};
 use crate::annex::text::{self, Style};
 use crate::annex::{AnnexDetail, erratum_text};
 use crate::arguments::{self, SettingsArguments, Size, TreeArguments};
+use crate::chart::ChartStyle;
+use crate::debug::DebugTarget;
 use crate::drawing::Comparison;
 use crate::failure::{Exit, Failure};
 use crate::files::picture::PictureFormat;
+use crate::job::Job;
+use crate::load::Load;
 use crate::result::WithSettings;
 use crate::terminal::Terminal;
-use crate::{annex, files, input, result};
+use crate::{annex, files, input, machine, pixel, result};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -29,6 +35,8 @@ Examples:
   lancer annex --errata
   lancer annex --as-printed list                  the names of the errata
   lancer annex --as-printed first-hit -o as-printed.png
+  lancer annex --figure 7 slabs --pixel 40,30 -o walk.svg
+  lancer annex --figure 8 --machine wide32 -o machine.svg
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 4 a difference that its terms do not explain.";
 
@@ -66,8 +74,19 @@ pub struct AnnexArguments {
     /// all of them.
     #[arg(long, value_name = "NAME", value_parser = erratum, conflicts_with_all = ["csv", "markdown", "errata"])]
     as_printed: Option<Shown>,
-    /// Picture as printed: .png, .ppm or .pfm.
-    #[arg(short, long, value_name = "FILE", value_parser = picture, requires = "as_printed")]
+    /// Draws a figure of the report for what is here: 6, the cost of a plane along an axis of SCENE; 7, the walk through the rays of a pixel; 8, a
+    /// machine; 9, one of its coprocessors.
+    #[arg(long, value_name = "6..9", value_parser = clap::value_parser!(u8).range(6..=9), requires = "output",
+        conflicts_with_all = ["as_printed", "json", "csv", "markdown", "errata"])]
+    figure: Option<u8>,
+    /// Pixel of figure 7: its column and its row from the top [default: the middle].
+    #[arg(long, value_name = "X,Y", value_parser = arguments::whole::<2>, requires = "figure")]
+    pixel: Option<[u32; 2]>,
+    /// Machine of figures 8 and 9: a preset's name or a TOML file [default: report].
+    #[arg(long, value_name = "NAME|FILE", requires = "figure")]
+    machine: Option<String>,
+    /// File of the picture: as printed .png, .ppm or .pfm, of a figure .svg or .pdf.
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// The corrected picture: .png, .ppm or .pfm.
     #[arg(long, value_name = "FILE", value_parser = picture, requires = "as_printed")]
@@ -105,6 +124,13 @@ pub(super) fn execute(
         Some(Shown::List) => return terminal.tell(&erratum_text::list()).map(|()| Exit::Done),
         Some(Shown::One(erratum)) => return show(erratum, arguments, given, terminal),
         None => {}
+    }
+    if let Some(number) = arguments.figure {
+        return draw_figure(number, arguments, terminal);
+    }
+    if arguments.output.is_some() {
+        let message = Diagnostic::error("-o writes the picture of --as-printed NAME or of --figure N");
+        return Err(Failure::usage(message.hint("name one of them")));
     }
     let measured = annex::measure()?;
     let (mut scenes, mut read) = (Vec::new(), Vec::new());
@@ -149,6 +175,9 @@ fn show(
         false => arguments.scenes.clone(),
     };
     let targets = [arguments.output.as_deref(), arguments.corrected.as_deref()];
+    for target in targets.into_iter().flatten() {
+        PictureFormat::of(target).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+    }
     if is_figure && (targets.iter().any(Option::is_some) || !arguments.scenes.is_empty()) {
         let message = format!("`{}` is a number: no picture shows it", erratum.name());
         return Err(Failure::usage(Diagnostic::error(message).hint("leave out scenes and files")));
@@ -203,4 +232,63 @@ fn write([printed, correct]: [Option<&std::path::Path>; 2], drawings: &ErratumDr
         written.push((path, PictureFormat::of(path).expect("the parser lets only such names pass").encode(picture)));
     }
     Ok(files::write_all(&written)?)
+}
+
+/// Scene of the figures 6 and 7 where none is named: one with glass and mirrors.
+const FIGURE_SCENE: &str = "slabs";
+
+/// Draws a figure of the report for what is here.
+fn draw_figure(number: u8, arguments: &AnnexArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    let path = arguments.output.as_deref().expect("the parser asks for a file");
+    let usage = |message: &str, hint: &str| Failure::usage(Diagnostic::error(message).hint(hint));
+    arguments::chart_file(&path.to_string_lossy()).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+    if arguments.scenes.len() > 1 || number > 7 && !arguments.scenes.is_empty() {
+        return Err(usage("a figure shows one scene, those of machines none", "leave out the others"));
+    }
+    if arguments.pixel.is_some() && number != 7 {
+        return Err(usage("figure 7 alone shows a pixel", "leave out --pixel"));
+    }
+    if arguments.machine.is_some() && number < 8 {
+        return Err(usage("figures 8 and 9 alone show a machine", "leave out --machine"));
+    }
+    files::check_target(path)?;
+    let figure = match number {
+        6 | 7 => {
+            let name = arguments.scenes.first().map_or(FIGURE_SCENE, String::as_str);
+            let loaded = input::scene(name, None, Some(arguments.size))?;
+            terminal.show(&loaded.warnings);
+            let mut job = job(loaded.scene, arguments.size);
+            arguments.tree.settings().choose(&mut job);
+            if number == 6 { cost_figure(&job)? } else { walk_figure(job, arguments.pixel)? }
+        }
+        _ => {
+            let (name, config) = machine::find(arguments.machine.as_deref().unwrap_or(machine::DEFAULT))?;
+            ReportFigure::Diagram(match number {
+                8 => figure::machine(&name, &config),
+                _ => figure::coprocessor(&name, &config),
+            })
+        }
+    };
+    let is_pdf = path.extension().is_some_and(|end| end == "pdf");
+    files::write_all(&[(path, figure.file(is_pdf, ChartStyle::default()))])?;
+    Ok(Exit::Done)
+}
+
+fn cost_figure(job: &Job) -> Result<ReportFigure, Failure> {
+    let image = scenes::image::build(&job.scene, &job.view, &job.memory())?;
+    Ok(ReportFigure::Chart(figure::cost(&job.scene, &image)))
+}
+
+fn walk_figure(mut job: Job, pixel: Option<[u32; 2]>) -> Result<ReportFigure, Failure> {
+    let (width, height) = job.view.size;
+    let [column, row] = pixel.unwrap_or([width / 2, height / 2]);
+    if column >= width || row >= height {
+        let message = format!("the picture has no pixel {column},{row}");
+        return Err(Failure::usage(Diagnostic::error(message).hint(format!("it is {width} x {height} pixels large"))));
+    }
+    job.kernels.crop = Some(Crop { column, row, width: 1, height: 1 });
+    let (load, image) = Load::picture(&job)?;
+    let target = DebugTarget::pixel(String::new(), load, job.machine.clone())?;
+    let explanation = pixel::explain(&job, &image, [column, row], &mut target.stepper()?)?;
+    Ok(ReportFigure::Diagram(figure::walk(&explanation)))
 }

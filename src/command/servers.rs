@@ -48,10 +48,10 @@ pub struct ServersArguments {
     /// Home of the scene.
     #[arg(long, value_enum, value_name = "NAME", default_value = "copied", hide_possible_values = false)]
     scene_home: SceneHome,
-    /// Latency of a link in clocks of the machine; 480 are 10 us at 48 MHz.
+    /// Latency of a link in clocks of the machine; 480 are 4.8 us at 100 MHz.
     #[arg(long, value_name = "CLOCKS", value_parser = clap::value_parser!(u64).range(0..=1_000_000_000), default_value = "480")]
     link_latency: u64,
-    /// Octets that pass the host's port in a clock; 2 are 96 MB/s at 48 MHz, about gigabit Ethernet.
+    /// Octets that pass the host's port in a clock; 2 are 200 MB/s at 100 MHz.
     #[arg(long, value_name = "OCTETS", value_parser = clap::value_parser!(u64).range(1..=65_536), default_value = "2")]
     link_octets: u64,
     /// Prints the results as JSON instead of tables.

@@ -11,6 +11,7 @@ mod course;
 mod debug;
 mod demo;
 mod extensions;
+mod figures;
 mod files;
 mod formats;
 mod help;

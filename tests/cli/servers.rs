@@ -106,7 +106,7 @@ fn the_goal_of_table_3_is_told() {
     assert_eq!((number(&goal["pixel_seconds"]) * 1e9).round(), 13.0);
     let alone = number(&result["alone_pixel_seconds"]);
     assert_eq!(number(&goal["ideal_servers"]), (alone / 1.3e-8).ceil());
-    // 12 octets a pixel over 2 a clock are 6 clocks of 48 MHz, 0.125 us: ten times the goal.
+    // 12 octets a pixel over 2 a clock are 6 clocks of 100 MHz, 0.06 us: five times the goal.
     assert_eq!((&goal["servers"], &goal["limit"]), (&Value::Null, &"link".into()));
     let text = session.succeed("servers cornell --size 24x18 --servers 4");
     assert!(text.contains("0.01300 us a pixel: ") && text.contains("alone take the link longer"), "{text}");

@@ -6,6 +6,7 @@ mod bins;
 mod builder;
 mod built;
 mod clip;
+mod cost;
 mod cut;
 mod membership;
 mod printed;
@@ -19,6 +20,7 @@ use messages::{Diagnostic, Report};
 
 use builder::TooManyReferences;
 pub(crate) use built::{BuiltTree, NumberedNode};
+pub use cost::CostCurve;
 use membership::{ByBox, ByPart};
 use printed::ByPrint;
 pub use printed::PrintedTree;

@@ -13,6 +13,7 @@ pub mod clocks;
 #[cfg(feature = "cli")]
 pub mod command;
 pub mod cores;
+pub mod csv;
 #[cfg(feature = "cli")]
 pub mod debug;
 #[cfg(feature = "cli")]

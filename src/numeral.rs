@@ -30,9 +30,14 @@ pub fn short(number: u64) -> String {
     format!("{scaled:.1}E")
 }
 
+/// A part of a whole as a number from 0 to 1, or more where it is no part; of nothing it is 0.
+pub fn share(part: u64, whole: u64) -> f64 {
+    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
+}
+
 /// A part of a whole in per cent with one decimal; of nothing it is 0.
 pub fn percent(part: u64, whole: u64) -> String {
-    format!("{:.1} %", if whole == 0 { 0.0 } else { 100.0 * part as f64 / whole as f64 })
+    format!("{:.1} %", 100.0 * share(part, whole))
 }
 
 /// A number with its noun: `1 light`, `2 lights`, `1,000 lights`.

@@ -1,6 +1,7 @@
 //! Advice as tables for people, and as comma-separated values for other programs.
 
 use super::{Advice, AdviceResult, Prediction};
+use crate::csv;
 use crate::energy::FigureRange;
 use crate::numeral::grouped;
 use crate::table::{row, table};
@@ -119,10 +120,10 @@ fn price(advice: &Advice) -> String {
 type AdviceColumn = (&'static str, fn(&Advice) -> String);
 
 const COLUMNS: [AdviceColumn; 21] = [
-    ("change", |advice| quoted(&advice.change)),
-    ("parts", |advice| quoted(&advice.parts.join(" "))),
-    ("toml", |advice| quoted(&advice.toml.join("; "))),
-    ("options", |advice| quoted(&advice.options.join(" "))),
+    ("change", |advice| csv::quoted(&advice.change)),
+    ("parts", |advice| csv::quoted(&advice.parts.join(" "))),
+    ("toml", |advice| csv::quoted(&advice.toml.join("; "))),
+    ("options", |advice| csv::quoted(&advice.options.join(" "))),
     ("basis", |advice| advice.basis.to_owned()),
     ("clocks", |advice| advice.predicted.clocks.to_string()),
     ("seconds", |advice| advice.predicted.seconds.to_string()),
@@ -139,22 +140,11 @@ const COLUMNS: [AdviceColumn; 21] = [
     ("global_octets", |advice| advice.price.global_octets.to_string()),
     ("area_um2_least", |advice| advice.price.area_um2.map_or(String::new(), |area| area.least.to_string())),
     ("area_um2_most", |advice| advice.price.area_um2.map_or(String::new(), |area| area.most.to_string())),
-    ("hardware", |advice| quoted(&advice.price.hardware)),
+    ("hardware", |advice| csv::quoted(&advice.price.hardware)),
 ];
-
-/// A text as a comma-separated value (RFC 4180).
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
-}
 
 /// One line a change, then one a pair, with a head; the columns have the names of the JSON's keys.
 pub fn csv(result: &AdviceResult) -> String {
-    let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
-    for advice in result.advice.iter().chain(&result.pairs) {
-        text += &(COLUMNS.map(|(_, value)| value(advice)).join(",") + "\n");
-    }
-    text
+    let rows = result.advice.iter().chain(&result.pairs);
+    csv::lines(COLUMNS.map(|(name, _)| name), rows.map(|advice| COLUMNS.map(|(_, value)| value(advice))))
 }

@@ -22,6 +22,7 @@ use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
 use crate::load::Load;
 use crate::machine::arbiter_note;
+use crate::numeral::share;
 use crate::result::{FormatTable, OperationTimes};
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
@@ -170,10 +171,6 @@ pub fn measure(
 
 fn no_machine() -> Failure {
     Failure::usage(messages::Diagnostic::error("no machine was named"))
-}
-
-fn share(part: u64, whole: u64) -> f64 {
-    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
 /// The curve of a machine from its frames, that of one core first.

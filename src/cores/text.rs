@@ -1,6 +1,7 @@
 //! A scaling as a table for people, and as comma-separated values for other programs.
 
 use super::{CoresResult, Curve, Point};
+use crate::csv;
 use crate::numeral::grouped;
 use crate::summary::operation_times;
 use crate::table::{row, table};
@@ -122,7 +123,7 @@ pub fn energy_text(scaling: &CoresResult) -> String {
 type Column = (&'static str, fn(&Curve, &Point) -> String);
 
 const COLUMNS: [Column; 25] = [
-    ("machine", |curve, _| quoted(&curve.machine)),
+    ("machine", |curve, _| csv::quoted(&curve.machine)),
     ("arbiter", |curve, _| curve.arbiter.clone()),
     ("cores", |_, point| point.cores.to_string()),
     ("clocks", |_, point| point.clocks.to_string()),
@@ -149,21 +150,9 @@ const COLUMNS: [Column; 25] = [
     ("area_um2_most", |_, point| point.energy.area_um2.most.to_string()),
 ];
 
-/// A text as a comma-separated value (RFC 4180).
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
-}
-
 /// One line a point, with a head; the columns have the names of the JSON's keys.
 pub fn csv(scaling: &CoresResult) -> String {
-    let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
-    for curve in &scaling.machines {
-        for point in &curve.points {
-            text += &(COLUMNS.map(|(_, value)| value(curve, point)).join(",") + "\n");
-        }
-    }
-    text
+    let points = scaling.machines.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    let rows = points.map(|(curve, point)| COLUMNS.map(|(_, value)| value(curve, point)));
+    csv::lines(COLUMNS.map(|(name, _)| name), rows)
 }

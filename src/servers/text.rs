@@ -1,6 +1,7 @@
 //! Servers as tables for people, and as comma-separated values for other programs.
 
 use super::{FrameDivision, PixelGoal, SceneHome, ServersCurve, ServersPoint, ServersResult};
+use crate::csv;
 use crate::numeral::{grouped, short};
 use crate::table::{row, table};
 
@@ -163,11 +164,7 @@ const COLUMNS: [PointColumn; 17] = [
 
 /// One line a point, with a head; the columns have the names of the JSON's keys.
 pub fn csv(result: &ServersResult) -> String {
-    let mut text = COLUMNS.map(|(name, _)| name).join(",") + "\n";
-    for curve in &result.curves {
-        for point in &curve.points {
-            text += &(COLUMNS.map(|(_, value)| value(curve, point)).join(",") + "\n");
-        }
-    }
-    text
+    let points = result.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+    let rows = points.map(|(curve, point)| COLUMNS.map(|(_, value)| value(curve, point)));
+    csv::lines(COLUMNS.map(|(name, _)| name), rows)
 }

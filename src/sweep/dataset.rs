@@ -8,6 +8,7 @@ use messages::{Diagnostic, Report};
 use serde_json::Value;
 
 use super::row::{Cell, CellKind};
+use crate::csv::quoted;
 use crate::files;
 
 /// Octets of the largest table.
@@ -208,14 +209,6 @@ pub fn cell(value: &Value) -> Cell {
 
 fn refusal(name: &str, why: &str) -> Report {
     Diagnostic::error(format!("{name} is no table of a study: {why}")).into()
-}
-
-/// A text as a comma-separated value (RFC 4180).
-fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }
 
 /// Records of comma-separated values.

@@ -18,6 +18,7 @@ pub use trial::TrialFigures;
 
 use trial::{FormatTrials, TrialScene};
 
+use crate::accuracy::PLACES;
 use crate::energy::FigureRange;
 use crate::failure::Failure;
 use crate::job::Job;
@@ -25,17 +26,10 @@ use crate::job::Job;
 /// Version of [`FormatsResult`].
 pub const SCHEMA: &str = "lancer-formats-1";
 
-/// Places of the samples in their pixels, in pixels to the right of the middle and above it, that pictures are checked at.
-pub const CHECKED_SHIFTS: [[f64; 2]; 8] = [
-    [0.023, 0.017],
-    [0.211, -0.367],
-    [-0.239, 0.311],
-    [0.411, -0.173],
-    [-0.367, -0.283],
-    [0.059, 0.447],
-    [0.293, -0.431],
-    [-0.113, 0.197],
-];
+/// Places of the samples in their pixels, in pixels to the right of the middle and above it, that pictures are checked at: those of
+/// [`PLACES`], but for the middle and the one that the search draws.
+pub const CHECKED_SHIFTS: [[f64; 2]; 8] =
+    [[0.023, 0.017], [0.211, -0.367], PLACES[2], PLACES[3], PLACES[4], PLACES[5], PLACES[6], PLACES[7]];
 
 /// Places of the samples that the search draws; none of [`CHECKED_SHIFTS`] is among them.
 pub const SEARCHED_SHIFTS: [[f64; 2]; 8] = [

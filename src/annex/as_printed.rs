@@ -1,6 +1,6 @@
 //! An erratum of the report beside its correction: what a picture becomes of kernels, a tree or a reading of files that do what is printed.
 
-use kernels::annex::{KernelEdit, PrintedErratum, Reproduction};
+use kernels::annex::{KernelEdit, PrintedErratum, PrintedFigure, Reproduction};
 use scenes::kdtree::BuildMethod;
 use scenes::metrics::{self, PictureError};
 use scenes::model::{Camera, Picture, Scene};
@@ -20,7 +20,7 @@ pub const SCHEMA: &str = "lancer-erratum-1";
 /// An erratum, as printed and corrected.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ErratumResult {
-    /// [`SCHEMA`].
+    /// Version of the result: a key that goes away or changes its meaning changes it, a new key does not.
     #[schemars(extend("const" = SCHEMA))]
     pub schema: &'static str,
     /// Name of the erratum.
@@ -38,7 +38,7 @@ pub struct ErratumResult {
     /// Edits of the kernels of the profile `report`.
     pub edits: Vec<EditResult>,
     /// Printed and correct number; null where pictures tell.
-    pub figure: Option<FigurePair>,
+    pub figure: Option<PrintedFigure>,
     /// Pictures, a pair for each scene; none where a number tells.
     pub pictures: Vec<PicturePair>,
 }
@@ -52,17 +52,6 @@ pub struct EditResult {
     pub text: &'static str,
     /// Text that takes its place.
     pub by: &'static str,
-}
-
-/// A number as printed and corrected.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct FigurePair {
-    /// As printed.
-    pub printed: f64,
-    /// The correct one.
-    pub correct: f64,
-    /// Unit of both.
-    pub unit: String,
 }
 
 /// A picture as printed and the corrected one, both measured against double precision.
@@ -156,7 +145,7 @@ pub type Draw<'d> = &'d mut dyn FnMut(&Job, Comparison) -> Result<Drawing, Failu
 /// Both are measured against double precision of the scene as its files mean it.
 ///
 /// # Errors
-/// What [`crate::drawing::draw`] refuses, and a trap of the corrected kernels.
+/// Pictures that [`crate::drawing::draw`] refuses, and a trap of the corrected kernels.
 pub fn compare(jobs: &[Job; 2], draw: Draw) -> Result<(PicturePair, ErratumDrawings), Failure> {
     let [printed_job, correct_job] = jobs;
     let (correct, correct_drawing) = drawn(correct_job, Comparison::Reference, draw)?;
@@ -214,11 +203,6 @@ impl ErratumResult {
             text: &edit.text,
             by: &edit.by,
         };
-        let figure = erratum.figure.as_ref().map(|figure| FigurePair {
-            printed: figure.printed,
-            correct: figure.correct,
-            unit: figure.unit.clone(),
-        });
         ErratumResult {
             schema: SCHEMA,
             name: erratum.name(),
@@ -228,7 +212,7 @@ impl ErratumResult {
             effect: &erratum.effect,
             way: erratum.reproduction().name(),
             edits: erratum.edits().iter().map(edit).collect(),
-            figure,
+            figure: erratum.figure.clone(),
             pictures,
         }
     }

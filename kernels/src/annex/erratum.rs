@@ -6,7 +6,8 @@ use std::sync::Arc;
 use messages::{Diagnostic, Source};
 use scenes::kdtree::PrintedTree;
 use scenes::model::Scene;
-use serde::Deserialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{errata, world};
 use crate::function::{Function, unknown};
@@ -42,7 +43,7 @@ pub struct PrintedErratum {
 }
 
 /// A number as it is printed, and the correct one.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PrintedFigure {
     /// As printed.
@@ -146,7 +147,7 @@ impl PrintedErratum {
     /// Way to have what is printed.
     ///
     /// # Panics
-    /// When `annex.toml` has no way for it, or an edit of a text that is not there once; a test looks at all of them.
+    /// An erratum for which `annex.toml` has no way, and an edit whose text is not in its kernel exactly once; a test looks at all of them.
     pub fn reproduction(&self) -> Reproduction {
         let tree = self.tree.as_ref().map(|name| {
             let found = PrintedTree::ALL.into_iter().find(|slip| slip.name() == name);

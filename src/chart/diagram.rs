@@ -1,6 +1,6 @@
 //! Diagrams: boxes with words and lines between them, at places that are parts of the page's width.
 
-use super::canvas::{Canvas, Colour, PagePlace, TextAnchor, TextLine};
+use super::canvas::{Canvas, PagePlace, TextAnchor, TextLine};
 use super::page::{EDGE, Page, TEXT};
 use super::style::{ChartStyle, ChartTheme, dashes};
 use super::{ChartLine, Look, font};
@@ -14,9 +14,9 @@ pub struct DiagramFigure {
     pub note: String,
     /// Height as a part of the width.
     pub aspect: f64,
-    /// Lines, which lie below the boxes.
+    /// Lines, which lie on boxes that are around others, and below all others.
     pub links: Vec<DiagramLink>,
-    /// Boxes, those below first.
+    /// The boxes.
     pub boxes: Vec<DiagramBox>,
 }
 
@@ -50,8 +50,6 @@ pub struct DiagramLink {
     pub width: f64,
     /// True where the line ends in an arrow.
     pub is_arrow: bool,
-    /// Words beside its middle; empty for none.
-    pub words: String,
 }
 
 /// Height of a line of words, and the gap at the sides of a box, in points.
@@ -67,8 +65,10 @@ pub(super) fn figure(figure: &DiagramFigure, style: ChartStyle) -> Canvas {
     let width = page.canvas.size.0 - 2.0 * EDGE;
     let top = page.y + EDGE;
     let mut drawing = DiagramPage { canvas: &mut page.canvas, theme: style.theme, width, top };
+    let (around, others): (Vec<_>, Vec<_>) = figure.boxes.iter().partition(|one| one.is_around);
+    around.into_iter().for_each(|one| drawing.one_box(one));
     figure.links.iter().for_each(|link| drawing.link(link));
-    figure.boxes.iter().for_each(|one| drawing.one_box(one));
+    others.into_iter().for_each(|one| drawing.one_box(one));
     page.y = top + width * figure.aspect + EDGE;
     page.finish()
 }
@@ -93,12 +93,6 @@ impl DiagramPage<'_> {
             && link.is_arrow
         {
             self.canvas.area(head(from, to), colour, "");
-        }
-        if !link.words.is_empty()
-            && let [from, .., to] = points[..]
-        {
-            let at = ((from.0 + to.0) / 2.0 + GAP, (from.1 + to.1) / 2.0 + TEXT / 3.0);
-            self.words(&link.words, at, TextAnchor::Start, false);
         }
         self.canvas.line(points, colour, link.width, dashes(link.line));
     }
@@ -125,13 +119,13 @@ impl DiagramPage<'_> {
         for (number, words) in lines.into_iter().enumerate() {
             let is_bold = number == 0;
             if font::width(words, TEXT, is_bold) <= 2.0 * half - 2.0 * GAP {
-                self.words(words, (x, start + LINE * number as f64), TextAnchor::Middle, is_bold);
+                self.words(words, (x, start + LINE * number as f64), is_bold);
             }
         }
     }
 
-    fn words(&mut self, words: &str, at: PagePlace, anchor: TextAnchor, is_bold: bool) {
-        let colour: Colour = self.theme.ink();
+    fn words(&mut self, words: &str, at: PagePlace, is_bold: bool) {
+        let (anchor, colour) = (TextAnchor::Middle, self.theme.ink());
         self.canvas.text(TextLine {
             at,
             anchor,

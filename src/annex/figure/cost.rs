@@ -45,7 +45,7 @@ pub fn cost(scene: &Scene, image: &MemoryImage) -> ChartFigure {
         let words = format!("{lowest:.1} at {:.3}", at(plane));
         let label = Some(PointLabel { words: words.clone(), is_important: true });
         let point = ChartPoint { label, tip: words, ..ChartPoint::new(at(plane), lowest) };
-        series("the plane that the tree takes", Look::Numbered(1), ChartLine::None, true, vec![point])
+        series("lowest cost: the plane of 5.3.2", Look::Numbered(1), ChartLine::None, true, vec![point])
     }));
     let name = ["x", "y", "z"][axis];
     ChartFigure {

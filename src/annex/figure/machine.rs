@@ -14,9 +14,8 @@ fn one(middle: (f64, f64), size: (f64, f64), look: Look, words: Vec<String>) -> 
     DiagramBox { middle, size, words, look, is_around: false, tip }
 }
 
-fn line(points: Vec<(f64, f64)>, width: f64, words: &str) -> DiagramLink {
-    let words = words.to_owned();
-    DiagramLink { points, look: Look::Muted, line: ChartLine::Solid, width, is_arrow: false, words }
+fn line(points: Vec<(f64, f64)>, width: f64) -> DiagramLink {
+    DiagramLink { points, look: Look::Muted, line: ChartLine::Solid, width, is_arrow: false }
 }
 
 /// A number of octets.
@@ -61,11 +60,10 @@ pub fn machine(name: &str, config: &Config) -> DiagramFigure {
         "materials, lights, frame".to_owned(),
     ];
     boxes.push(one((0.78, 0.07), (0.36, 0.1), Look::Numbered(2), memory));
-    let mut links =
-        vec![line(vec![(0.22, 0.07), (0.22, bus_y)], 1.5, ""), line(vec![(0.78, 0.07), (0.78, bus_y)], 1.5, "")];
+    let mut links = vec![line(vec![(0.22, 0.07), (0.22, bus_y)], 1.5), line(vec![(0.78, 0.07), (0.78, bus_y)], 1.5)];
     for (at, &number) in numbers.iter().enumerate() {
         let x = pitch * (at as f64 + 0.5);
-        links.push(line(vec![(x, bus_y), (x, core_y)], 1.5, ""));
+        links.push(line(vec![(x, bus_y), (x, core_y)], 1.5));
         let is_gap = at > 0 && number != numbers[at - 1] + 1;
         let title = if is_gap { format!(".. core {number}") } else { format!("core {number}") };
         let words = vec![title, "buffer".to_owned(), octets(config.buffer_octets.into())];
@@ -84,7 +82,7 @@ pub fn machine(name: &str, config: &Config) -> DiagramFigure {
     }
 }
 
-/// Figure 9: what one core has.
+/// Figure 9: the parts of one core.
 pub fn coprocessor(name: &str, config: &Config) -> DiagramFigure {
     let timing = config.timing();
     let of_class = |class: Class| {
@@ -133,10 +131,10 @@ pub fn coprocessor(name: &str, config: &Config) -> DiagramFigure {
         one((0.5, 0.48), (1.0, 0.065), Look::Numbered(1), bus_words(config)),
     ];
     let links = vec![
-        line(vec![(0.18, 0.11), (0.82, 0.11)], 1.2, ""),
-        line(vec![(0.5, 0.11), (0.5, 0.23)], 1.2, ""),
-        line(vec![(0.82, 0.13), (0.82, 0.36), (0.5, 0.36)], 1.2, ""),
-        line(vec![(0.5, 0.36), (0.5, 0.48)], 1.5, ""),
+        line(vec![(0.18, 0.11), (0.82, 0.11)], 1.2),
+        line(vec![(0.5, 0.11), (0.5, 0.23)], 1.2),
+        line(vec![(0.82, 0.13), (0.82, 0.36), (0.5, 0.36)], 1.2),
+        line(vec![(0.5, 0.36), (0.5, 0.48)], 1.5),
     ];
     DiagramFigure {
         title: format!("A coprocessor of the machine `{name}`"),

@@ -72,7 +72,6 @@ fn ways(child: &PlacedRay, placed: &[PlacedRay]) -> Vec<DiagramLink> {
         line,
         width: 1.0,
         is_arrow,
-        words: String::new(),
     };
     let beside = |(x, y): (f64, f64), by: f64| (x + by, y);
     vec![

@@ -36,10 +36,10 @@ impl GoalSearch {
         let on = |servers: u32| serve(&parts.costs, servers, order, link, 0);
         let all = on(most);
         self.note(&all, parts);
-        // Fewer servers than this cannot do the work in time, so most numbers need not be tried.
+        // Fewer servers than this cannot do the work in time, and no number makes the port or a part faster.
         let work: u64 = parts.costs.iter().map(|part| part.clocks).sum();
         let least = (work as f64 / self.clocks).ceil().max(2.0);
-        if least > f64::from(most) || all.port_busy as f64 > self.clocks {
+        if least > f64::from(most) || all.port_busy.max(longest(parts)) as f64 > self.clocks {
             return;
         }
         let end = self.servers.map_or(most, |servers| most.min(servers - 1));
@@ -59,10 +59,9 @@ impl GoalSearch {
             return;
         }
         self.least_clocks = frame.clocks;
-        let longest = parts.costs.iter().map(|part| part.clocks).max().unwrap_or(0);
         self.limit = match () {
             () if frame.port_busy as f64 > self.clocks => "link",
-            () if longest as f64 > self.clocks => "part",
+            () if longest(parts) as f64 > self.clocks => "part",
             () => "other",
         };
     }
@@ -82,4 +81,9 @@ impl GoalSearch {
             least_pixel_seconds: least as f64 * self.scale,
         }
     }
+}
+
+/// Clocks of the longest part.
+fn longest(parts: &DrawnParts) -> u64 {
+    parts.costs.iter().map(|part| part.clocks).max().unwrap_or(0)
 }

@@ -11,7 +11,7 @@ mod schedule;
 mod text;
 
 use kernels::annex::Peer;
-use messages::Diagnostic;
+use messages::{Diagnostic, Report};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
@@ -34,6 +34,9 @@ pub const MOST_SERVERS: u32 = 65_536;
 
 /// Most parts of a frame: each is assembled, executed and replayed by itself.
 pub const MOST_PARTS: u64 = 16_384;
+
+/// Most numbers of servers at once: each is scheduled for every division.
+const MOST_COUNTS: usize = 256;
 
 /// Pattern by which a frame is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
@@ -198,13 +201,44 @@ pub struct ServersPoint {
 }
 
 impl ServersPlan {
+    /// Sizes of the tiles that are drawn: none where nothing but bands is asked for.
+    fn tile_sizes(&self) -> &[(u32, u32)] {
+        let has_tiles = self.divisions.iter().any(|&division| division != FrameDivision::Rows);
+        if has_tiles { &self.tiles } else { &[] }
+    }
+
+    /// Numbers of servers that get bands: one server draws the frame as a whole.
+    fn band_counts(&self) -> impl Iterator<Item = u32> {
+        let has_bands = self.divisions.contains(&FrameDivision::Rows);
+        self.servers.iter().copied().filter(move |&servers| has_bands && servers > 1)
+    }
+
     /// Pixels that are drawn altogether for a frame of so many: it is drawn as a whole, once a size of tiles, and once a number of servers that
     /// get bands.
     pub fn pixels(&self, frame: u64) -> u64 {
-        let has = |wanted: &dyn Fn(&FrameDivision) -> bool| u64::from(self.divisions.iter().any(wanted));
-        let tiles = has(&|&division| division != FrameDivision::Rows) * self.tiles.len() as u64;
-        let bands = self.servers.iter().filter(|&&servers| servers > 1).count() as u64;
-        frame * (1 + tiles + has(&|&division| division == FrameDivision::Rows) * bands)
+        frame * (1 + self.tile_sizes().len() + self.band_counts().count()) as u64
+    }
+
+    /// Checks that a frame of a size makes no more than [`MOST_PARTS`] parts.
+    ///
+    /// # Errors
+    /// Tiles that are too small, and too many numbers of servers.
+    pub fn check(&self, (width, height): (u32, u32)) -> Result<(), Report> {
+        let tiles =
+            self.tile_sizes().iter().map(|tile| u64::from(width.div_ceil(tile.0)) * u64::from(height.div_ceil(tile.1)));
+        let bands = self.band_counts().map(|servers| u64::from(servers.min(height)));
+        let parts = tiles.chain(bands).sum::<u64>();
+        if parts > MOST_PARTS {
+            let message = format!("the divisions of the frame make {parts} parts, and at most {MOST_PARTS} are drawn");
+            let hint = "choose larger tiles with --tile, fewer numbers of --servers, or a smaller --size";
+            return Err(Diagnostic::error(message).hint(hint).into());
+        }
+        if self.servers.len() > MOST_COUNTS {
+            let message =
+                format!("{} numbers of servers are asked for, and at most {MOST_COUNTS} are tried", self.servers.len());
+            return Err(Diagnostic::error(message).hint("such as --servers 1,2,4,8").into());
+        }
+        Ok(())
     }
 }
 
@@ -228,26 +262,18 @@ pub struct PixelGoal {
 /// [`ServersPlan::pixels`] altogether.
 ///
 /// # Errors
-/// Interpolated pixels, whose corners would lie elsewhere in each part; too many parts; and all errors of a picture.
+/// Interpolated pixels, whose corners would lie elsewhere in each part; too many parts, as of [`ServersPlan::check`]; and all errors of a picture.
 pub fn measure(job: &Job, plan: &ServersPlan, progress: &dyn Fn(u64)) -> Result<ServersResult, Failure> {
     if job.kernels.interpolate.is_some() {
         let message = "a frame with interpolated pixels is not divided: their corners would be others in each part";
         return Err(Failure::usage(Diagnostic::error(message).hint("leave out --interpolate")));
     }
+    plan.check(job.kernels.crop.map_or(job.view.size, |crop| (crop.width, crop.height))).map_err(Failure::usage)?;
     let frame = DividedFrame::new(job, plan)?;
-    let parts = plan.tiles.iter().map(|&tile| frame.tiles(tile).len() as u64).sum::<u64>();
-    if parts > MOST_PARTS {
-        let message = format!("the tiles of the frame are {parts} parts, and at most {MOST_PARTS} are drawn");
-        return Err(Failure::usage(
-            Diagnostic::error(message).hint("choose larger tiles with --tile, or a smaller --size"),
-        ));
-    }
     progress(frame.pixels());
     // Tiles of one size are the same for both divisions that have them and for any number of servers; bands are not.
-    let has_tiles = plan.divisions.iter().any(|&division| division != FrameDivision::Rows);
     let drawn = |&tile: &(u32, u32)| Ok((tile, frame.draw(&frame.tiles(tile), progress)?));
-    let sizes = if has_tiles { plan.tiles.as_slice() } else { &[] };
-    let tiled = sizes.iter().map(drawn).collect::<Result<Vec<_>, Failure>>()?;
+    let tiled = plan.tile_sizes().iter().map(drawn).collect::<Result<Vec<_>, Failure>>()?;
     let mut goal = GoalSearch::new(&frame);
     let mut curves = Vec::new();
     for &division in &plan.divisions {

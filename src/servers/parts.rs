@@ -15,6 +15,7 @@ use crate::drawing;
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
 use crate::load::Load;
+use crate::numeral::share;
 use crate::result::image_hash;
 
 /// Parts of a frame, drawn.
@@ -52,10 +53,6 @@ fn behind(config: &Config, link: ServerLink) -> Config {
         (bus.octets_per_beat, bus.clocks_per_beat) = (link.octets_per_clock, 1);
     }
     config
-}
-
-fn share(part: u64, whole: u64) -> f64 {
-    if whole == 0 { 0.0 } else { part as f64 / whole as f64 }
 }
 
 impl<'a> DividedFrame<'a> {
@@ -178,7 +175,10 @@ impl<'a> DividedFrame<'a> {
             pixel_seconds: seconds / self.pixels() as f64,
             speed_up,
             efficiency: speed_up / f64::from(servers),
-            least_busy: share(frame.busy.iter().copied().min().unwrap_or(0), frame.clocks),
+            least_busy: match frame.busy.iter().min() {
+                Some(&least) if frame.busy.len() == servers as usize => share(least, frame.clocks),
+                _ => 0.0,
+            },
             mean_busy: share(frame.busy.iter().sum(), frame.clocks) / f64::from(servers),
             port_octets: frame.octets,
             port_busy: share(frame.port_busy, frame.clocks),

@@ -42,7 +42,7 @@ pub enum PartOrder {
 pub struct ServedFrame {
     /// Clocks until the last answer has arrived.
     pub clocks: u64,
-    /// Clocks in which each server drew.
+    /// Clocks in which each server drew that had any part.
     pub busy: Vec<u64>,
     /// Clocks in which the port passed messages.
     pub port_busy: u64,
@@ -85,20 +85,22 @@ enum ServerEvent {
 /// request passes the port in 4 clocks and arrives at 14, the second at 18; the parts are drawn at 114 and 118; the answers pass the port from
 /// 114 to 124 and from 124 to 134, so the frame takes 144 clocks.
 pub fn serve(parts: &[PartCost], servers: u32, order: PartOrder, link: ServerLink, scene: u64) -> ServedFrame {
+    // More servers than parts have nothing to do.
+    let servers = parts.len().min(servers as usize);
     let mut port = HostPort::default();
-    let mut frame = ServedFrame { busy: vec![0; servers as usize], ..ServedFrame::default() };
+    let mut frame = ServedFrame { busy: vec![0; servers], ..ServedFrame::default() };
     // Parts that wait: for whoever comes first, or for their server.
     let mut queues: Vec<VecDeque<usize>> = match order {
         PartOrder::Stolen => vec![(0..parts.len()).collect()],
         PartOrder::Dealt => {
-            let own = |server: usize| (server..parts.len()).step_by(servers as usize).collect();
-            (0..servers as usize).map(own).collect()
+            let own = |server: usize| (server..parts.len()).step_by(servers).collect();
+            (0..servers).map(own).collect()
         }
     };
     let queue_of = |server: usize| if order == PartOrder::Stolen { 0 } else { server };
-    // First requests go out in the order of the servers; one without any part is not asked.
+    // First requests go out in the order of the servers.
     let mut events = BinaryHeap::new();
-    for server in 0..servers as usize {
+    for server in 0..servers {
         let queue = &mut queues[queue_of(server)];
         let asked = if order == PartOrder::Stolen { queue.len().min(1) } else { queue.len() };
         let Some(part) = queue.pop_front() else { continue };

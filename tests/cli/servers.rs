@@ -142,6 +142,10 @@ fn frames_that_cannot_be_divided_are_refused() {
     let session = Session::new();
     session.fail("servers cornell --size 24x18 --interpolate=0.1", 2, "is not divided");
     session.fail("servers cornell --size 1024x768 --tile 1x1", 2, "parts, and at most 16384");
+    session.fail("servers cornell --size 1024x768 --divide rows --servers 1..256", 2, "parts, and at most 16384");
+    session.fail("servers cornell --size 8x6 --servers 1..300", 2, "300 numbers of servers");
+    // Tiles that nobody asks for do not count.
+    session.succeed("servers triangle --size 160x120 --tile 1x1 --divide rows --servers 2");
     session.fail("servers cornell --servers 0", 2, "number of servers");
     session.fail("servers cornell --link-octets 0", 2, "--link-octets");
     session.fail("servers cornell --scene-home shared --arbiter tdma --link-latency 100000 --size 8x6", 1, "slot");

@@ -40,7 +40,7 @@ impl RunProgress {
     /// The state that a former run has left.
     ///
     /// # Errors
-    /// What is no state, and that of a run of another size or of other seeds.
+    /// A text that is no state, and the state of a run of another size or of other seeds.
     pub fn parse(source: &Arc<Source>, size: CatalogueSize) -> Result<RunProgress, Report> {
         let shown = &source.name;
         let state: RunProgress = serde_json::from_str(&source.text)

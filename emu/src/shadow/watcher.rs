@@ -42,7 +42,7 @@ struct Expected {
     result: RealResult,
 }
 
-/// NumberDecisions of an instruction on numbers with shadows.
+/// Decisions of an instruction on numbers with shadows.
 #[derive(Clone, Debug, Default)]
 struct NumberDecisions {
     all: u32,

@@ -1,4 +1,4 @@
-//! The cost of dividing a node as a function of the plane's place (5.3.2): what the builders look for the lowest point of, for people to see.
+//! The cost of dividing a node by the place of the plane (5.3.2), as a curve that people can look at. The report's builder takes its lowest point.
 
 use super::Bounds;
 use super::split::half_surface;

@@ -1,8 +1,10 @@
-//! Differences between two results, or between two files of settings: key by key, numbers in per cent. Nothing here reads or
+//! Differences between two results, or between two files of settings: key by key, numbers in per cent. Nothing here opens files or
 //! prints.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use messages::{Diagnostic, Place, Report, Source, read_toml};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
@@ -136,6 +138,25 @@ pub struct DiffSide<'a> {
     pub name: String,
     /// Contents of the file.
     pub value: &'a Value,
+}
+
+/// Contents of a file: JSON where its first character says so, else TOML.
+///
+/// # Errors
+/// Text that is neither, with its place.
+pub fn parse(source: &Arc<Source>) -> Result<Value, Report> {
+    let is_json = source.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    if !is_json {
+        return read_toml(source, |_: &Value| Vec::new());
+    }
+    serde_json::from_str(&source.text).map_err(|error| {
+        // The parser counts lines and columns from 1, columns in octets.
+        let line: usize = source.text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+        let at = line + error.column().saturating_sub(1);
+        let message = error.to_string();
+        let message = message.split(" at line ").next().unwrap_or_default().to_owned();
+        Diagnostic::error(message).at(Place::new(source, at..at + 1), "").into()
+    })
 }
 
 /// Keys that name an element of a list, the first that all elements have with different values.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use messages::{Diagnostic, Place, Report, read_toml};
+use messages::{Diagnostic, Report};
 use serde_json::Value;
 
 use crate::difference::{self, DiffPart, DiffResult, DiffSide};
@@ -64,19 +64,7 @@ fn part(text: &str) -> Result<DiffPart, String> {
 
 /// The contents of a file: JSON, or TOML where the name or the first character says so.
 pub(super) fn read(path: &Path) -> Result<Value, Report> {
-    let source = files::source(path)?;
-    let is_json = source.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
-    if !is_json {
-        return read_toml(&source, |_: &Value| Vec::new());
-    }
-    serde_json::from_str(&source.text).map_err(|error| {
-        // The parser counts lines and columns from 1, columns in octets.
-        let line: usize = source.text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
-        let at = line + error.column().saturating_sub(1);
-        let message = error.to_string();
-        let message = message.split(" at line ").next().unwrap_or_default().to_owned();
-        Diagnostic::error(message).at(Place::new(&source, at..at + 1), "").into()
-    })
+    difference::parse(&files::source(path)?)
 }
 
 /// Reads, compares and prints.

@@ -78,13 +78,19 @@ impl Dataset {
     /// A file that cannot be read, or is no table.
     pub fn read(path: &Path) -> Result<Dataset, Report> {
         let form = DatasetForm::of(path).map_err(Diagnostic::error)?;
-        let octets = files::read_up_to(LARGEST, path)?;
-        let shown = files::shown(path);
+        Dataset::decode(form, files::read_up_to(LARGEST, path)?, &files::shown(path))
+    }
+
+    /// Reads the octets of a table; `name` stands in messages.
+    ///
+    /// # Errors
+    /// Octets that are no table.
+    pub fn decode(form: DatasetForm, octets: Vec<u8>, name: &str) -> Result<Dataset, Report> {
         match form {
-            DatasetForm::Csv => Dataset::of_csv(&files::text(octets)).map_err(|why| refusal(&shown, &why)),
-            DatasetForm::JsonLines => Dataset::of_json_lines(&files::text(octets)).map_err(|why| refusal(&shown, &why)),
+            DatasetForm::Csv => Dataset::of_csv(&files::text(octets)).map_err(|why| refusal(name, &why)),
+            DatasetForm::JsonLines => Dataset::of_json_lines(&files::text(octets)).map_err(|why| refusal(name, &why)),
             #[cfg(feature = "full")]
-            DatasetForm::Parquet => super::parquet::decode(octets).map_err(|why| refusal(&shown, &why)),
+            DatasetForm::Parquet => super::parquet::decode(octets).map_err(|why| refusal(name, &why)),
             #[cfg(not(feature = "full"))]
             DatasetForm::Parquet => Err(Diagnostic::error("this program was built without Parquet").into()),
         }

@@ -52,11 +52,13 @@ pub fn name(recording: &str, points: &[&str]) -> String {
     format!("{}-{}.{ENDING}", short(recording), short(&hash::texts(points.iter().copied())))
 }
 
-/// Writes a part as a whole, and through to the disk: hours may lie between the first part of a study and the last.
-///
-/// # Errors
-/// A folder or a disk that cannot be written.
-pub fn write(folder: &Path, recording: &str, rows: &[PointRow]) -> Result<(), Report> {
+/// SHA-256 of the rows of a part, in hexadecimal.
+pub fn checksum(rows: &str) -> String {
+    hexadecimal(&Sha256::digest(rows))
+}
+
+/// Text of a part: a head with the checksum of the rest, and a row a line.
+pub fn text(recording: &str, rows: &[PointRow]) -> String {
     let mut rest = String::new();
     for row in rows {
         rest += &serde_json::to_string(row).expect("rows have string keys");
@@ -67,11 +69,18 @@ pub fn write(folder: &Path, recording: &str, rows: &[PointRow]) -> Result<(), Re
         version: VERSION.to_owned(),
         recording: recording.to_owned(),
         points: rows.len(),
-        sha256: hexadecimal(&Sha256::digest(&rest)),
+        sha256: checksum(&rest),
     };
-    let text = serde_json::to_string(&head).expect("a head has string keys") + "\n" + &rest;
+    serde_json::to_string(&head).expect("a head has string keys") + "\n" + &rest
+}
+
+/// Writes a part as a whole, and through to the disk: hours may lie between the first part of a study and the last.
+///
+/// # Errors
+/// A folder or a disk that cannot be written.
+pub fn write(folder: &Path, recording: &str, rows: &[PointRow]) -> Result<(), Report> {
     let points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
-    files::write_through(&folder.join(name(recording, &points)), text.as_bytes())
+    files::write_through(&folder.join(name(recording, &points)), text(recording, rows).as_bytes())
 }
 
 /// The parts of a folder in the order of their names, and those that are none with the reason. Rows have the keys that their points set only
@@ -113,13 +122,21 @@ pub fn read_all(folder: &Path, has_sets: bool) -> Result<(Vec<StudyPart>, Vec<Da
 fn read(path: &Path, has_sets: bool) -> Result<StudyPart, String> {
     let shown = |report: Report| report.0.first().map_or_else(String::new, |message| message.message.clone());
     let text = files::text(files::read_up_to(LARGEST, path).map_err(shown)?);
+    parse(&text, path, has_sets)
+}
+
+/// Reads the text of a part. Rows have the keys that their points set only where they are asked for.
+///
+/// # Errors
+/// The reason for which the text is no whole part.
+pub fn parse(text: &str, path: &Path, has_sets: bool) -> Result<StudyPart, String> {
     let (first, rest) = text.split_once('\n').ok_or("it has no line")?;
     let head: PartHead =
         serde_json::from_str(first).map_err(|error| format!("its first line is no part's: {error}"))?;
     if head.schema != PART || head.version != VERSION {
         return Err(format!("it is of `{}` and version {}, not of {PART} and {VERSION}", head.schema, head.version));
     }
-    if hexadecimal(&Sha256::digest(rest)) != head.sha256 {
+    if checksum(rest) != head.sha256 {
         return Err("it was cut short or changed".to_owned());
     }
     let row = |line: &str| {

@@ -138,7 +138,11 @@ impl StudyPlan {
         StudyPlan::parse(&text, &files::shown(path))
     }
 
-    fn parse(text: &str, name: &str) -> Result<StudyPlan, Report> {
+    /// Reads the text of a plan; `name` stands in messages.
+    ///
+    /// # Errors
+    /// See [`StudyPlan::read`].
+    pub fn parse(text: &str, name: &str) -> Result<StudyPlan, Report> {
         let mut lines = (1..).zip(text.lines());
         let hint = "`lancer sweep plan study.toml > plan.jsonl` makes one";
         let refuse = |what: String| Report::from(Diagnostic::error(format!("{name} is no plan: {what}")).hint(hint));

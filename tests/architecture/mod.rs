@@ -2,6 +2,7 @@
 
 mod documents;
 mod first_lines;
+mod fuzzing;
 mod type_names;
 
 use std::collections::BTreeSet;

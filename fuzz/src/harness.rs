@@ -1,0 +1,142 @@
+//! The loop: change a kept input, try it, keep it where it leads to a new place.
+
+use std::collections::HashSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use random::SplitMix64;
+
+use crate::find::Find;
+use crate::mutate::{Mutator, words};
+use crate::seen::{Seen, hash};
+use crate::surface::{InputForm, Surface};
+use crate::watch::RunWatch;
+
+/// Runs between two looks at the clock.
+const LOOK: u64 = 32;
+
+/// The last panic: what it said and where.
+static PANIC: Mutex<String> = Mutex::new(String::new());
+
+/// End of a worker.
+pub enum End {
+    /// All runs went well.
+    Clean,
+    /// A run did not.
+    Found(Find),
+}
+
+/// Wishes for a worker.
+pub struct Wishes {
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// Runs to make at most.
+    pub runs: u64,
+    /// Time to take at most.
+    pub time: Duration,
+    /// CPU time that a run may take, in milliseconds.
+    pub longest: u64,
+    /// Planted faults happen.
+    pub has_planted: bool,
+    /// Folder in which inputs are kept from one call to the next.
+    pub corpus: Option<PathBuf>,
+}
+
+/// Keeps what panics say instead of printing it.
+pub fn hold_panics() {
+    std::panic::set_hook(Box::new(|info| {
+        let mut panic = PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // The first panic of a run is its cause.
+        if panic.is_empty() {
+            *panic = info.to_string();
+        }
+    }));
+}
+
+/// Tries one input: an error is what the panic said.
+pub fn attempt(surface: &Surface, input: &[u8], seen: &mut Seen) -> Result<(), String> {
+    PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clear();
+    catch_unwind(AssertUnwindSafe(|| (surface.run)(input, seen)))
+        .map_err(|_| PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone())
+}
+
+/// Inputs of a folder, in the order of their names.
+fn kept_in(folder: &Path) -> Vec<Vec<u8>> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    paths.iter().filter_map(|path| std::fs::read(path).ok()).collect()
+}
+
+/// Fuzzes a surface; `current` is the file of the input that is tried.
+pub fn run(surface: &Surface, wishes: &Wishes, current: &Path) -> std::io::Result<End> {
+    let start = Instant::now();
+    let mut random = SplitMix64::new(wishes.seed ^ hash(surface.name.bytes()));
+    let folder = wishes.corpus.as_ref().map(|corpus| corpus.join(surface.name));
+    let mut seeds = (surface.seeds)();
+    let from_project = seeds.len();
+    hold_panics();
+    seeds.extend(folder.as_deref().map(kept_in).unwrap_or_default());
+    let mutator = Mutator {
+        form: surface.form,
+        longest: surface.longest.max(seeds.iter().map(Vec::len).max().unwrap_or(0)),
+        words: words(&seeds),
+    };
+    let (mut kept, mut known): (Vec<Vec<u8>>, HashSet<u64>) = Default::default();
+    let mut watch = RunWatch::new(current, wishes.longest, surface.memory)?;
+    let mut runs = 0;
+    let seeds_read = seeds.len();
+    let mut seeds = seeds.into_iter();
+    while runs < wishes.runs {
+        if runs % LOOK == 0 && start.elapsed() >= wishes.time {
+            break;
+        }
+        let seed = seeds.next();
+        let is_seed = seed.is_some();
+        let input = seed.unwrap_or_else(|| mutator.next(&mut random, &kept));
+        watch.begin(runs, &input)?;
+        // Planted faults are for the harness to find, not for the seeds.
+        let mut seen = Seen::new(wishes.has_planted && !is_seed);
+        let result = attempt(surface, &input, &mut seen);
+        let octets = watch.end();
+        let why = match result {
+            Err(panic) => Some(panic),
+            Ok(()) if octets > surface.memory => {
+                Some(format!("{octets} octets were allocated at once, of which {} are allowed", surface.memory))
+            }
+            Ok(()) => None,
+        };
+        if let Some(why) = why {
+            watch.finish()?;
+            return Ok(End::Found(Find { target: surface.name.to_owned(), seed: wishes.seed, run: runs, why, input }));
+        }
+        runs += 1;
+        let mut is_new = false;
+        for &mark in seen.marks() {
+            is_new |= known.insert(mark);
+        }
+        if is_new && surface.form != InputForm::Number {
+            kept.push(input);
+        }
+    }
+    watch.finish()?;
+    if let Some(folder) = &folder {
+        std::fs::create_dir_all(folder)?;
+        for input in &kept {
+            std::fs::write(folder.join(format!("{:016x}", hash(input.iter().copied()))), input)?;
+        }
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    println!(
+        "{:<10} {runs:>10} runs {seconds:>7.1} s {:>8.0} a second, seed {}, {from_project} + {} seeds, {} places, {} kept, no find",
+        surface.name,
+        runs as f64 / seconds,
+        wishes.seed,
+        seeds_read - from_project,
+        known.len(),
+        kept.len()
+    );
+    Ok(End::Clean)
+}

@@ -1,0 +1,100 @@
+//! Outcome of one run as the harness sees it: marks that tell inputs apart which lead to different places, and planted faults.
+
+use messages::{Diagnostic, Report};
+
+/// A fault that the harness must find where it was planted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlantedFault {
+    /// A panic.
+    Panic,
+    /// A loop without end.
+    Endless,
+    /// An allocation of a gibibyte.
+    Large,
+    /// The end of the process without a word.
+    Abort,
+}
+
+/// Marks of a run.
+#[derive(Debug, Default)]
+pub struct Seen {
+    marks: Vec<u64>,
+    has_planted: bool,
+}
+
+impl Seen {
+    /// An empty list; with `has_planted` planted faults happen.
+    pub fn new(has_planted: bool) -> Seen {
+        Seen { marks: Vec::new(), has_planted }
+    }
+
+    /// True where planted faults happen.
+    pub fn has_planted(&self) -> bool {
+        self.has_planted
+    }
+
+    /// The marks so far.
+    pub fn marks(&self) -> &[u64] {
+        &self.marks
+    }
+
+    /// Marks a number of something by its order of magnitude.
+    pub fn count(&mut self, what: &str, number: usize) {
+        self.marks.push(hash(what.bytes().chain([number.min(3) as u8, (usize::BITS - number.leading_zeros()) as u8])));
+    }
+
+    /// Marks a text by its letters in front of and behind all that is quoted in it.
+    pub fn text(&mut self, text: &str) {
+        let is_mark = |letter: char| "`\"'".contains(letter);
+        let (before, rest) = text.split_once(is_mark).unwrap_or((text, ""));
+        let behind = rest.rsplit(is_mark).next().unwrap_or_default();
+        let letters = |text: &str| text.bytes().filter(u8::is_ascii_alphabetic).take(40).collect::<Vec<u8>>();
+        self.marks.push(hash([letters(before), letters(behind)].concat()));
+    }
+
+    /// Marks all messages of a report, and shows it as a person would see it for one input in sixteen.
+    pub fn report(&mut self, report: &Report, input: &[u8]) {
+        for Diagnostic { message, code, place, hint, .. } in report.0.iter().take(40) {
+            self.text(message);
+            self.text(code.unwrap_or_default());
+            if let Some((_, label)) = place {
+                self.text(label);
+            }
+            self.text(hint.as_deref().unwrap_or_default());
+        }
+        if is_sample(input, 16) {
+            let shown = report.render(input.len() % 2 == 0);
+            assert!(shown.is_empty() == report.0.is_empty(), "messages show something");
+        }
+    }
+
+    /// A fault where a condition holds on which no seed comes.
+    pub fn plant(&self, fault: PlantedFault, condition: bool) {
+        if !self.has_planted || !condition {
+            return;
+        }
+        match fault {
+            PlantedFault::Panic => panic!("the planted fault"),
+            PlantedFault::Endless => loop {
+                std::hint::spin_loop();
+            },
+            PlantedFault::Large => {
+                std::hint::black_box(vec![1u8; 1 << 30]);
+            }
+            PlantedFault::Abort => std::process::abort(),
+        }
+    }
+}
+
+/// One input in `many`, by its octets alone.
+pub fn is_sample(input: &[u8], many: u64) -> bool {
+    hash(input.iter().copied()) % many == 0
+}
+
+/// A number of octets that differs where they do, for all that matters here (FNV-1a with a last mix).
+pub fn hash(octets: impl IntoIterator<Item = u8>) -> u64 {
+    let sum = octets
+        .into_iter()
+        .fold(0xcbf2_9ce4_8422_2325u64, |sum, octet| (sum ^ u64::from(octet)).wrapping_mul(0x0000_0100_0000_01b3));
+    (sum ^ (sum >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 1
+}

@@ -1,0 +1,203 @@
+//! Files that commands write and others read: plans, parts and tables of studies, and results that are compared.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use lancer::difference::{self, DiffSide};
+use lancer::settings::Settings;
+use lancer::sweep::contents::Contents;
+use lancer::sweep::dataset::{Dataset, DatasetForm};
+use lancer::sweep::plan::StudyPlan;
+use lancer::sweep::row::{CellKind, PointRow};
+use lancer::sweep::study::Study;
+use lancer::sweep::{front, group, merge, part, svg};
+use messages::Source;
+use serde_json::Value;
+
+use super::source;
+use crate::project::{files, literals, pieces};
+use crate::seen::{PlantedFault, Seen, is_sample};
+use crate::surface::{InputForm, Surface};
+
+const LONGEST: usize = 4000;
+const MEMORY: usize = 16 << 20;
+
+const fn result_surface(
+    name: &'static str,
+    seeds: fn() -> Vec<Vec<u8>>,
+    run: fn(&[u8], &mut Seen),
+    reader: &'static [&'static str],
+) -> Surface {
+    Surface { name, form: InputForm::Text, longest: LONGEST, memory: MEMORY, seeds, run, reader }
+}
+
+/// Plans of studies.
+pub const PLAN: Surface = result_surface("plan", plans, read_plan, &["src/sweep/plan.rs"]);
+
+/// Parts of studies.
+pub const PART: Surface = result_surface("part", parts, read_part, &["src/sweep/part.rs", "src/sweep/merge.rs"]);
+
+/// Tables of studies: JSON lines where the first character says so, else CSV.
+pub const TABLE: Surface =
+    result_surface("table", tables, read_table, &["src/sweep/dataset.rs", "src/sweep/front.rs", "src/sweep/chart.rs"]);
+
+/// Results and files of settings that are compared.
+pub const RESULT: Surface = result_surface("result", results, read_result, &["src/difference.rs"]);
+
+/// A study of two machines, of which one cannot be drawn.
+const STUDY: &str = "name = \"small\"\n[settings]\nscene = \"triangle\"\nview.size = [4, 3]\n[product]\ncores = [1, 2]\nformats.pos = [8, 31]\n";
+
+static PLANNED: LazyLock<(StudyPlan, Vec<PointRow>)> = LazyLock::new(|| {
+    let study = Study::parse(&Source::new("a.toml", STUDY), "a");
+    let study = study.unwrap_or_else(|report| panic!("{}", report.render(false)));
+    let contents = Contents::default();
+    let plan = StudyPlan::new(&study, &contents).expect("the study has points");
+    let mut rows = Vec::new();
+    for point in &plan.points {
+        let settings = plan.settings(point, &contents).expect("points have settings");
+        for (labels, result) in group::run(&[settings], &contents).expect("the scene is there") {
+            let (figures, refused) = match result {
+                Ok(figures) => (Some(figures), None),
+                Err(reason) => (None, Some(reason)),
+            };
+            rows.push(PointRow { point: point.point.clone(), set: point.set.clone(), labels, figures, refused });
+        }
+    }
+    (plan, rows)
+});
+
+fn whole_part(rows: &[PointRow]) -> String {
+    part::text(&PLANNED.0.points[0].recording, rows)
+}
+
+fn plans() -> Vec<Vec<u8>> {
+    let mut octets = Vec::new();
+    PLANNED.0.write(&mut octets).expect("a plan can be written");
+    [octets].into_iter().chain(literals("src/sweep/plan.rs")).collect()
+}
+
+fn parts() -> Vec<Vec<u8>> {
+    let rows = &PLANNED.1;
+    (1..=2).map(|count| whole_part(&rows[..count]).into_bytes()).collect()
+}
+
+fn tables() -> Vec<Vec<u8>> {
+    let whole = part::parse(&whole_part(&PLANNED.1), Path::new("a"), true).expect("a part is one");
+    let table = merge::merge(vec![whole], &[], None).expect("a part can be merged");
+    let written = [DatasetForm::Csv, DatasetForm::JsonLines].map(|form| table.encode(form).expect("it can be written"));
+    let tests = literals("src/sweep/dataset.rs").into_iter().chain(literals("src/sweep/front.rs"));
+    pieces(written.into_iter().chain(tests).collect(), LONGEST)
+}
+
+fn results() -> Vec<Vec<u8>> {
+    let own = Settings::default();
+    let written = [
+        serde_json::to_vec(&own).expect("settings are JSON"),
+        toml::to_string(&own).expect("settings are TOML").into_bytes(),
+    ];
+    let lists = br#"{"schema":"s","functions":[{"name":"f","calls":1},{"name":"g","calls":4}],"waits":[1,2,[3]]}"#;
+    let kept = files("tests/cmd", ".trycmd").into_iter().chain(literals("src/difference.rs"));
+    written.into_iter().chain([lists.to_vec()]).chain(pieces(kept.collect(), LONGEST)).collect()
+}
+
+fn read_plan(input: &[u8], seen: &mut Seen) {
+    match StudyPlan::parse(&String::from_utf8_lossy(input), "a.jsonl") {
+        Err(report) => seen.report(&report, input),
+        Ok(plan) => {
+            seen.count("points", plan.points.len());
+            seen.count("groups", plan.groups().len());
+            let contents = Contents::default();
+            for point in plan.points.iter().take(2) {
+                match plan.settings(point, &contents) {
+                    Err(failure) => seen.text(&format!("{failure:?}")),
+                    Ok(_) => seen.text("settings"),
+                }
+            }
+            let mut octets = Vec::new();
+            plan.write(&mut octets).expect("memory can be written");
+            let again = StudyPlan::parse(&String::from_utf8_lossy(&octets), "b.jsonl");
+            assert!(again.is_ok_and(|again| again == plan), "a plan is read as it was written");
+            seen.plant(PlantedFault::Abort, plan.head.repeated > 1);
+        }
+    }
+}
+
+fn read_part(input: &[u8], seen: &mut Seen) {
+    let text = String::from_utf8_lossy(input);
+    read_whole_part(&text, input, seen);
+    // A change breaks the checksum of the head, behind which nothing more would be read: the same with the one that holds.
+    let Some((head, rest)) = text.split_once('\n') else { return };
+    let Ok(mut head) = serde_json::from_str::<Value>(head) else { return };
+    if !head.is_object() {
+        return;
+    }
+    head["sha256"] = part::checksum(rest).into();
+    read_whole_part(&format!("{head}\n{rest}"), input, seen);
+}
+
+fn read_whole_part(text: &str, input: &[u8], seen: &mut Seen) {
+    match part::parse(text, Path::new("a.part.jsonl"), true) {
+        Err(why) => seen.text(&why),
+        Ok(whole) => {
+            seen.count("rows", whole.rows.len());
+            let drawn = whole.rows.iter().filter(|row| row.figures.is_some()).count();
+            seen.count("drawn", drawn);
+            let again = part::parse(&part::text(&whole.recording, &whole.rows), Path::new("b"), true);
+            assert!(again.is_ok_and(|again| again.rows == whole.rows), "a part is read as it was written");
+            let plan = is_sample(input, 2).then_some(&PLANNED.0);
+            match merge::merge(vec![whole], &[], plan) {
+                Err(report) => seen.report(&report, input),
+                Ok(table) => seen.count("merged", table.rows.len()),
+            }
+            seen.plant(PlantedFault::Panic, drawn == 3);
+        }
+    }
+}
+
+fn read_table(input: &[u8], seen: &mut Seen) {
+    let form = if input.first() == Some(&b'{') { DatasetForm::JsonLines } else { DatasetForm::Csv };
+    let table = match Dataset::decode(form, input.to_vec(), "a") {
+        Err(report) => return seen.report(&report, input),
+        Ok(table) => table,
+    };
+    seen.count("columns", table.columns.len());
+    seen.count("rows", table.rows.len());
+    assert!(table.rows.iter().all(|row| row.len() == table.columns.len()), "a row has a cell a column");
+    let again = table.encode(form).and_then(|octets| Dataset::decode(form, octets, "b"));
+    assert!(again.is_ok_and(|again| again.rows.len() == table.rows.len()), "a table has its rows again");
+    let of_kind = |is_text: bool| {
+        let columns = table.columns.iter().filter(move |(_, kind)| (*kind == CellKind::Text) == is_text);
+        columns.map(|(name, _)| name.clone())
+    };
+    let (numbers, by): (Vec<String>, Vec<String>) = (of_kind(false).collect(), of_kind(true).take(2).collect());
+    if let [x, y, ..] = &numbers[..] {
+        if let (Ok(points), Ok(means)) = (front::points(&table, x, y, &by), front::means(&table, x, y, &by)) {
+            seen.count("front", points.iter().filter(|point| point.is_on_front).count());
+            seen.count("means", means.0.len());
+            if let Err(report) = svg(&points, x, y) {
+                seen.report(&report, input);
+            }
+            seen.plant(PlantedFault::Large, points.len() == 5);
+        }
+    }
+}
+
+fn read_result(input: &[u8], seen: &mut Seen) {
+    let Some(source) = source("a.json", input) else { return };
+    let value = match difference::parse(&source) {
+        Err(report) => return seen.report(&report, input),
+        Ok(value) => value,
+    };
+    static OWN: LazyLock<Value> =
+        LazyLock::new(|| serde_json::to_value(Settings::default()).expect("settings are JSON"));
+    let side = |value| DiffSide { name: "a".to_owned(), value };
+    let itself = difference::compare(&side(&value), &side(&value), 0.0);
+    assert!(itself.is_within && itself.differences.is_empty(), "nothing differs from itself");
+    let (there, back) =
+        (difference::compare(&side(&value), &side(&OWN), 1.0), difference::compare(&side(&OWN), &side(&value), 1.0));
+    assert_eq!(there.compared, back.compared, "both ways have the same keys");
+    assert_eq!(there.differences.len(), back.differences.len(), "both ways differ in the same keys");
+    seen.count("keys", there.compared);
+    seen.count("differences", there.differences.len());
+    seen.plant(PlantedFault::Endless, itself.compared % 4 == 1);
+}

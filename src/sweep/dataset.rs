@@ -171,6 +171,9 @@ impl Dataset {
         let mut dataset = Dataset::default();
         for (number, line) in (1..).zip(text.lines()) {
             let pairs = pairs(line).map_err(|error| format!("line {number}: {error}"))?;
+            if number == 1 && pairs.is_empty() {
+                return Err("line 1 has no keys".to_owned());
+            }
             if number == 1 {
                 dataset.columns = pairs.iter().map(|(name, _)| (name.clone(), CellKind::Text)).collect();
             }
@@ -304,6 +307,7 @@ pub(super) mod tests {
         for text in ["", "a,b\n1\n", "a\n\"1\n"] {
             assert!(Dataset::of_csv(text).is_err(), "{text:?}");
         }
+        assert_eq!(Dataset::of_json_lines("{}\n{}\n"), Err("line 1 has no keys".to_owned()));
         for text in ["{\"a\":1}\n{\"b\":1}\n", "[1]\n", "{\"a\":"] {
             assert!(Dataset::of_json_lines(text).is_err(), "{text:?}");
         }

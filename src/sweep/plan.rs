@@ -177,7 +177,8 @@ impl StudyPlan {
         let assignments = ordered(point.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect());
         let settings = settings_of(&self.head.settings, &assignments, contents)?;
         if identity::shown(&identity::point(&settings)) != point.point {
-            let message = format!("point {} is not what was planned: a file has changed since", &point.point[..16]);
+            let short: String = point.point.chars().take(16).collect();
+            let message = format!("point {short} is not what was planned: a file has changed since");
             return Err(Diagnostic::error(message).hint("plan again").into());
         }
         Ok(settings)
@@ -255,6 +256,16 @@ mod tests {
         let hashes = |plan: &StudyPlan| plan.points.iter().map(|point| point.point.clone()).collect::<HashSet<_>>();
         let (first, second) = (hashes(&first), hashes(&second));
         assert_eq!(first.intersection(&second).count(), 2 * 2 * 2 * 3);
+    }
+
+    #[test]
+    fn a_point_whose_hash_is_none_is_refused() {
+        let mut plan = plan(TEXT);
+        for hash in ["", "mine", "é".repeat(16).as_str()] {
+            plan.points[0].point = hash.to_owned();
+            let refused = plan.settings(&plan.points[0], &Contents::default());
+            assert!(refused.is_err(), "{hash}");
+        }
     }
 
     #[test]

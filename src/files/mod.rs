@@ -1,5 +1,7 @@
 //! Files that commands read and write: what is refused before anything is read or written. Writing itself is in `set`.
 
+mod journal;
+mod leftover;
 pub mod map;
 pub mod picture;
 pub mod program;

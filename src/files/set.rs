@@ -1,22 +1,17 @@
 //! Results as files: each is written beside its place and then renamed, so that no file is ever half-written, and those of
-//! one command take their places together. Leftovers of runs that were killed are removed by the next run.
+//! one command take their places together. What a killed run leaves is completed or removed by the next one.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
 
 use messages::{Diagnostic, Report};
-use tempfile::{Builder, NamedTempFile, TempPath};
+use tempfile::{NamedTempFile, TempPath};
 
+use super::journal::SetJournals;
+use super::leftover::{self, temporary};
 use super::{STANDARD, check_target, folder_of};
-
-/// First part of the names of files that are being written.
-const PREFIX: &str = ".lancer-";
-
-/// Entries of a folder among which leftovers are looked for: a folder of a million files must not make a result slow.
-const MOST_ENTRIES: usize = 10_000;
 
 /// Writes a file as a whole: beside its place first, then renamed. What is no regular file, such as a pipe or standard output
 /// (`-`), is written in place.
@@ -67,7 +62,7 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
             in_place.push((path, octets));
             continue;
         }
-        remove_leftovers(&folder_of(&target));
+        leftover::clean(&folder_of(&target));
         let file = written_beside(&target, octets, durability).map_err(|error| refusal(path, &error))?;
         ready.push((file, target, path));
     }
@@ -76,11 +71,15 @@ fn place(files: &[(impl AsRef<Path>, impl AsRef<[u8]>)], durability: Durability)
         written_in_place(path, octets).map_err(|error| refusal(path, &error))?;
     }
     let is_set = ready.len() > 1;
+    let places = ready.iter().map(|(file, target, _)| (file.path(), target.as_path()));
+    let journals = SetJournals::write(places.filter(|_| is_set)).map_err(|error| refusal(ready[0].2, &error))?;
     let mut placed: Vec<PlacedFile> = Vec::new();
     for (file, target, path) in ready {
         match PlacedFile::place(file, target, is_set) {
             Ok(one) => placed.push(one),
             Err(error) => {
+                // Nothing of the set may be completed any more.
+                drop(journals);
                 placed.into_iter().rev().for_each(PlacedFile::take_back);
                 return Err(refusal(path, &error).into());
             }
@@ -130,14 +129,6 @@ fn second_name(path: &Path) -> Option<TempPath> {
     Some(name.into_temp_path())
 }
 
-/// Names of files that are being written, with the number of this process.
-fn temporary() -> Builder<'static, 'static> {
-    static NAME: LazyLock<String> = LazyLock::new(|| format!("{PREFIX}{}-", std::process::id()));
-    let mut builder = Builder::new();
-    builder.prefix(NAME.as_str());
-    builder
-}
-
 /// A file that is written line by line, and takes its place as a whole when it is finished: for results that memory need not hold.
 /// A pipe, or another place that is no regular file, gets them at once.
 pub struct FileStream {
@@ -160,7 +151,7 @@ impl FileStream {
             if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
                 return Ok((File::create(&target)?, None));
             }
-            remove_leftovers(&folder_of(&target));
+            leftover::clean(&folder_of(&target));
             let file = begun_beside(&target)?;
             Ok((file.reopen()?, Some((file, target))))
         };
@@ -255,38 +246,6 @@ fn written_beside(path: &Path, octets: &[u8], durability: Durability) -> io::Res
         file.as_file().sync_all()?;
     }
     Ok(file)
-}
-
-/// Removes what killed runs have left in a folder, as far as that is possible.
-fn remove_leftovers(folder: &Path) {
-    let Ok(entries) = fs::read_dir(folder) else { return };
-    for entry in entries.take(MOST_ENTRIES).flatten() {
-        let name = entry.file_name();
-        let Some(process) = name.to_str().and_then(writer) else { continue };
-        if !is_running(process) && is_unlocked(&entry.path()) {
-            // Another run may have been faster.
-            let _ = fs::remove_file(entry.path());
-        }
-    }
-}
-
-/// Number of the process that writes a file, by the file's name; `None` for a name that no run gives: `.lancer-217-a8Kd0z` is one of
-/// process 217, `.lancer-notes` is a user's.
-fn writer(name: &str) -> Option<u32> {
-    let (process, random) = name.strip_prefix(PREFIX)?.split_once('-')?;
-    let is_given = random.len() == 6 && random.bytes().all(|octet| octet.is_ascii_alphanumeric());
-    process.parse().ok().filter(|_| is_given)
-}
-
-/// True where a process may still be there.
-fn is_running(process: u32) -> bool {
-    process == std::process::id() || Path::new("/proc").join(process.to_string()).is_dir()
-}
-
-/// True of a regular file that no run has locked.
-fn is_unlocked(path: &Path) -> bool {
-    let is_file = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file());
-    is_file && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
 }
 
 /// Permissions of a new file before the user's mask; temporary files are private otherwise.
@@ -386,31 +345,6 @@ mod tests {
         assert!(write_all(&[(&first, "new"), (&second, "new")]).is_err());
         assert_eq!(fs::read(&first).unwrap(), b"old");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn leftovers_of_killed_runs_are_removed_and_files_of_running_ones_are_not() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        // No process has these numbers on a host with /proc; the last three are names that a user may give.
-        let (left_over, locked) = (".lancer-4294967295-Ab3dE9", ".lancer-4294967294-Ab3dE9");
-        let of_users = [".lancer-notes", ".lancer-4294967295-my.toml", ".other"];
-        for name in [left_over, locked].iter().chain(&of_users) {
-            fs::write(at(name), "half").unwrap();
-        }
-        let running = format!(".lancer-{}-Ab3dE9", std::process::id());
-        fs::write(at(&running), "half").unwrap();
-        let locked_file = File::open(at(locked)).unwrap();
-        locked_file.lock().unwrap();
-        write(&at("a.txt"), b"whole").unwrap();
-        let mut left: Vec<String> = fs::read_dir(folder.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        left.sort();
-        let mut expected = [&[running.as_str(), locked, "a.txt"], &of_users[..]].concat();
-        expected.sort();
-        assert_eq!(left, expected);
     }
 
     #[cfg(unix)]

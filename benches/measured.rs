@@ -57,6 +57,18 @@ const PARTS: &[Part] = &[
         about: "Building kd trees of landscapes.",
         commands: &["cargo bench --workspace --bench kdtree"],
     },
+    Part {
+        name: "fuzzing",
+        title: "Fuzzing",
+        about: "Inputs that nobody wrote, on one host thread: runs and rates of each surface, and lines of each reader that they execute.",
+        commands: &["fuzz/run --time 600", "fuzz/run --self-check", "fuzz/run --coverage"],
+    },
+    Part {
+        name: "endurance",
+        title: "Trials that take long",
+        about: "Runs that are killed while they write, and the same run under other circumstances.",
+        commands: &["env LANCER_RUNS=1000 cargo test -p lancer --test endurance -- --nocapture"],
+    },
 ];
 
 /// Changes to the release build, each of which undoes one lever or leaves out a feature: what it is called, and arguments of `cargo build`.

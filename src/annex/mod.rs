@@ -40,6 +40,8 @@ pub struct Measurement {
     pub row: &'static Row,
     /// The program that was measured.
     pub program: Program,
+    /// Global memory that it starts with.
+    pub memory: Vec<u8>,
     /// Calls that were measured.
     pub calls: u64,
     /// Least of each class in a call.
@@ -72,11 +74,8 @@ impl AnnexDetail {
     /// As [`measure`].
     pub fn new(measured: &[Measurement]) -> Result<AnnexDetail, Failure> {
         let isa = Isa::base();
-        let parts = measured.iter().map(|Measurement { row, program, tried, .. }| {
-            let number = tried.last().map_or(1, |last| last.number);
-            parts::count(row, program, row.program(number, &isa)?.1, &isa)
-        });
-        let paths = measured.iter().map(|measurement| paths::range(measurement.row, &isa));
+        let parts = measured.iter().map(|one| parts::count(one.row, &one.program, one.memory.clone(), &isa));
+        let paths = measured.iter().map(|measurement| paths::range(measurement, &isa));
         Ok(AnnexDetail {
             parts: parts.collect::<Result<_, Failure>>()?,
             paths: paths.collect::<Result<_, Failure>>()?,
@@ -120,7 +119,7 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
     for number in row.tries() {
         // Run the driver with this number, and look at its regions.
         let (program, memory) = row.program(number, isa)?;
-        let regions = run(&program, memory, isa)?.regions;
+        let regions = run(&program, memory.clone(), isa)?.regions;
         let calls = match &row.search {
             Some(search) => region(row, &regions, &search.region)?.calls,
             None => 0,
@@ -132,7 +131,7 @@ fn measure_row(row: &'static Row, isa: &Isa) -> Result<Measurement, Failure> {
             let (least, most) = extremes.map_or((Counts::ZERO, Counts::ZERO), |found| (found.least, found.most));
             let searches =
                 regions.iter().find(|region| region.name == Function::Trace.name()).map_or(0, |trace| trace.calls);
-            return Ok(Measurement { row, calls, least, most, inclusive, searches, program, tried });
+            return Ok(Measurement { row, program, memory, calls, least, most, inclusive, searches, tried });
         }
     }
     let message = format!("the driver of the row `{}` does not meet its assumption with any number: {tried:?}", row.id);

@@ -1,8 +1,8 @@
 //! Walks down the tree by all ways: what the row of a driver whose way is one of many takes on the others.
 
 use isa::{Class, Counts, Isa};
-use kernels::annex::Row;
 
+use super::Measurement;
 use crate::failure::Failure;
 
 /// Least, mean and most of a row over all ways down its tree.
@@ -29,14 +29,14 @@ impl PathRange {
 /// as r can be chosen of 16, so 1 goes left everywhere, 16 go right once, 120 twice.
 ///
 /// # Errors
-/// A program that does not assemble or traps; ours do neither.
-pub fn range(row: &Row, isa: &Isa) -> Result<Option<PathRange>, Failure> {
+/// A program that traps; ours do not.
+pub fn range(measured: &Measurement, isa: &Isa) -> Result<Option<PathRange>, Failure> {
+    let Measurement { row, program, memory, .. } = measured;
     let Some(spread) = &row.spread else { return Ok(None) };
     let mut range: Option<PathRange> = None;
     let (mut ways, all) = (1.0, f64::from(spread.most).exp2());
     for rights in 0..=spread.most {
-        let (program, memory) = row.program_to_the_right(rights, isa)?;
-        let regions = super::run(&program, memory, isa)?.regions;
+        let regions = super::run(&row.to_the_right(program, rights), memory.clone(), isa)?.regions;
         let counts = super::region(row, &regions, &row.region)?.extremes.map_or(Counts::ZERO, |extremes| extremes.most);
         let range =
             range.get_or_insert_with(|| PathRange { least: counts, mean: vec![0.0; Class::ALL.len()], most: counts });

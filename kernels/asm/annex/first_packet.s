@@ -13,5 +13,6 @@
 .buffer
 START: .fixed pos, -0.5, -0.25, 1.25
 WAY:   .fixed dir, 0.28571428571, 0.42857142857, -0.85714285714
+RIGHTS: .word 0
 PATH_NODE: .space sizeof(node)
 .text

@@ -19,5 +19,6 @@ LOW:   .fixed pos, -0.5, -0.25, -0.75
 HIGH:  .fixed pos, 0.5, 0.75, 0.25
 START: .fixed pos, -0.125, 0.0625, -0.3125
 WAY:   .fixed dir, 0.28571428571, 0.42857142857, 0.85714285714
+RIGHTS: .word 0
 PATH_NODE: .space sizeof(node)
 .text

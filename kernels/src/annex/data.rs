@@ -41,11 +41,11 @@ pub struct PixelSearch {
     pub calls: u64,
 }
 
-/// Range of a driver's constant, over which the path of its walk varies.
+/// Range of a constant in a driver's buffer, over which the path of its walk varies.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PathSpread {
-    /// The constant: levels of the tree at which the walk goes to the right, the first ones. It is 0 where the row is counted.
+    /// Label of the constant: levels of the tree at which the walk goes to the right, the first ones. It is 0 where the row is counted.
     pub constant: String,
     /// Levels of the tree.
     pub most: u32,

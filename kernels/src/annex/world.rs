@@ -84,18 +84,6 @@ impl Row {
     /// # Errors
     /// What the assembler finds; our own kernels have no errors.
     pub fn program(&self, number: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
-        self.program_of(number, 0, isa)
-    }
-
-    /// The program of a row with a spread whose walk goes to the right at so many levels, the first ones.
-    ///
-    /// # Errors
-    /// As [`Row::program`].
-    pub fn program_to_the_right(&self, levels: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
-        self.program_of(1, levels, isa)
-    }
-
-    fn program_of(&self, number: u32, rights: u32, isa: &Isa) -> Result<(Program, Vec<u8>), Report> {
         let scene = scene();
         let view = View::new(scene.size);
         let mut image = image(&scene, &view)?;
@@ -104,10 +92,8 @@ impl Row {
         let crop = Crop { column: 0, row: 0, width: 1, height: 1 };
         // The prelude of a core with the whole scene, then the number that is tried: a driver knows it as a constant.
         let mut text = prelude::text(&image, &features, &crop, KernelSet::Report.walk(&[]), false);
-        let searched = self.search.as_ref().map(|search| (&search.constant, number));
-        let spread = self.spread.as_ref().map(|spread| (&spread.constant, rights));
-        for (constant, value) in searched.into_iter().chain(spread) {
-            text += &format!(".equ {constant}, {value}\n");
+        if let Some(search) = &self.search {
+            text += &format!(".equ {}, {number}\n", search.constant);
         }
         let mut files: Vec<Arc<Source>> = vec![Source::new("<assumptions>", text)];
         files.extend(prelude::included(Layout::Report));
@@ -119,5 +105,18 @@ impl Row {
         // Drivers build trees and packets of their own behind the scene.
         image.bytes.resize(MEMORY, 0);
         Ok((program, image.bytes))
+    }
+
+    /// The row's program, changed to walk to the right at so many levels, the first ones; as it is where the row has no spread.
+    ///
+    /// # Panics
+    /// A driver without the word that its row's spread names; a test looks at all of them.
+    pub fn to_the_right(&self, program: &Program, levels: u32) -> Program {
+        let mut program = program.clone();
+        if let Some(spread) = &self.spread {
+            let at = usize::try_from(program.symbols[&spread.constant]).expect("a label of the buffer is an address of it");
+            program.buffer[at..at + 4].copy_from_slice(&levels.to_le_bytes());
+        }
+        program
     }
 }

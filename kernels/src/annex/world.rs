@@ -114,7 +114,8 @@ impl Row {
     pub fn to_the_right(&self, program: &Program, levels: u32) -> Program {
         let mut program = program.clone();
         if let Some(spread) = &self.spread {
-            let at = usize::try_from(program.symbols[&spread.constant]).expect("a label of the buffer is an address of it");
+            let at =
+                usize::try_from(program.symbols[&spread.constant]).expect("a label of the buffer is an address of it");
             program.buffer[at..at + 4].copy_from_slice(&levels.to_le_bytes());
         }
         program

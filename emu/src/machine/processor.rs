@@ -158,15 +158,18 @@ impl<'a, W: Worker> Processor<'a, W> {
         advance
     }
 
-    /// Takes back what its master of the bus went on to, up to a transfer that ended at a clock.
-    pub(super) fn take_back(&mut self, master: &mut W::Master, end: Clocks) {
+    /// Takes back what its master of the bus went on to, up to a transfer that ended at a clock; true where it is ahead of that transfer and
+    /// has to go on from its own clock.
+    pub(super) fn take_back(&mut self, master: &mut W::Master, end: Clocks) -> bool {
         self.used.longest_wait = self.used.longest_wait.max(master.take_longest_wait());
-        if let Some(Played { busy, waiting }) = self.worker.take_back(master, end) {
-            self.used.busy += busy;
-            self.used.waiting += waiting;
-            self.clock = end;
-            self.work.has_acted = true;
-        }
+        let Some(Played { busy, waiting, clock, is_ahead }) = self.worker.take_back(master, end, &mut self.cache) else {
+            return false;
+        };
+        self.used.busy += busy;
+        self.used.waiting += waiting;
+        self.clock = clock;
+        self.work.has_acted = true;
+        is_ahead
     }
 
     /// Notes what it does from its clock on.

@@ -14,7 +14,7 @@ use super::port::Shared;
 use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
-use super::worker::{Executor, Worker};
+use super::worker::{Executor, HandOver, Worker};
 use super::{RunFailure, Setup};
 use crate::code::Code;
 use crate::code::octets::Memory;
@@ -90,8 +90,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     pub meeting: usize,
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
-    /// The masters of the bus, which go from transfer to transfer by themselves; none where a transfer is more than that: with a cache, overlap,
-    /// or somebody who watches.
+    /// The masters of the bus, which go from transfer to transfer by themselves; none where somebody watches each transfer.
     masters: Option<Vec<W::Master>>,
     /// Octets that were written when the masters were told of it.
     written: Range<u64>,
@@ -140,7 +139,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            masters: (config.cache.octets == 0 && !config.bus.overlap && window.is_none() && !setup.options.has_course)
+            masters: (window.is_none() && !setup.options.has_course)
                 .then(|| (0..=cores).map(|_| W::Master::default()).collect()),
             written: 0..0,
             progress,
@@ -294,11 +293,13 @@ impl<'a, W: Worker> Machine<'a, W> {
             watch.ask(number as u32, processor.request);
         }
         self.bus.request(number as u32, processor.clock, octets);
-        if let Some(masters) = &mut self.masters {
-            let (clock, written) = (processor.clock, &self.shared.written);
-            processor.worker.hand_over(&mut masters[number], clock, written, &self.bus.lengths);
-        }
-        if is_ahead {
+        let is_handed_over = self.masters.as_mut().is_some_and(|masters| {
+            let (written, lengths) = (&self.shared.written, &self.bus.lengths);
+            let (clock, overlaps) = (processor.clock, self.setup.config.bus.overlap);
+            let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut processor.cache };
+            processor.worker.hand_over(&mut masters[number], transfer)
+        });
+        if is_ahead && !is_handed_over {
             self.account(number);
             self.run_on(number, true, true);
         }
@@ -355,7 +356,9 @@ impl<'a, W: Worker> Machine<'a, W> {
         let Some(grant) = self.bus.serve(masters, until) else { return false };
         self.now = grant.start;
         let number = grant.master as usize;
-        self.processors[number].take_back(&mut masters[number], grant.end);
+        if self.processors[number].take_back(&mut masters[number], grant.end) {
+            self.run_on(number, true, true);
+        }
         self.end_transfer(number, grant.end);
         true
     }

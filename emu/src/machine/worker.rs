@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::bus::{Lengths, NextTransfer};
+use super::cache::Cache;
 use super::kinds::Kinds;
 use super::port::{CorePort, Shared};
 use super::request::Request;
@@ -49,6 +50,24 @@ pub struct Played {
     pub busy: Clocks,
     /// Clocks of waiting for transfers.
     pub waiting: Clocks,
+    /// Clock of the core: the end of its last transfer, or the beginning of one that it does not wait for.
+    pub clock: Clocks,
+    /// The last transfer is a load beside which it goes on computing.
+    pub is_ahead: bool,
+}
+
+/// Transfer with which a worker may hand its work item over to its master.
+pub struct HandOver<'a> {
+    /// Clock at which it is asked for.
+    pub clock: Clocks,
+    /// Part of global memory that was written so far.
+    pub written: &'a Range<u64>,
+    /// Lengths of bursts.
+    pub lengths: &'a Lengths,
+    /// Workers go on computing while their loads are on their way.
+    pub overlaps: bool,
+    /// Cache of the processor, which goes with the work item.
+    pub cache: &'a mut Option<Cache>,
 }
 
 /// Whoever does the work of a processor, item after item.
@@ -74,9 +93,9 @@ pub trait Worker {
     /// True where its octets are known from elsewhere, so that the machine does not add up what it asks for.
     fn is_accounted(&self) -> bool;
 
-    /// Hands the work item over to its master when a transfer is asked for at a clock, where nothing but the bus is needed for what comes next.
-    /// `written` is the part of global memory that was written so far.
-    fn hand_over(&mut self, master: &mut Self::Master, clock: Clocks, written: &Range<u64>, lengths: &Lengths);
+    /// Hands the work item over to its master when a transfer is asked for, where nothing but the bus is needed for what comes next; true where
+    /// that is done.
+    fn hand_over(&mut self, master: &mut Self::Master, transfer: HandOver) -> bool;
 
     /// Notes that the processor asks for a transfer of octets by the worker's last request, where clocks of functions are measured.
     fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds);
@@ -84,8 +103,9 @@ pub trait Worker {
     /// Notes a wait for what was asked for last.
     fn note_wait(&mut self, clocks: Clocks);
 
-    /// Takes the work item back when the last transfer that its master went on to has ended at a clock; `None` where it was not handed over.
-    fn take_back(&mut self, master: &mut Self::Master, end: Clocks) -> Option<Played>;
+    /// Takes the work item back, and the cache, when the last transfer that its master went on to has ended at a clock; `None` where it was not
+    /// handed over.
+    fn take_back(&mut self, master: &mut Self::Master, end: Clocks, cache: &mut Option<Cache>) -> Option<Played>;
 
     /// Makes a master stop after the transfer that it asks for, where what follows may depend on what was written.
     fn stop_at(master: &mut Self::Master, written: &Range<u64>);
@@ -224,7 +244,9 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
         false
     }
 
-    fn hand_over(&mut self, _: &mut PlainMaster, _: Clocks, _: &Range<u64>, _: &Lengths) {}
+    fn hand_over(&mut self, _: &mut PlainMaster, _: HandOver) -> bool {
+        false
+    }
 
     fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds) {
         if let (Some(meter), Some(profiler)) = (&mut self.meter, self.observer.profiler()) {
@@ -240,7 +262,7 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
         }
     }
 
-    fn take_back(&mut self, _: &mut PlainMaster, _: Clocks) -> Option<Played> {
+    fn take_back(&mut self, _: &mut PlainMaster, _: Clocks, _: &mut Option<Cache>) -> Option<Played> {
         None
     }
 

@@ -8,7 +8,8 @@ use super::recording::{Recording, Segment};
 use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
-use crate::machine::worker::Played;
+use crate::machine::cache::Cache;
+use crate::machine::worker::{HandOver, Played};
 use crate::profile::SiteUse;
 
 /// Recorded work item that a master of the bus goes through by itself; none at first.
@@ -20,16 +21,40 @@ pub struct BusCursor {
     next: usize,
     /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
     computing: Clocks,
-    /// That transfer's first burst.
+    /// That transfer's first burst; of no meaning with a cache, which says so when the transfer is asked for.
     ahead: Burst,
     /// Clock at which it was handed over.
     start: Clocks,
+    /// Clock at which the transfer that is on its way was asked for; kept where it is asked for, by clocks of functions or by loads.
+    asked: Clocks,
     /// Clocks of computing since then.
     busy: Clocks,
-    /// Sums by site and the clock of the last request, where clocks of functions are measured.
+    /// Sums by site, where clocks of functions are measured.
     meter: Option<Box<CursorMeter>>,
     /// The longest wait of the master for a grant that nobody was told of.
     longest_wait: Clocks,
+    /// A core with a cache, or with loads that it does not wait for; none where every read is a transfer and is waited for.
+    beside: Option<Box<BesideTransfers>>,
+}
+
+/// Reads that take no time and loads that are not waited for, on the way of a bus cursor.
+#[derive(Debug, Default)]
+struct BesideTransfers {
+    cache: Option<Cache>,
+    /// Loads are not waited for.
+    overlaps: bool,
+    /// The transfer that is on its way is a load that is not waited for.
+    is_ahead: bool,
+    /// Reads that the cache answers before the next transfer, by number of the segment.
+    hits: Range<usize>,
+    /// Octets of those.
+    hit_octets: Octets,
+    /// Clocks of computing from the first of them on.
+    after_hit: Clocks,
+    /// Reads that the cache answered before the transfer that is on its way.
+    answered: Range<usize>,
+    /// One of those reads what was written meanwhile.
+    is_lost: bool,
 }
 
 /// A work item that a bus cursor hands back to its core.
@@ -42,6 +67,10 @@ pub struct HandedBack {
     pub played: Played,
     /// Sums by site, where clocks of functions are measured.
     pub sites: Option<Vec<SiteUse>>,
+    /// Cache of the core.
+    pub cache: Option<Cache>,
+    /// The work item has read what was written meanwhile, so that its recording is worth nothing.
+    pub is_lost: bool,
 }
 
 /// Sums of transfers by site while a bus cursor goes through a work item.
@@ -49,22 +78,19 @@ pub struct HandedBack {
 struct CursorMeter {
     /// By site; as many as the recording knows.
     sites: Vec<SiteUse>,
-    /// Clock at which the transfer that is on its way was asked for.
-    asked: Clocks,
 }
 
 impl CursorMeter {
-    /// The transfer of a segment has ended, and the next one is asked for at a clock. The sums of a site are looked at once a transfer, since
+    /// The transfer of a segment has ended, for which its core has waited. The sums of a site are looked at once a transfer, since
     /// nobody can foresee which one it is.
     #[inline(always)]
-    fn end(&mut self, recording: &Recording, at: usize, end: Clocks, next: Clocks) {
+    fn end(&mut self, recording: &Recording, at: usize, waiting: Clocks) {
         let site = recording.clocks.as_ref().and_then(|clocks| clocks.sites.get(at));
         if let (Some(&site), Some(segment)) = (site, recording.segments.get(at))
             && let Some(sums) = self.sites.get_mut(site as usize)
         {
-            sums.add(SiteUse { waiting: (end - self.asked).0, transfers: 1, octets: segment.octets().0 });
+            sums.add(SiteUse { waiting: waiting.0, transfers: 1, octets: segment.octets().0 });
         }
-        self.asked = next;
     }
 }
 
@@ -92,26 +118,75 @@ impl Default for BusCursor {
             computing,
             ahead,
             start: none,
+            asked: none,
             busy: none,
             meter: None,
             longest_wait: none,
+            beside: None,
         }
     }
 }
 
+impl BesideTransfers {
+    /// Looks for the next transfer behind reads that the cache answers, and gives the clocks of computing before the first of all of them. What it
+    /// looks at does not change the cache; [`NEVER`] where something else than a transfer comes behind them.
+    ///
+    /// Reads after 3, 4 and 5 clocks, of which the cache answers the first two, are one transfer with 3 clocks before it and 9 after a hit.
+    fn look(&mut self, segments: &[Segment], next: usize) -> Clocks {
+        (self.hits, self.hit_octets, self.after_hit) = (next..next, Octets(0), Clocks(0));
+        let mut first = None;
+        for (at, segment) in segments.iter().enumerate().skip(next) {
+            if !segment.is_read() {
+                break;
+            }
+            let clocks = Clocks(segment.clocks.into());
+            match first {
+                None => first = Some(clocks),
+                Some(_) => self.after_hit += clocks,
+            }
+            let octets = segment.octets();
+            if !self.cache.as_ref().is_some_and(|cache| cache.holds(segment.address, octets)) {
+                self.hits.end = at;
+                return first.unwrap_or(NEVER);
+            }
+            self.hit_octets += octets;
+        }
+        NEVER
+    }
+
+    /// Goes on from a transfer that was asked for at a clock and has ended to the next one, which was found with so many clocks of computing
+    /// before it and before what the cache answers; yields the clock at which it is asked for, the clocks that the last one was waited for,
+    /// and the octets that go over the bus.
+    ///
+    /// A load asked for at 10 that ends at 18, with 3 clocks before a hit and 9 after that: computing from 10 to 13, waiting for 5, hitting at
+    /// 18, asking at 27. Where loads are waited for: waiting for 8, hitting at 21, asking at 30.
+    fn go_on(&mut self, [asked, end, computing]: [Clocks; 3], segment: &Segment) -> (Clocks, Clocks, Octets) {
+        let begin = if self.is_ahead { asked } else { end };
+        let waiting = if self.is_ahead { end.max(asked + computing) - (asked + computing) } else { end - asked };
+        if let Some(cache) = &mut self.cache {
+            cache.count_hits(self.hits.len() as u64, self.hit_octets);
+        }
+        let missed = self.cache.as_mut().and_then(|cache| cache.read(segment.address, segment.octets()));
+        self.answered = self.hits.clone();
+        self.is_ahead = self.overlaps && segment.is_load();
+        (end.max(begin + computing) + self.after_hit, waiting, missed.unwrap_or(segment.octets()))
+    }
+}
+
 impl BusCursor {
-    /// Takes over a work item at a clock, when its core begins to ask for the last of the segments that are behind it, with sums by site where
+    /// Takes over a work item, when its core begins to ask for the last of the segments that are behind it, with sums by site where
     /// clocks of functions are measured.
-    pub fn begin(
-        &mut self,
-        recording: Arc<Recording>,
-        next: usize,
-        clock: Clocks,
-        lengths: &Lengths,
-        sites: Option<Vec<SiteUse>>,
-    ) {
-        (self.next, self.start, self.busy) = (next, clock, Clocks(0));
-        self.meter = sites.map(|sites| Box::new(CursorMeter { sites, asked: clock }));
+    pub fn begin(&mut self, recording: Arc<Recording>, next: usize, transfer: HandOver, sites: Option<Vec<SiteUse>>) {
+        let HandOver { clock, lengths, overlaps, cache, .. } = transfer;
+        (self.next, self.start, self.asked, self.busy) = (next, clock, clock, Clocks(0));
+        self.meter = sites.map(|sites| Box::new(CursorMeter { sites }));
+        if overlaps || cache.is_some() {
+            // The box stays from one work item to the next.
+            let beside = self.beside.get_or_insert_default();
+            beside.overlaps = overlaps;
+            beside.is_ahead = overlaps && recording.segments.get(next - 1).is_some_and(Segment::is_load);
+            (beside.answered, beside.is_lost, beside.cache) = (0..0, false, cache.take());
+        }
         self.recording = Some(recording);
         self.look(lengths);
     }
@@ -119,13 +194,22 @@ impl BusCursor {
     #[inline(always)]
     fn look(&mut self, lengths: &Lengths) {
         let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
-        (self.computing, self.ahead) = ahead_of(segments, self.next, lengths);
+        match &mut self.beside {
+            None => (self.computing, self.ahead) = ahead_of(segments, self.next, lengths),
+            Some(beside) => self.computing = beside.look(segments, self.next),
+        }
     }
 
     /// Makes it end with the transfer that its master asks for, where it reads any of these octets.
     pub fn stop_at(&mut self, written: &Range<u64>) {
-        if self.recording.as_ref().is_some_and(|recording| overlap(&recording.reads, written)) {
-            self.computing = NEVER;
+        let Some(recording) = self.recording.as_ref().filter(|recording| overlap(&recording.reads, written)) else {
+            return;
+        };
+        self.computing = NEVER;
+        if let Some(beside) = &mut self.beside {
+            // The cache may have answered that later than it was written.
+            let answered = recording.segments.get(beside.answered.clone()).unwrap_or_default();
+            beside.is_lost |= answered.iter().any(|segment| overlap(&segment.range(), written));
         }
     }
 
@@ -133,12 +217,35 @@ impl BusCursor {
     pub fn end(&mut self, clock: Clocks) -> Option<HandedBack> {
         let recording = self.recording.take()?;
         self.computing = NEVER;
+        let (mut cache, mut is_ahead, mut is_lost) = (None, false, false);
+        if let Some(beside) = &mut self.beside {
+            (cache, is_ahead, is_lost) = (beside.cache.take(), beside.is_ahead, beside.is_lost);
+        }
+        // A core that has not waited for its load has computed since it asked for that, and will be told how long it waited.
+        let clock = if is_ahead { self.asked } else { clock };
         let sites = self.meter.take().map(|mut meter| {
-            meter.end(&recording, self.next - 1, clock, clock);
+            meter.end(&recording, self.next - 1, clock - self.asked);
             meter.sites
         });
-        let played = Played { busy: self.busy, waiting: clock - self.start - self.busy };
-        Some(HandedBack { recording, next: self.next, played, sites })
+        let played = Played { busy: self.busy, waiting: clock - self.start - self.busy, clock, is_ahead };
+        Some(HandedBack { recording, next: self.next, played, sites, cache, is_lost })
+    }
+
+    /// Goes on with a cache, or with loads that are not waited for.
+    #[inline(never)]
+    fn next_beside(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+        let (recording, beside) = (self.recording.as_ref()?, self.beside.as_mut()?);
+        let last = self.next - 1;
+        let segment = recording.segments.get(beside.hits.end)?;
+        let (asked, waiting, octets) = beside.go_on([self.asked, end, self.computing], segment);
+        if let Some(meter) = &mut self.meter {
+            meter.end(recording, last, waiting);
+            beside.answered.clone().for_each(|at| meter.end(recording, at, Clocks(0)));
+        }
+        self.busy += self.computing + beside.after_hit;
+        (self.next, self.asked) = (beside.hits.end + 1, asked);
+        self.look(lengths);
+        Some((asked - end, lengths.burst(octets)))
     }
 }
 
@@ -150,9 +257,13 @@ impl NextTransfer for BusCursor {
         if computing == NEVER {
             return None;
         }
+        if self.beside.is_some() {
+            return self.next_beside(end, lengths);
+        }
         self.busy += computing;
         if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
-            meter.end(recording, self.next - 1, end, end + computing);
+            meter.end(recording, self.next - 1, end - self.asked);
+            self.asked = end + computing;
         }
         self.next += 1;
         self.look(lengths);
@@ -163,6 +274,9 @@ impl NextTransfer for BusCursor {
     fn go_alone(&mut self, lengths: &Lengths, first: Burst, arrival: Clocks, limit: Clocks) -> Alone {
         // Copy the state, so that it stays in registers
         let mut alone = Alone::none(first, arrival);
+        if self.beside.is_some() {
+            return alone;
+        }
         let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
         let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
         let before = (next, arrival);
@@ -183,7 +297,8 @@ impl NextTransfer for BusCursor {
             }
             (alone.burst, alone.arrival) = (ahead, alone.free + computing);
             if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
-                meter.end(recording, next - 1, alone.free, alone.arrival);
+                meter.end(recording, next - 1, alone.free - self.asked);
+                self.asked = alone.arrival;
             }
             next += 1;
             (computing, ahead) = ahead_of(segments, next, lengths);
@@ -271,7 +386,9 @@ mod tests {
                         let cursor = &mut cursors[master as usize];
                         let _ = cursor.end(arrival);
                         bus.request(master, arrival, item.segments[0].octets());
-                        cursor.begin(item.clone(), 1, arrival, &bus.lengths, Some(vec![SiteUse::default(); 8]));
+                        let (clock, written, lengths, cache) = (arrival, &(0..0), &bus.lengths, &mut None);
+                        let transfer = HandOver { clock, written, lengths, overlaps: false, cache };
+                        cursor.begin(item.clone(), 1, transfer, Some(vec![SiteUse::default(); 8]));
                         if is_stopped {
                             cursor.stop_at(&(0..1));
                         }

@@ -6,19 +6,22 @@ use std::sync::Arc;
 
 use super::bus_cursor::{BusCursor, HandedBack, overlap};
 use super::feed::Feed;
-use super::recording::{Recording, Segment};
+use super::recording::{Reason, Recording, Segment};
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Pause};
-use crate::machine::bus::Lengths;
+use crate::machine::cache::Cache;
 use crate::machine::kinds::Kinds;
 use crate::machine::port::Shared;
 use crate::machine::request::{Access, Request};
-use crate::machine::worker::{Advance, Executor, Played, Progress, Worker, WorkerCounts};
+use crate::machine::worker::{Advance, Executor, HandOver, Played, Progress, Worker, WorkerCounts};
 use crate::profile::{ClockLog, LogPart, Observer, ProfileLevel, SiteUse};
 use crate::semantics::Watch;
+
+/// Reason for which a recording, which knows the initial memory only, is not what happens.
+const READS_WRITTEN: Reason = "the cores read what the main processor has written";
 
 /// A core's place in the work item that it replays.
 pub struct ItemCursor<'a> {
@@ -92,7 +95,7 @@ impl<'a> ItemCursor<'a> {
             Request::Transfer { access: Access::Load | Access::Read, .. }
                 if overlap(&segment.range(), &shared.written) =>
             {
-                self.feed.borrow_mut().lose::<()>("the cores read what the main processor has written");
+                self.feed.borrow_mut().lose::<()>(READS_WRITTEN);
             }
             _ => {}
         }
@@ -171,21 +174,23 @@ impl Worker for ItemCursor<'_> {
         true
     }
 
-    fn hand_over(&mut self, master: &mut BusCursor, clock: Clocks, written: &Range<u64>, lengths: &Lengths) {
-        let is_safe =
-            |recording: &Recording| self.asked().is_some_and(Segment::is_read) && !overlap(&recording.reads, written);
-        if self.recording.as_deref().is_some_and(is_safe)
-            && let Some(recording) = self.recording.take()
-        {
-            // The master counts transfers when they end, and this one was counted when it was asked for.
-            let (observer, site) = self.asked;
-            let octets = recording.segments.get(self.next - 1).map_or(0, |segment| segment.octets().0);
-            let sites = self.part(observer).map(|part| {
-                part.site(site).take_back(octets);
-                std::mem::take(&mut part.sites)
-            });
-            master.begin(recording, self.next, clock, lengths, sites);
+    fn hand_over(&mut self, master: &mut BusCursor, transfer: HandOver) -> bool {
+        let is_safe = |recording: &Recording| {
+            self.asked().is_some_and(Segment::is_read) && !overlap(&recording.reads, transfer.written)
+        };
+        if !self.recording.as_deref().is_some_and(is_safe) {
+            return false;
         }
+        let Some(recording) = self.recording.take() else { return false };
+        // The master counts transfers when they end, and this one was counted when it was asked for.
+        let (observer, site) = self.asked;
+        let octets = recording.segments.get(self.next - 1).map_or(0, |segment| segment.octets().0);
+        let sites = self.part(observer).map(|part| {
+            part.site(site).take_back(octets);
+            std::mem::take(&mut part.sites)
+        });
+        master.begin(recording, self.next, transfer, sites);
+        true
     }
 
     fn note_ask(&mut self, _: Request, octets: Octets, _: &Kinds) {
@@ -209,13 +214,22 @@ impl Worker for ItemCursor<'_> {
         }
     }
 
-    fn take_back(&mut self, master: &mut BusCursor, end: Clocks) -> Option<Played> {
-        let HandedBack { recording, next, played, sites } = master.end(end)?;
+    fn take_back(&mut self, master: &mut BusCursor, end: Clocks, cache: &mut Option<Cache>) -> Option<Played> {
+        let HandedBack { recording, next, played, sites, cache: own, is_lost } = master.end(end)?;
+        *cache = own;
+        if is_lost {
+            self.feed.borrow_mut().lose::<()>(READS_WRITTEN);
+        }
         let observer = recording.clocks.as_ref().map(|clocks| clocks.observer as usize);
         if let (Some(observer), Some(sites)) = (observer, sites)
             && let Some(part) = self.part(observer)
         {
             part.sites = sites;
+        }
+        // What is waited for from now on is the last transfer that the master asked for.
+        let site = recording.clocks.as_ref().and_then(|clocks| clocks.sites.get(next - 1));
+        if let (Some(observer), Some(&site)) = (observer, site) {
+            self.asked = (observer, site);
         }
         (self.recording, self.next) = (Some(recording), next);
         Some(played)
@@ -276,15 +290,16 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
         each!(self, worker => worker.is_accounted())
     }
 
-    fn hand_over(&mut self, master: &mut BusCursor, clock: Clocks, written: &Range<u64>, lengths: &Lengths) {
-        if let Replayer::Core(core) = self {
-            core.hand_over(master, clock, written, lengths);
+    fn hand_over(&mut self, master: &mut BusCursor, transfer: HandOver) -> bool {
+        match self {
+            Replayer::Core(core) => core.hand_over(master, transfer),
+            Replayer::Main(_) => false,
         }
     }
 
-    fn take_back(&mut self, master: &mut BusCursor, end: Clocks) -> Option<Played> {
+    fn take_back(&mut self, master: &mut BusCursor, end: Clocks, cache: &mut Option<Cache>) -> Option<Played> {
         match self {
-            Replayer::Core(core) => core.take_back(master, end),
+            Replayer::Core(core) => core.take_back(master, end, cache),
             Replayer::Main(_) => None,
         }
     }

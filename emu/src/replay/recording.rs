@@ -50,6 +50,18 @@ impl Segment {
         Segment { clocks: read.clocks, pc: read.slot, address: read.address, what: read.octets << 2 | READ }
     }
 
+    /// All but the address, which few segments of a frame differ in: clocks, word, and octets with access.
+    #[inline]
+    pub fn shape(&self) -> [u32; 3] {
+        [self.clocks, self.pc, self.what]
+    }
+
+    /// The segment of a shape; `None` where that is a write, which no work item that is recorded does.
+    #[inline]
+    pub fn of_shape([clocks, pc, what]: [u32; 3], address: u32) -> Option<Segment> {
+        (what & 3 != WRITE).then_some(Segment { clocks, pc, address, what })
+    }
+
     /// Octets that go over the bus.
     #[inline]
     pub fn octets(&self) -> Octets {
@@ -60,6 +72,12 @@ impl Segment {
     #[inline]
     pub fn is_read(&self) -> bool {
         matches!(self.what & 3, LOAD | READ)
+    }
+
+    /// True where a block is copied to the buffer, for which a core need not wait.
+    #[inline]
+    pub fn is_load(&self) -> bool {
+        self.what & 3 == LOAD
     }
 
     /// The octets of global memory that a transfer moves.

@@ -22,6 +22,7 @@ use crate::job::{Job, result_name};
 use crate::settings::Settings;
 use crate::sweep::contents::Contents;
 use crate::sweep::group::{self, DrawnGroup};
+use crate::sweep::recordings::RecordingStore;
 
 /// Places of the samples in their pixels for statistics, in pixels to the right of the middle and above it; `examples/shifts.toml` has the same.
 pub const PLACES: [[f64; 2]; 8] = [
@@ -63,8 +64,8 @@ pub struct AccuracyStudy {
     pub first_refusal: Option<Failure>,
 }
 
-/// Measures all variants on scenes, at each of the shifts. With times of the host each picture is drawn by itself, since a replay alone takes
-/// less. `progress` is told of each picture.
+/// Measures all variants on scenes, at each of the shifts, with the contents of files and the recordings that are kept. With times of the host each
+/// picture is drawn by itself and recorded, since a replay alone takes less. `progress` is told of each picture.
 ///
 /// # Errors
 /// Files that cannot be read, settings out of their ranges. A scene that does not fit a variant, or a trap, is a result.
@@ -73,10 +74,11 @@ pub fn run(
     variants: &[Variant],
     shifts: &[[f64; 2]],
     has_times: bool,
-    contents: &Contents,
+    (contents, store): (&Contents, Option<&RecordingStore>),
     progress: &mut dyn FnMut(u64),
 ) -> Result<AccuracyStudy, Failure> {
     let mut study = AccuracyStudy::default();
+    let store = store.filter(|_| !has_times);
     let Some(first) = variants.first() else { return Ok(study) };
     for scene in scenes {
         let known = contents.scene(&first.settings(scene, [0.0; 2]))?;
@@ -99,7 +101,7 @@ pub fn run(
             let mut reference = None;
             for group in groups {
                 let settings: Vec<&Settings> = group.iter().map(|&point| &points[point]).collect();
-                let measured = study.measure(&settings, contents, has_times, (&known.loaded.scene, &mut reference))?;
+                let measured = study.measure(&settings, (contents, store), has_times, (&known.loaded.scene, &mut reference))?;
                 for (&point, figure) in group.iter().zip(measured) {
                     match figure {
                         Ok(figure) => figures[fitting[point]].push(figure),
@@ -127,13 +129,13 @@ impl AccuracyStudy {
     fn measure<'s>(
         &mut self,
         points: &[&Settings],
-        contents: &Contents,
+        (contents, store): (&Contents, Option<&RecordingStore>),
         has_times: bool,
         (scene, reference): (&'s Scene, &mut Option<Reference<'s>>),
     ) -> Result<Vec<Result<ShiftFigures, String>>, Failure> {
         // Draw the points, those of one recording together.
         let start = Instant::now();
-        let (job, drawn) = group::draw(points, contents)?;
+        let (job, drawn) = group::draw(points, contents, store)?;
         let host = has_times.then(|| start.elapsed());
         let mut drawn = match drawn {
             Ok(drawn) => drawn,

@@ -9,7 +9,7 @@ mod text;
 mod verdict;
 
 use emu::code::Code;
-use emu::machine::{Config, RunFailure, RunOptions, RunOutcome};
+use emu::machine::{Config, RunOutcome};
 use isa::{Class, Counts};
 use scenes::image::MemoryImage;
 use schemars::JsonSchema;
@@ -25,6 +25,9 @@ use crate::cores::PixelDemand;
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
 use crate::load::Load;
+use crate::settings::Settings;
+use crate::sweep::frames::{FrameResult, KeptRecordings, PictureFrames};
+use crate::sweep::recordings::RecordingStore;
 
 /// Version of [`AdviceResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-advise-1";
@@ -155,6 +158,8 @@ impl Prediction {
 /// The frame that all changes are compared with.
 struct Baseline<'a> {
     job: &'a Job,
+    /// Folder of recordings.
+    store: Option<&'a RecordingStore>,
     prediction: Prediction,
     /// Octets of global memory.
     octets: usize,
@@ -162,23 +167,22 @@ struct Baseline<'a> {
     colours: Vec<u8>,
 }
 
-/// The picture of a job in memory with its programs, ready for several machines.
-struct BuiltPicture {
-    load: Load,
-    image: MemoryImage,
+/// The picture of a job in memory with its programs, and its recordings so far.
+struct BuiltPicture<'a> {
+    load: &'a Load,
+    image: &'a MemoryImage,
+    recorded: PictureFrames<'a>,
 }
 
-impl BuiltPicture {
-    fn new(job: &Job) -> Result<BuiltPicture, Failure> {
-        let (load, image) = Load::picture(job)?;
-        Ok(BuiltPicture { load, image })
+impl<'a> BuiltPicture<'a> {
+    fn new(built: &'a (Load, MemoryImage), kept: Option<KeptRecordings<'a>>) -> BuiltPicture<'a> {
+        let (load, image) = built;
+        BuiltPicture { load, image, recorded: PictureFrames::new(load, kept) }
     }
 
     /// Frames of machines, in their order. Those that differ in time only share a recording.
-    fn frames(&self, machines: &[Config], progress: &mut dyn FnMut()) -> Vec<Result<RunOutcome, RunFailure>> {
-        let Some(first) = machines.first() else { return Vec::new() };
-        let setup = self.load.setup(first, RunOptions { engine: self.load.engine, ..RunOptions::default() });
-        let frames = emu::run_all(&setup, machines, &self.load.memory, &mut |_| {});
+    fn frames(&mut self, machines: &[Config], progress: &mut dyn FnMut()) -> Vec<FrameResult> {
+        let frames = self.recorded.run(machines, &mut |_| {});
         machines.iter().for_each(|_| progress());
         frames
     }
@@ -186,19 +190,24 @@ impl BuiltPicture {
     /// Octets of the drawn part.
     fn colours(&self, frame: &RunOutcome) -> Vec<u8> {
         let crop = self.load.build.crop;
-        crate::drawing::colour_octets(&self.image, frame, &crop).to_vec()
+        crate::drawing::colour_octets(self.image, frame, &crop).to_vec()
     }
 }
 
-/// Advice on a job's machine. `progress` is told the number of machines that have run and of those that will at least.
+/// Advice on a job's machine, with recordings that are kept where a folder of them is given. `progress` is told the number of machines that have run and of those that will at least.
 ///
 /// # Errors
 /// A scene that does not fit its formats, errors in the user's kernels, a machine out of its ranges, a trap.
-pub fn advise(job: &Job, progress: &mut dyn FnMut(u64, u64)) -> Result<AdviceResult, Failure> {
-    let picture = BuiltPicture::new(job)?;
+pub fn advise(
+    job: &Job,
+    store: Option<&RecordingStore>,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<AdviceResult, Failure> {
+    let (built, settings) = (Load::picture(job)?, Settings::of(job));
+    let mut picture = BuiltPicture::new(&built, store.map(|store| KeptRecordings { store, settings: &settings }));
     let now = picture.frames(std::slice::from_ref(&job.machine), &mut || {});
     let now = now.into_iter().next().expect("the machine as it is has a result")?;
-    let (changes, left) = change::all(job, &picture.image, &demand(&now, job, &picture.load));
+    let (changes, left) = change::all(job, picture.image, &demand(&now, job, picture.load));
     let (on_machine, of_picture): (Vec<Change>, Vec<Change>) =
         changes.into_iter().partition(|change| change.options.is_empty());
     let pairs = (BEST * (BEST - 1) / 2) as u64;
@@ -209,13 +218,14 @@ pub fn advise(job: &Job, progress: &mut dyn FnMut(u64, u64)) -> Result<AdviceRes
     };
     let base = Baseline {
         job,
+        store,
         prediction: Prediction::new(&now, &job.machine),
         octets: picture.load.memory.size(),
         colours: picture.colours(&now),
     };
     let mut found = Findings { singles: Vec::new(), refused: left.into_iter().map(refused).collect() };
     // Those that differ in time only share a recording.
-    try_on(&picture, &base, &on_machine, &mut found, &mut step)?;
+    try_on(&mut picture, &base, &on_machine, &mut found, &mut step)?;
     for change in &of_picture {
         try_all(&base, std::slice::from_ref(change), &mut found, &mut step)?;
     }
@@ -234,7 +244,7 @@ pub fn advise(job: &Job, progress: &mut dyn FnMut(u64, u64)) -> Result<AdviceRes
     together.sort_by_key(|pair| pair.options.iter().map(|option| option.words()).collect::<Vec<_>>());
     for alike in together.chunk_by(|one, other| one.options == other.options) {
         match alike[0].options.is_empty() {
-            true => try_on(&picture, &base, alike, &mut found, &mut step)?,
+            true => try_on(&mut picture, &base, alike, &mut found, &mut step)?,
             false => try_all(&base, alike, &mut found, &mut step)?,
         }
     }
@@ -248,7 +258,7 @@ pub fn advise(job: &Job, progress: &mut dyn FnMut(u64, u64)) -> Result<AdviceRes
         pixels: now.item_count,
         machine: job.machine_name.clone(),
         clock_hz: job.machine.clock_hz,
-        verdict: verdict::sentence(&now, &job.machine, &picture.load),
+        verdict: verdict::sentence(&now, &job.machine, picture.load),
         now: base.prediction,
         advice: singles.into_iter().map(|(_, advice)| advice).collect(),
         pairs: found.singles.into_iter().map(|(_, advice)| advice).collect(),
@@ -284,7 +294,7 @@ impl Findings {
         change: &Change,
         machine: &Config,
         picture: &BuiltPicture,
-        frame: Result<RunOutcome, RunFailure>,
+        frame: FrameResult,
     ) {
         match frame {
             Ok(frame) => self.singles.push((change.clone(), advice(base, change, machine, picture, &frame))),
@@ -295,8 +305,9 @@ impl Findings {
 
 /// Builds the picture of changes with the same options, and runs it on each of their machines.
 fn try_all(base: &Baseline, changes: &[Change], found: &mut Findings, step: &mut dyn FnMut()) -> Result<(), Failure> {
-    let picture = match BuiltPicture::new(&changes[0].job(base.job)?) {
-        Ok(picture) => picture,
+    let job = changes[0].job(base.job)?;
+    let built = match Load::picture(&job) {
+        Ok(built) => built,
         // A layout or a word that the scene does not fit is a result; a closed pipe is not.
         Err(Failure::Message { report, .. }) => {
             found.refused.extend(changes.iter().map(|change| refused((change.clone(), change::reason(&report)))));
@@ -304,12 +315,14 @@ fn try_all(base: &Baseline, changes: &[Change], found: &mut Findings, step: &mut
         }
         Err(failure) => return Err(failure),
     };
-    try_on(&picture, base, changes, found, step)
+    let settings = Settings::of(&job);
+    let kept = base.store.map(|store| KeptRecordings { store, settings: &settings });
+    try_on(&mut BuiltPicture::new(&built, kept), base, changes, found, step)
 }
 
 /// Runs a picture on the machine of each change.
 fn try_on(
-    picture: &BuiltPicture,
+    picture: &mut BuiltPicture,
     base: &Baseline,
     changes: &[Change],
     found: &mut Findings,

@@ -8,6 +8,7 @@ mod kernel;
 mod machine;
 mod numbers;
 pub mod overrides;
+mod recordings;
 mod tree;
 mod value;
 mod view;
@@ -21,6 +22,7 @@ pub use machine::{
     MachineArguments, MachineKeyArguments, SetArguments, SettingsArguments, arbiter, engine, layout, machines,
 };
 pub use numbers::{ArithmeticArguments, FormatArguments, NumberArguments, OverflowArguments};
+pub use recordings::{RecordingArguments, tell_notes};
 pub use tree::TreeArguments;
 pub use value::{Rectangle, Size, numbered, point, positive, rectangle, setting, size, ungrouped, whole};
 pub use view::{CameraArguments, ViewArguments};

@@ -22,8 +22,8 @@ use crate::accuracy::{
 };
 use crate::arguments::{
     self, ArithmeticArguments, ChartArguments, EffortArguments, FormatArguments, JobArguments, KernelArguments,
-    KernelFileArguments, MachineArguments, MachineKeyArguments, NumberArguments, OverflowArguments, SetArguments,
-    SkipArguments, TreeArguments, ViewArguments,
+    KernelFileArguments, MachineArguments, MachineKeyArguments, NumberArguments, OverflowArguments, RecordingArguments, SetArguments,
+    SkipArguments, TreeArguments, ViewArguments, tell_notes,
 };
 use crate::failure::{Exit, Failure};
 use crate::numeral::numbers;
@@ -111,6 +111,8 @@ pub struct AccuracyArguments {
     engine: EngineKind,
     #[command(flatten)]
     sets: SetArguments,
+    #[command(flatten)]
+    recordings: RecordingArguments,
     /// Cost that errors are set against, in fronts and charts; the host's time is then measured.
     #[arg(long, value_enum, default_value_t = CostAxis::Clocks, help_heading = "Charts and data")]
     axis: CostAxis,
@@ -330,8 +332,11 @@ pub(super) fn execute(
     // Measure, and rank by the axes that are asked for.
     let shifts = &PLACES[..usize::from(arguments.shifts)];
     let bar = terminal.progress("pictures", (read.len() * variants.len() * shifts.len()) as u64);
-    let study = accuracy::run(&arguments.scenes, &variants, shifts, has_times, &contents, &mut |done| bar.inc(done));
+    let store = arguments.recordings.store()?;
+    let known = (&contents, store.as_ref());
+    let study = accuracy::run(&arguments.scenes, &variants, shifts, has_times, known, &mut |done| bar.inc(done));
     bar.finish_and_clear();
+    tell_notes(store.as_ref(), terminal);
     let mut study = study?;
     // Where no picture came of the user's own files, they are what is wrong.
     let has_own = !arguments.kernels.replaced.is_empty() || !arguments.kernels.extensions.extensions.is_empty();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::advise;
-use crate::arguments::JobArguments;
+use crate::arguments::{JobArguments, RecordingArguments, tell_notes};
 use crate::failure::{Exit, Failure};
 use crate::result::WithSettings;
 use crate::settings::Settings;
@@ -32,6 +32,8 @@ machine as it is: operations take other clocks, or another picture in memory was
 pub struct AdviseArguments {
     #[command(flatten)]
     job: JobArguments,
+    #[command(flatten)]
+    recordings: RecordingArguments,
     /// Shows all changes and pairs instead of the best ones.
     #[arg(long, help_heading = "Results")]
     all: bool,
@@ -53,11 +55,13 @@ pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> R
     files::check_spared(arguments.csv.as_deref(), &job.files).map_err(Failure::usage)?;
     terminal.show(&job.warnings);
     let bar = terminal.progress("machines", 1);
-    let advice = advise::advise(&job, &mut |done, total| {
+    let store = arguments.recordings.store()?;
+    let advice = advise::advise(&job, store.as_ref(), &mut |done, total| {
         bar.set_length(total);
         bar.set_position(done);
     });
     bar.finish_and_clear();
+    tell_notes(store.as_ref(), terminal);
     let advice = advice?;
     let files: Vec<_> = arguments.csv.as_ref().map(|path| (path, advise::csv(&advice))).into_iter().collect();
     files::write_all(&files)?;

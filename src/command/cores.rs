@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::arguments::{
     self, ChartArguments, EffortArguments, JobArguments, KernelArguments, MachineArguments, MachineKeyArguments,
-    NumberArguments, SetArguments, ViewArguments,
+    NumberArguments, RecordingArguments, SetArguments, ViewArguments, tell_notes,
 };
 use crate::cores::{self, CoresResult};
 use crate::failure::{Exit, Failure};
@@ -22,6 +22,7 @@ use crate::load::{ANNEX, Load};
 use crate::numeral::numbers;
 use crate::result::WithSettings;
 use crate::settings::{MachineSettings, Settings};
+use crate::sweep::frames::KeptRecordings;
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -84,6 +85,8 @@ pub struct CoresArguments {
     numbers: NumberArguments,
     #[command(flatten)]
     effort: EffortArguments,
+    #[command(flatten)]
+    recordings: RecordingArguments,
 }
 
 /// Settings of a measurement: a picture's, with all machines and all numbers of cores.
@@ -150,7 +153,7 @@ fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult
         settings.machine.config.main.traffic = false;
         machines.extend(with_arbiters(arguments, &settings.machine.name, &settings.machine.config));
     }
-    let scaling = measure(ANNEX, &Load::annex()?, &machines, arguments, terminal)?;
+    let scaling = measure(ANNEX, &Load::annex()?, &machines, arguments, (None, terminal))?;
     let mut job = Settings::default();
     ANNEX.clone_into(&mut job.scene.name);
     Ok((scaling, settings(arguments, job, machines)))
@@ -163,6 +166,7 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResu
     files::check_spared(targets.iter().map(PathBuf::as_path), jobs.iter().flat_map(|job| &job.files))
         .map_err(Failure::usage)?;
     terminal.show(&jobs[0].warnings);
+    let store = arguments.recordings.store()?;
     let (mut whole, mut all): (Option<CoresResult>, Vec<(String, Config)>) = (None, Vec::new());
     // Machines with words of the same length share the picture in memory and the programs.
     for alike in jobs.chunk_by(|one, other| one.machine.arithmetic.word == other.machine.arithmetic.word) {
@@ -170,7 +174,9 @@ fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResu
         terminal.show(&load.build.warnings);
         let machines = alike.iter().flat_map(|job| with_arbiters(arguments, &job.machine_name, &job.machine));
         let machines: Vec<(String, Config)> = machines.collect();
-        let scaling = measure(&result_name(&alike[0].scene), &load, &machines, arguments, terminal)?;
+        let picture = Settings::of(&alike[0]);
+        let kept = store.as_ref().map(|store| KeptRecordings { store, settings: &picture });
+        let scaling = measure(&result_name(&alike[0].scene), &load, &machines, arguments, (kept, terminal))?;
         all.extend(machines);
         match &mut whole {
             Some(whole) => whole.machines.extend(scaling.machines),
@@ -203,16 +209,18 @@ fn job(arguments: &CoresArguments, machine: &str) -> JobArguments {
     JobArguments { scene, mesh, view, kernels, machine, numbers, effort }
 }
 
-/// Measures with a bar that shows how far the computing is.
+/// Measures, with the recordings that are kept, and a bar that shows how far the computing is.
 fn measure(
     scene: &str,
     load: &Load,
     machines: &[(String, Config)],
     arguments: &CoresArguments,
-    terminal: &Terminal,
+    (kept, terminal): (Option<KeptRecordings>, &Terminal),
 ) -> Result<CoresResult, Failure> {
     let bar = terminal.progress("pixels", u64::from(load.build.crop.width) * u64::from(load.build.crop.height));
-    let scaling = cores::measure(scene, load, machines, &cores_of(arguments), &mut |done| bar.set_position(done));
+    let progress = &mut |done| bar.set_position(done);
+    let scaling = cores::measure(scene, load, machines, &cores_of(arguments), kept, progress);
     bar.finish_and_clear();
+    tell_notes(kept.map(|kept| kept.store), terminal);
     scaling
 }

@@ -19,7 +19,7 @@ use crate::settings::read::{self, COMMAND, StoredSettings};
 use crate::settings::{MachineSettings, Settings, hash};
 
 /// Arguments on which no result depends but for its form, place and time, by their long names.
-const NO_SETTINGS: [&str; 20] = [
+const NO_SETTINGS: [&str; 22] = [
     "settings",
     "json",
     "csv",
@@ -28,6 +28,8 @@ const NO_SETTINGS: [&str; 20] = [
     "errata",
     "list",
     "output",
+    "recordings",
+    "recordings-limit",
     "timing",
     "threads",
     "resume",

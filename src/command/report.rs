@@ -58,7 +58,7 @@ pub(super) fn execute(arguments: &ReportArguments, terminal: &mut Terminal) -> R
         true => None,
         false => {
             let bar = terminal.progress("machines", 1);
-            let advice = advise::advise(&job, &mut |done, total| {
+            let advice = advise::advise(&job, None, &mut |done, total| {
                 bar.set_length(total);
                 bar.set_position(done);
             });

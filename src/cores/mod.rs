@@ -8,7 +8,7 @@ mod demand;
 mod text;
 
 use emu::code::Code;
-use emu::machine::{self, Config, RunOptions, RunOutcome};
+use emu::machine::{self, Config, RunOutcome};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -24,6 +24,7 @@ use crate::load::Load;
 use crate::machine::arbiter_note;
 use crate::numeral::share;
 use crate::result::{FormatTable, OperationTimes};
+use crate::sweep::frames::{KeptRecordings, PictureFrames};
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
@@ -133,7 +134,7 @@ const LEVEL: f64 = 0.1;
 const FULL: f64 = 0.98;
 
 /// Measures a load: each machine with one core and with each of the numbers of cores. Whatever only differs in time is
-/// computed once.
+/// computed once, or found among recordings that are kept.
 ///
 /// # Errors
 /// A machine out of its ranges, or a trap.
@@ -142,6 +143,7 @@ pub fn measure(
     load: &Load,
     machines: &[(String, Config)],
     cores: &[u32],
+    kept: Option<KeptRecordings>,
     progress: &mut dyn FnMut(u64),
 ) -> Result<CoresResult, Failure> {
     // One core is the measure of all others, so it is always among them.
@@ -151,9 +153,10 @@ pub fn measure(
     // All machines with all numbers of cores in one run: what only differs in time is computed once.
     let with = |config: &Config| cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>();
     let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
-    let Some(first) = configs.first() else { return Err(no_machine()) };
-    let setup = load.setup(first, RunOptions { engine: load.engine, ..RunOptions::default() });
-    let frames = emu::run_all(&setup, &configs, &load.memory, progress);
+    if configs.is_empty() {
+        return Err(no_machine());
+    }
+    let frames = PictureFrames::new(load, kept).run(&configs, progress);
     let frames = frames.into_iter().collect::<Result<Vec<RunOutcome>, _>>()?;
     // Frames come back in the order of the configurations: machine by machine, fewest cores first.
     let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {

@@ -3,7 +3,6 @@
 
 use std::collections::HashMap;
 
-use emu::machine::RunOptions;
 use scenes::metrics;
 use scenes::model::{Picture, Scene, View};
 use scenes::reference::{Reference, SearchMethod};
@@ -17,6 +16,7 @@ use crate::energy::{EnergyResult, FigureRange};
 use crate::failure::{Exit, Failure};
 use crate::job::Job;
 use crate::load::Load;
+use crate::sweep::frames::PictureFrames;
 
 /// A scene with its pictures in double precision, one for each shift.
 #[derive(Debug)]
@@ -204,8 +204,8 @@ impl<'a> FormatTrials<'a> {
             self.reused += 1;
             return Ok(known);
         }
-        let setup = load.setup(&job.machine, RunOptions { engine: job.engine, ..RunOptions::default() });
-        let frame = emu::run(&setup, load.memory.clone(), &mut |_| {})?;
+        let frames = PictureFrames::new(&load, None).run(std::slice::from_ref(&job.machine), &mut |_| {});
+        let frame = frames.into_iter().next().expect("a machine has a result")?;
         let crop = load.build.crop;
         let words = drawing::colour_words(&image, &frame, &crop);
         let picture = drawing::picture(&image, &words, (crop.width, crop.height));

@@ -3,18 +3,18 @@
 use std::collections::HashMap;
 
 use emu::code::Code;
-use emu::machine::outcome::Method;
-use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
+use emu::machine::{Config, RunOutcome};
 use kernels::build::Crop;
 use kernels::twin::samples::Samples;
-use rayon::prelude::*;
 use scenes::image::MemoryImage;
 use scenes::metrics::{self, PictureError};
 use scenes::model::Picture;
 use scenes::reference::{Reference, SearchMethod};
 
 use super::contents::Contents;
+use super::frames::{FrameResult, KeptRecordings, PictureFrames};
 use super::identity;
+use super::recordings::RecordingStore;
 use super::row::{PointFigures, PointLabels};
 use crate::drawing::{colour_words, part, picture};
 use crate::failure::{Exit, Failure};
@@ -22,10 +22,6 @@ use crate::job::{Job, result_name};
 use crate::load::Load;
 use crate::result::image_hash;
 use crate::settings::Settings;
-
-/// Pixels of the largest picture whose recordings are kept as a whole, for any number of machines: 16 octets a transfer, thousands of transfers
-/// a pixel. Larger ones are handed to some dozens of machines at a time as they are made.
-const MOST_KEPT: u64 = 8_192;
 
 /// Outcome of a point: its labels, and its figures or the reason for which it cannot be drawn.
 pub type GroupResult = (PointLabels, Result<PointFigures, String>);
@@ -37,7 +33,7 @@ pub struct DrawnGroup {
     /// Description of that memory.
     pub image: MemoryImage,
     /// Frame of each point.
-    pub frames: Vec<Result<RunOutcome, RunFailure>>,
+    pub frames: Vec<FrameResult>,
     /// Times that the work items ran: once, again for more machines than take a recording at once, never where all frames were stepped.
     pub recordings: u64,
 }
@@ -56,10 +52,15 @@ pub fn by_recording(points: &[Settings]) -> Vec<Vec<usize>> {
 }
 
 /// Draws points whose settings have the same recording: the job of the first one, and the frames of all or the reason for which there are none.
+/// The recording is in `store`, or is put there, where one is given and the picture is no larger than recordings are kept for.
 ///
 /// # Errors
 /// Files that cannot be read.
-pub fn draw(points: &[&Settings], contents: &Contents) -> Result<(Job, Result<DrawnGroup, Failure>), Failure> {
+pub fn draw(
+    points: &[&Settings],
+    contents: &Contents,
+    store: Option<&RecordingStore>,
+) -> Result<(Job, Result<DrawnGroup, Failure>), Failure> {
     let first = points.first().expect("a group has a point");
     let scene = contents.scene(first)?;
     let job = first.job_of(scene.loaded.clone())?;
@@ -69,7 +70,9 @@ pub fn draw(points: &[&Settings], contents: &Contents) -> Result<(Job, Result<Dr
     };
     // Each machine's frame, from one recording.
     let configs: Vec<Config> = points.iter().map(|settings| settings.machine.config.clone()).collect();
-    let (frames, recordings) = frames(&load, &configs);
+    let kept = store.map(|store| KeptRecordings { store, settings: first });
+    let mut picture = PictureFrames::new(&load, kept);
+    let (frames, recordings) = (picture.run(&configs, &mut |_| {}), picture.recordings);
     Ok((job, Ok(DrawnGroup { load, image, frames, recordings })))
 }
 
@@ -77,9 +80,13 @@ pub fn draw(points: &[&Settings], contents: &Contents) -> Result<(Job, Result<Dr
 ///
 /// # Errors
 /// Files that cannot be read. A scene that does not fit its formats, or a trap, is a result.
-pub fn run(points: &[Settings], contents: &Contents) -> Result<Vec<GroupResult>, Failure> {
+pub fn run(
+    points: &[Settings],
+    contents: &Contents,
+    store: Option<&RecordingStore>,
+) -> Result<Vec<GroupResult>, Failure> {
     let Some(first) = points.first() else { return Ok(Vec::new()) };
-    let (job, drawn) = draw(&points.iter().collect::<Vec<_>>(), contents)?;
+    let (job, drawn) = draw(&points.iter().collect::<Vec<_>>(), contents, store)?;
     let labels = |settings: &Settings| labels(settings, &job);
     let DrawnGroup { load, image, frames, .. } = match drawn {
         Ok(drawn) => drawn,
@@ -135,33 +142,6 @@ pub fn reason(failure: &Failure) -> Option<String> {
         }
         _ => None,
     }
-}
-
-/// Each machine's frame, and how often the work items were recorded.
-fn frames(load: &Load, configs: &[Config]) -> (Vec<Result<RunOutcome, RunFailure>>, u64) {
-    let options = || RunOptions { engine: load.engine, ..RunOptions::default() };
-    let first = load.setup(&configs[0], options());
-    let crop = load.build.crop;
-    // A few machines take recordings as they come; many would have them made again.
-    if configs.len() == 1 || u64::from(crop.width) * u64::from(crop.height) > MOST_KEPT {
-        let (mut frames, mut recordings) = (Vec::with_capacity(configs.len()), 0);
-        for some in configs.chunks(emu::machines_at_once(&load.memory)) {
-            let some = emu::run_all(&first, some, &load.memory, &mut |_| {});
-            recordings += u64::from(some.iter().flatten().any(|frame| frame.method == Method::Replayed));
-            frames.extend(some);
-        }
-        return (frames, recordings);
-    }
-    let step = |setup: &Setup| emu::step(setup, load.memory.clone(), &mut |_| {});
-    let recorded = emu::replay::Recorded::new(&first, &load.memory);
-    let one = |config: &Config| {
-        let setup = load.setup(config, options());
-        match &recorded {
-            Ok(recorded) => recorded.replay(&setup, load.memory.clone())?.or_else(|_| step(&setup)),
-            Err(_) => step(&setup),
-        }
-    };
-    (configs.par_iter().map(one).collect(), recorded.is_ok().into())
 }
 
 fn labels(settings: &Settings, job: &Job) -> PointLabels {

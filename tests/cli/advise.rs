@@ -64,7 +64,7 @@ fn advised(job: &Job, machine: &str, toml: &[String], options: &[String]) -> Job
 fn the_first_advice_and_the_best_pair_are_stepped_in_the_predicted_clocks() {
     for (name, machine) in MACHINES {
         let job = job((10, 8), machine);
-        let advice = advise::advise(&job, &mut |_, _| {}).unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
+        let advice = advise::advise(&job, None, &mut |_, _| {}).unwrap_or_else(|failure| panic!("{name}: {failure:?}"));
         let [first, pair] = [&advice.advice[0], &advice.pairs[0]];
         assert!(first.speed_up > 1.0 && pair.speed_up >= first.speed_up, "{name}: {first:?} {pair:?}");
         for one in [first, pair] {
@@ -79,7 +79,7 @@ fn the_first_advice_and_the_best_pair_are_stepped_in_the_predicted_clocks() {
 
 #[test]
 fn limits_are_those_that_the_machines_were_made_for() {
-    let limit = |machine: &str| advise::advise(&job((24, 18), machine), &mut |_, _| {}).unwrap().now.limit;
+    let limit = |machine: &str| advise::advise(&job((24, 18), machine), None, &mut |_, _| {}).unwrap().now.limit;
     assert_eq!(limit(MACHINES[0].1), Bottleneck::Bus);
     assert_eq!(limit(MACHINES[4].1), Bottleneck::Computing);
 }
@@ -89,7 +89,7 @@ fn the_pair_found_by_hand_is_matched() {
     // 8 octets a beat and 4 KiB for triangles, in the tree of the report's depth: the bus was full, and 16 cores have work then.
     for cores in [4, 16] {
         let job = job((40, 30), &format!("cores = {cores}\n"));
-        let advice = advise::advise(&job, &mut |_, _| {}).unwrap();
+        let advice = advise::advise(&job, None, &mut |_, _| {}).unwrap();
         let by_hand = "cache = { octets = 4096, kind = \"triangles\" }\nbus = { octets_per_beat = 8 }\n";
         let machine = Config::parse(&Source::new("m.toml", format!("cores = {cores}\n{by_hand}"))).unwrap();
         let (load, _) = Load::picture(&job).unwrap();

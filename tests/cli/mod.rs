@@ -19,6 +19,7 @@ mod messages;
 mod numbers;
 mod pixel;
 mod programs;
+mod recordings;
 mod render;
 mod report;
 mod scene;

@@ -84,6 +84,11 @@ impl Tally {
         &self.passes
     }
 
+    /// Losses of the results of each slot.
+    pub fn slot_losses(&self) -> &[Losses] {
+        &self.losses
+    }
+
     /// Losses of the results of each word, those of its body included.
     pub fn losses(&self, code: &Code) -> Vec<Losses> {
         let mut words = vec![Losses::default(); code.words() as usize];

@@ -68,9 +68,9 @@ impl Task for CountTask<'_> {
             Some(reason) => Err(reason),
             None => Ok(FrameTotals {
                 memory: totals.memory,
-                tally: totals.tally,
-                profile: totals.profile,
-                kinds: totals.kinds,
+                tally: totals.items.tally,
+                profile: totals.items.profile,
+                kinds: totals.items.kinds,
                 item_count,
             }),
         }

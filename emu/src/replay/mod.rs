@@ -7,6 +7,7 @@ mod count;
 mod cursor;
 mod feed;
 mod item;
+mod kept;
 mod prerun;
 mod record;
 mod recorded;
@@ -20,6 +21,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use isa::Class;
 
 pub use count::{FrameTotals, count};
+pub use kept::RECORDING_FORMAT;
 pub use recorded::Recorded;
 pub use recording::Reason;
 
@@ -36,7 +38,7 @@ use crate::semantics::Watch;
 use cursor::{ItemCursor, Replayer};
 use feed::{Batch, Feed};
 use item::RecordLevel;
-use prerun::PrerunTotals;
+use prerun::ItemTotals;
 use record::{Prefix, Recorder};
 
 /// Batches that may wait for a machine.
@@ -90,7 +92,7 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     memory: &Memory,
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
-) -> (PrerunTotals, Vec<Replayed>) {
+) -> (ItemTotals, Vec<Replayed>) {
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
     let recorded_cores = setups[0].config.cores;
@@ -117,7 +119,7 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
         let mut endings = vec![on_clock::<T, O>(first, memory.clone(), arithmetic, feed, progress)];
         let panicless = "a machine does not panic";
         endings.extend(others.into_iter().map(|other| other.join().expect(panicless)));
-        (prerun.join().expect("the prerun does not panic"), endings)
+        (prerun.join().expect("the prerun does not panic").items, endings)
     })
 }
 
@@ -151,7 +153,7 @@ fn on_clock<T: Watch, O: Observer>(
 }
 
 /// The frame with what the cores counted, which the replay does not know.
-pub(crate) fn with_counts(EndedRun { frame, logs }: EndedRun, setup: &Setup, totals: &PrerunTotals) -> RunOutcome {
+pub(crate) fn with_counts(EndedRun { frame, logs }: EndedRun, setup: &Setup, totals: &ItemTotals) -> RunOutcome {
     let timing = setup.config.timing();
     let code = Code::new(setup.core, setup.isa, timing);
     let main_code = Code::new(setup.main, setup.isa, timing);

@@ -123,7 +123,7 @@ fn has_too_many_paths<T: Watch, O: Observer>(recorders: &mut [Recorder<T, O>]) -
 }
 
 /// Totals of all work items together.
-pub struct PrerunTotals {
+pub struct ItemTotals {
     /// Their passes.
     pub tally: Tally,
     /// Their octets by kind.
@@ -132,6 +132,12 @@ pub struct PrerunTotals {
     pub profile: Option<Profile>,
     /// Meaning of the numbers in recordings, by recorder, where clocks were measured.
     pub keys: Vec<ClockKeys>,
+}
+
+/// Totals of a prerun, and how it ended.
+pub struct PrerunTotals {
+    /// Those of all work items.
+    pub items: ItemTotals,
     /// Global memory, with all answers in it where all of them came.
     pub memory: Memory,
     /// End of the main processor's program.
@@ -182,16 +188,16 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     };
     // Add up what all threads counted; sums do not depend on who recorded what
     let (tally, kinds, keys) = (Tally::new(&core_code), Kinds::new(&setup.kinds), Vec::new());
-    let mut totals = PrerunTotals { tally, kinds, profile: None, keys, memory, end };
+    let mut items = ItemTotals { tally, kinds, profile: None, keys };
     for mut recorder in recorders {
         let tally = recorder.take_tally();
-        totals.tally.merge(&tally);
-        totals.kinds.merge(recorder.kinds.totals());
-        totals.keys.extend(recorder.clock_keys());
-        match (&mut totals.profile, recorder.observer.into_profile(&core_code, &tally)) {
+        items.tally.merge(&tally);
+        items.kinds.merge(recorder.kinds.totals());
+        items.keys.extend(recorder.clock_keys());
+        match (&mut items.profile, recorder.observer.into_profile(&core_code, &tally)) {
             (Some(profile), Some(more)) => profile.merge(&more),
             (profile, more) => *profile = more,
         }
     }
-    totals
+    PrerunTotals { items, memory, end }
 }

@@ -6,21 +6,24 @@ use std::sync::mpsc::channel;
 
 use super::feed::{Batch, Feed};
 use super::item::RecordLevel;
-use super::prerun::{self, PrerunTotals};
+use super::prerun::{self, ItemTotals, PrerunTotals};
 use super::record::Prefix;
 use super::recording::Reason;
 use crate::code::octets::Memory;
-use crate::engine::Task;
+use crate::engine::{Pause, Task};
 use crate::machine::{RunFailure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::Observer;
 use crate::semantics::Watch;
 
 /// All work items of a frame.
 pub struct Recorded {
-    prefix: Prefix,
-    cores: u32,
-    batches: Vec<Arc<Batch>>,
-    totals: PrerunTotals,
+    pub(super) prefix: Prefix,
+    /// Number of cores that they were recorded with.
+    pub(super) cores: u32,
+    pub(super) batches: Vec<Arc<Batch>>,
+    pub(super) totals: ItemTotals,
+    /// The main processor's program came to its end, so these are all there are.
+    pub(super) is_whole: bool,
 }
 
 impl Recorded {
@@ -72,7 +75,8 @@ impl Task for RecordTask<'_> {
         if let Some(Err(reason)) = batches.last().map(AsRef::as_ref) {
             return Err(reason);
         }
-        Ok(Recorded { prefix, cores: setup.config.cores, batches, totals })
+        let PrerunTotals { items: totals, end, .. } = totals;
+        Ok(Recorded { prefix, cores: setup.config.cores, batches, totals, is_whole: end == Pause::Halt })
     }
 }
 

@@ -28,6 +28,13 @@ impl Message {
         Message { vectors, length: N as u8 }
     }
 
+    /// A message of one to five vectors; `None` for another number of them.
+    pub fn of_vectors(sent: &[Vector]) -> Option<Message> {
+        let mut vectors = [[0; 3]; LONGEST];
+        vectors.get_mut(..sent.len()).filter(|_| !sent.is_empty())?.copy_from_slice(sent);
+        Some(Message { vectors, length: sent.len() as u8 })
+    }
+
     /// Length on the bus.
     pub const fn octets(&self) -> u32 {
         12 * self.length as u32

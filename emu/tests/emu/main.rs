@@ -4,6 +4,7 @@ mod alike;
 mod bus;
 mod clocks;
 mod engine;
+mod kept;
 mod machine;
 mod meanings;
 mod messages;

@@ -36,7 +36,7 @@ pub fn setup<'a>(config: &'a Config, isa: &'a Isa, core: &'a Program, main: &'a 
 }
 
 /// A work item that wanders: what it reads decides where it goes on, how long it computes and how much it loads.
-fn wander(steps: i32, spin: i32, octets: i32) -> Program {
+pub fn wander(steps: i32, spin: i32, octets: i32) -> Program {
     program(|p| {
         p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[4, 0, 0]).emit(Op::mov, &[9, 4]);
         p.repeat(1, steps, |p| {

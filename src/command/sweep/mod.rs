@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use messages::Diagnostic;
 
+use crate::arguments::RecordingArguments;
 use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::numeral::{count, grouped};
@@ -44,6 +45,8 @@ pub struct SweepArguments {
     /// Table: .csv, .jsonl or .parquet [default: the study's name with .csv, in the current folder].
     #[arg(short, long, value_name = "FILE", value_parser = table)]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    recordings: RecordingArguments,
     #[command(subcommand)]
     command: Option<SweepCommand>,
 }
@@ -87,7 +90,8 @@ fn whole(arguments: &SweepArguments, terminal: &mut Terminal) -> Result<Exit, Fa
     files::check_spared([output.as_path()], [path]).map_err(Failure::usage)?;
     let plan = planned(&study, &contents, terminal)?;
     let folder = output.with_extension("parts");
-    let ran = run::run(&plan, &folder, Shard::WHOLE, &contents, terminal)?;
+    let store = arguments.recordings.store()?;
+    let ran = run::run(&plan, &folder, Shard::WHOLE, (&contents, store.as_ref()), terminal)?;
     merge::write(&folder, Some(&plan), &output)?;
     terminal.print(&format!("{}\ntable: {}, parts: {}\n", ran.text(), output.display(), folder.display()))?;
     Ok(Exit::Done)

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use messages::{Diagnostic, Report};
 
+use crate::arguments::{RecordingArguments, tell_notes};
 use crate::failure::{Exit, Failure};
 use crate::numeral::{count, grouped};
 use crate::settings::Settings;
@@ -12,6 +13,7 @@ use crate::sweep::contents::Contents;
 use crate::sweep::group;
 use crate::sweep::part;
 use crate::sweep::plan::{PlannedPoint, StudyPlan};
+use crate::sweep::recordings::RecordingStore;
 use crate::sweep::row::PointRow;
 use crate::sweep::shard::Shard;
 use crate::terminal::Terminal;
@@ -19,7 +21,8 @@ use crate::terminal::Terminal;
 const EXAMPLES: &str = "\
 Examples:
   lancer sweep run plan.jsonl --out parts
-  lancer sweep run plan.jsonl --out parts --shard 3/24";
+  lancer sweep run plan.jsonl --out parts --shard 3/24
+  lancer sweep run plan.jsonl --out parts --recordings ~/recordings";
 
 /// Runs the points of a plan that are not in the folder yet.
 ///
@@ -41,6 +44,8 @@ pub struct SweepRunArguments {
     /// Number of shares where the scheduler's variables say which one this is, and not of how many.
     #[arg(long, value_name = "N", conflicts_with = "shard", value_parser = clap::value_parser!(u64).range(1..))]
     shards: Option<u64>,
+    #[command(flatten)]
+    recordings: RecordingArguments,
 }
 
 /// Work that was done.
@@ -49,6 +54,8 @@ pub(super) struct SweepWork {
     points: u64,
     skipped: u64,
     refused: u64,
+    /// Recordings that were in a folder of them; `None` without one.
+    reused: Option<u64>,
 }
 
 impl SweepWork {
@@ -56,8 +63,9 @@ impl SweepWork {
     pub(super) fn text(&self) -> String {
         let refused =
             if self.refused == 0 { String::new() } else { format!(", {} of them refused", grouped(self.refused)) };
+        let reused = self.reused.map_or_else(String::new, |reused| format!(" ({} of them kept)", grouped(reused)));
         format!(
-            "{} from {}{refused}; {} were there",
+            "{} from {}{reused}{refused}; {} were there",
             count(self.points, "point", "points"),
             count(self.recordings, "recording", "recordings"),
             grouped(self.skipped),
@@ -73,17 +81,18 @@ pub(super) fn execute(arguments: &SweepRunArguments, terminal: &mut Terminal) ->
         None => Shard::of_environment(&variable, arguments.shards).map_err(Failure::usage)?,
     };
     let plan = StudyPlan::read(&arguments.plan)?;
-    let work = run(&plan, &arguments.out, shard, &Contents::default(), terminal)?;
+    let store = arguments.recordings.store()?;
+    let work = run(&plan, &arguments.out, shard, (&Contents::default(), store.as_ref()), terminal)?;
     terminal.print(&format!("{}\n", work.text()))?;
     Ok(Exit::Done)
 }
 
-/// Runs a share of a plan.
+/// Runs a share of a plan, with the contents of its files and the recordings that are kept.
 pub(super) fn run(
     plan: &StudyPlan,
     folder: &Path,
     shard: Shard,
-    contents: &Contents,
+    (contents, store): (&Contents, Option<&RecordingStore>),
     terminal: &Terminal,
 ) -> Result<SweepWork, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| {
@@ -92,7 +101,7 @@ pub(super) fn run(
     // Points that are there: a part that was cut short has none.
     let (parts, _) = part::read_all(folder, false)?;
     let known = part::points(&parts);
-    let mut work = SweepWork { recordings: 0, points: 0, skipped: 0, refused: 0 };
+    let mut work = SweepWork { recordings: 0, points: 0, skipped: 0, refused: 0, reused: None };
     let groups: Vec<Vec<&PlannedPoint>> = plan
         .groups()
         .into_iter()
@@ -109,7 +118,8 @@ pub(super) fn run(
         if let Some(first) = group.first() {
             let settings =
                 group.iter().map(|point| plan.settings(point, contents)).collect::<Result<Vec<Settings>, _>>()?;
-            let results = group::run(&settings, contents)?;
+            let results = group::run(&settings, contents, store)?;
+            bar.suspend(|| tell_notes(store, terminal));
             let rows: Vec<PointRow> = group.iter().zip(results).map(|(point, result)| row(point, result)).collect();
             part::write(folder, &first.recording, &rows)?;
             work.recordings += 1;
@@ -119,6 +129,7 @@ pub(super) fn run(
         bar.inc(all);
     }
     bar.finish_and_clear();
+    work.reused = store.map(RecordingStore::reused);
     Ok(work)
 }
 

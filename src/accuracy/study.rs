@@ -101,7 +101,8 @@ pub fn run(
             let mut reference = None;
             for group in groups {
                 let settings: Vec<&Settings> = group.iter().map(|&point| &points[point]).collect();
-                let measured = study.measure(&settings, (contents, store), has_times, (&known.loaded.scene, &mut reference))?;
+                let measured =
+                    study.measure(&settings, (contents, store), has_times, (&known.loaded.scene, &mut reference))?;
                 for (&point, figure) in group.iter().zip(measured) {
                     match figure {
                         Ok(figure) => figures[fitting[point]].push(figure),

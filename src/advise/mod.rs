@@ -288,14 +288,7 @@ fn demand(frame: &RunOutcome, job: &Job, load: &Load) -> PictureDemand {
 
 impl Findings {
     /// Takes the frame of a change.
-    fn take(
-        &mut self,
-        base: &Baseline,
-        change: &Change,
-        machine: &Config,
-        picture: &BuiltPicture,
-        frame: FrameResult,
-    ) {
+    fn take(&mut self, base: &Baseline, change: &Change, machine: &Config, picture: &BuiltPicture, frame: FrameResult) {
         match frame {
             Ok(frame) => self.singles.push((change.clone(), advice(base, change, machine, picture, &frame))),
             Err(failure) => self.refused.push(refused((change.clone(), change::reason(&failure.report())))),

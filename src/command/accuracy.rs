@@ -22,8 +22,8 @@ use crate::accuracy::{
 };
 use crate::arguments::{
     self, ArithmeticArguments, ChartArguments, EffortArguments, FormatArguments, JobArguments, KernelArguments,
-    KernelFileArguments, MachineArguments, MachineKeyArguments, NumberArguments, OverflowArguments, RecordingArguments, SetArguments,
-    SkipArguments, TreeArguments, ViewArguments, tell_notes,
+    KernelFileArguments, MachineArguments, MachineKeyArguments, NumberArguments, OverflowArguments, RecordingArguments,
+    SetArguments, SkipArguments, TreeArguments, ViewArguments, tell_notes,
 };
 use crate::failure::{Exit, Failure};
 use crate::numeral::numbers;

@@ -156,9 +156,8 @@ impl RecordingStore {
         let room = self.lock_named("room");
         let path = self.path(digest);
         let kept = self.make_room(size, &path).map_err(|error| error.to_string()).and_then(|()| {
-            files::write(&path, &whole).map_err(|report| {
-                report.0.into_iter().map(|message| message.message).collect::<Vec<_>>().join("; ")
-            })
+            files::write(&path, &whole)
+                .map_err(|report| report.0.into_iter().map(|message| message.message).collect::<Vec<_>>().join("; "))
         });
         drop(room);
         if let Err(why) = kept {
@@ -186,7 +185,8 @@ impl RecordingStore {
             if all + size <= self.limit {
                 break;
             }
-            fs::remove_file(path).or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
+            fs::remove_file(path)
+                .or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
             all -= octets;
         }
         Ok(())

@@ -138,7 +138,8 @@ fn a_folder_of_recordings_stays_within_its_bound() {
     let limit = sizes.iter().sum::<u64>() - 1;
     let run = |name: &str, limit: u64| {
         let gibibytes = limit as f64 / f64::from(1 << 30);
-        let run = session.run(&format!("sweep study.toml -o {name}.csv --recordings {name} --recordings-limit {gibibytes}"));
+        let run =
+            session.run(&format!("sweep study.toml -o {name}.csv --recordings {name} --recordings-limit {gibibytes}"));
         assert_eq!(run.code, 0, "{}", run.messages);
         assert!(session.read(&format!("{name}.csv")) == plain, "{name}");
         run.messages

@@ -162,7 +162,8 @@ impl<'a, W: Worker> Processor<'a, W> {
     /// has to go on from its own clock.
     pub(super) fn take_back(&mut self, master: &mut W::Master, end: Clocks) -> bool {
         self.used.longest_wait = self.used.longest_wait.max(master.take_longest_wait());
-        let Some(Played { busy, waiting, clock, is_ahead }) = self.worker.take_back(master, end, &mut self.cache) else {
+        let Some(Played { busy, waiting, clock, is_ahead }) = self.worker.take_back(master, end, &mut self.cache)
+        else {
             return false;
         };
         self.used.busy += busy;

@@ -46,9 +46,8 @@ impl Recorded {
     /// item depends on the number of cores or ends in a fault, where the main processor does not come to its end, and where clocks of
     /// functions were measured.
     pub fn encode(&self) -> Option<Vec<u8>> {
-        let is_kept = |item: &Arc<Recording>| {
-            item.end == Pause::Halt && !item.depends_on_cores && item.clocks.is_none()
-        };
+        let is_kept =
+            |item: &Arc<Recording>| item.end == Pause::Halt && !item.depends_on_cores && item.clocks.is_none();
         let batches: Vec<&Vec<Arc<Recording>>> =
             self.batches.iter().map(|batch| batch.as_ref().as_ref().ok()).collect::<Option<_>>()?;
         let is_plain = self.totals.profile.is_none() && self.totals.keys.is_empty();

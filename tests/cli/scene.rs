@@ -56,11 +56,25 @@ fn facts_of_a_scene_have_their_types() {
     assert_eq!(report["tree"]["depth"], 3);
     let text = session.succeed("scene info cornell");
     assert!(text.contains("676 triangles") && text.contains("kd tree: 1,385 nodes"), "{text}");
-    // The formats are those of a picture with the same camera, whatever the word.
-    for options in ["--word 20", "--word 32 --camera perspective", "--word 24 --eye 900,3,-20 --look 0,0,0 --fov 1"] {
-        let info = session.json(&format!("scene info cornell --size 4x3 {options}"));
-        let picture = session.json(&format!("render cornell --size 4x3 --no-error {options}"));
-        assert_eq!(info["formats"], picture["formats"], "{options}");
+    // The formats are those of a picture with the same camera, whatever the word, and of a study of its accuracy.
+    for (scene, word, camera) in [
+        ("cornell", 20, ""),
+        ("sphereflake", 32, ""),
+        ("sphereflake", 24, "--camera perspective"),
+        ("cornell", 32, "--camera perspective"),
+        ("cornell", 24, "--eye 900,3,-20 --look 0,0,0 --fov 1"),
+    ] {
+        let info = session.json(&format!("scene info {scene} --size 4x3 --word {word} {camera}"));
+        let picture = session.json(&format!("render {scene} --size 4x3 --no-error --word {word} {camera}"));
+        assert_eq!(info["formats"], picture["formats"], "{scene} {word} {camera}");
+        let study = session.json(&format!(
+            "accuracy {scene} --size 4x3 --words {word} --profiles vector --roundings RND --layouts wide --bounces 5 --cutoffs 0 --interpolate none {camera}"
+        ));
+        let variants = study["variants"].as_array().expect("a list");
+        assert!(
+            !variants.is_empty() && variants.iter().all(|variant| variant["formats"] == info["formats"]),
+            "{study}"
+        );
     }
     assert!(session.json("scene info empty")["bounds"].is_null());
 }

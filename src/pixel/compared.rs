@@ -86,7 +86,7 @@ impl RawScales {
 
     /// A distance in scene units.
     pub fn distance_value(&self, raw: i32) -> f64 {
-        real(raw, self.formats.t)
+        real(raw, self.formats.t) / self.grid.stretch
     }
 }
 

@@ -4,7 +4,7 @@
 use scenes::image::MemoryImage;
 use scenes::model::Vec3;
 use scenes::reference::{RayKind, ReferenceHit, ReferenceLight, ReferenceRay};
-use scenes::vector::{add, dot, scale, shifted, sub};
+use scenes::vector::{add, dot, scale, sub};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -271,8 +271,7 @@ impl Explainer<'_> {
             let origin = self.image.grid.scene(ray.origin);
             let along = dot(sub(origin, first.origin), first.direction);
             // A few steps of the grid are a rounding of the eye, which is to be seen.
-            let step = shifted(1.0, -self.image.grid.position);
-            if along.abs() > ROUNDED_STEPS * step {
+            if along.abs() > ROUNDED_STEPS * self.image.grid.step() {
                 first.origin = add(first.origin, scale(first.direction, along));
                 if let Some(hit) = &mut first.hit {
                     hit.t -= along;

@@ -85,7 +85,7 @@ pub fn translations(seed: u64, trials: Range<u64>) -> TrialTally {
             image::build(&scene, &view, &image::MemoryOptions::default()).map_err(|report| report.render(false))?.grid;
         // On the grid first, so that moving does not round.
         let scene = moved(&scene, |point| grid.scene(grid.raw(point)));
-        let step = f64::from(-grid.position).exp2();
+        let step = grid.step();
         // Steps of the grid are powers of two, so this sum of two doubles is exact.
         let by = Random::new(seed, trial).point(1 << 28).map(|steps| f64::from(steps) * step);
         compare(&scene, &moved(&scene, |point| std::array::from_fn(|k| point[k] + by[k])))

@@ -1,12 +1,15 @@
 //! The grid of a scene: where its origin lies, how fine its steps are, and how coordinates become raw integers. Which number of fraction
 //! bits other quantities have is decided in [`crate::cadrage`].
 //!
-//! The middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles
+//! In words of 32 bits the middle of the scene's box, rounded to the grid, becomes 0, and the steps are the smallest power of two that keeps the triangles
 //! within |x| <= 2^(word-2) - 4 raw. The eye takes no part: rays start where they enter the triangles' box. A light is near if its way to all points of the box is within
 //! 2^(word-1) - 8 raw along each axis, since no ray starts at a light; steps are twice as long where that makes all lights near. Where it does not, the
-//! far ones have longer steps of their own ([`Grid::light`]), so lights take one bit from the mesh at most. Everything is computed relative to the box and relative to its largest
+//! far ones have longer steps of their own ([`Grid::light`]), so lights take one bit from the mesh at most. In shorter words, which have no part of a bit to give away,
+//! lights take none, and steps are shorter than the power of two where the box leaves room (`fit.rs`). Everything is computed relative to the box and relative to its largest
 //! coordinate's power of two, so a scene multiplied by 2^k, or moved by whole steps (as far as double precision holds the moved coordinates exactly),
 //! gives the same raw integers.
+
+mod fit;
 
 use messages::{Diagnostic, Report};
 
@@ -23,8 +26,11 @@ pub const FEWEST_BITS: u32 = 8;
 pub struct Grid {
     /// Bits of a raw coordinate, with its sign.
     pub word: u32,
-    /// Raw units in a scene unit, as a power of two: raw = (x - centre) 2^position.
+    /// Raw units in a scene unit, as a power of two, but for the stretch: raw = (x - centre) 2^position stretch.
     pub position: i32,
+    /// Factor by which steps are shorter than 2^-position: 1 in words of 32 bits, else 1 up to about 2. In programs, whose positions and distances are
+    /// multiples of 2^-position, a scene unit is this long.
+    pub stretch: f64,
     /// Box of the triangles, raw: where rays start and end.
     pub reach: Bounds,
     /// Along each axis the longest way within that box, or from it to a light without longer steps, raw.
@@ -33,8 +39,10 @@ pub struct Grid {
     corners: Corners,
     /// Coordinates are multiplied by 2^-unit before anything else, which makes the largest less than 1.
     unit: i32,
-    /// The point that becomes 0, after that multiplication.
-    middle: Vec3,
+    /// The point that everything is computed from, after that multiplication.
+    base: Vec3,
+    /// That point's distance from raw 0, in raw units.
+    offset: Vec3,
 }
 
 /// Position of a light, in steps of its own.
@@ -54,6 +62,23 @@ impl Grid {
     /// the longest side of the triangles' box keeps fewer than [`FEWEST_BITS`] bits, that is, is shorter than 2^8 raw. Words of less than 12
     /// bits, which hold no such box beside much else, need 2^(word-4). A box that is a single point has nothing to lose and passes.
     pub fn new(scene: &Scene, view: &View, word: u32, position: Option<i32>) -> Result<Grid, Report> {
+        Grid::chosen(scene, view, (word, position), word < fit::LONGEST)
+    }
+
+    /// The grid with steps of a power of two in any word, for layouts that round coordinates once more and so move corners out of a box that fills the word.
+    ///
+    /// # Errors
+    /// Those of [`Grid::new`].
+    pub fn of_powers(scene: &Scene, view: &View, word: u32, position: Option<i32>) -> Result<Grid, Report> {
+        Grid::chosen(scene, view, (word, position), false)
+    }
+
+    fn chosen(
+        scene: &Scene,
+        view: &View,
+        (word, position): (u32, Option<i32>),
+        is_fitted: bool,
+    ) -> Result<Grid, Report> {
         if !(8..=32).contains(&word) {
             return Err(Diagnostic::error(format!("a word of {word} bits is not supported"))
                 .hint("--word takes 8 to 32")
@@ -83,7 +108,12 @@ impl Grid {
         };
         let has_near_lights = |grid: &Grid| scene.lights.iter().all(|light| grid.light(light.position).exponent == 0);
         let coarser = || grid(power - 1).filter(has_near_lights);
-        let best = if has_near_lights(&finest) { finest } else { coarser().unwrap_or(finest) };
+        let fitted = if is_fitted { fit::fitted(&finest, scene, view) } else { None };
+        let best = match fitted {
+            Some(fitted) => fitted,
+            None if is_fitted || has_near_lights(&finest) => finest,
+            None => coarser().unwrap_or(finest),
+        };
         // A format that the user sets may be coarser than the finest, and is refused if it does not fit.
         let mut chosen = match position {
             Some(position) => grid(position.clamp(-5000, 5000) + unit).ok_or_else(|| {
@@ -109,13 +139,14 @@ impl Grid {
     /// The grid with 2^power steps in a unit; `None` when the box does not fit.
     fn with(box_down: Corners, corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
         let limit = ((1i64 << (word - 2)) - 4) as f64;
-        let middle = AXES.map(|k| rounded_middle(box_down.0[k], box_down.1[k], power));
-        let raw = |at: Vec3| AXES.map(|k| nearest(shifted(at[k] - middle[k], power)));
+        let base = AXES.map(|k| rounded_middle(box_down.0[k], box_down.1[k], power));
+        let raw = |at: Vec3| AXES.map(|k| nearest(shifted(at[k] - base[k], power)));
         let (low, high) = (raw(box_down.0), raw(box_down.1));
         let is_inside = AXES.iter().all(|&k| low[k] >= -limit && high[k] <= limit);
-        let span = AXES.map(|k| (high[k] - low[k]) as u32);
         let reach = Bounds { low: low.map(|x| x as i32), high: high.map(|x| x as i32) };
-        is_inside.then_some(Grid { word, position: power - unit, reach, span, corners, unit, middle })
+        let span = AXES.map(|k| (high[k] - low[k]) as u32);
+        let (position, stretch, offset) = (power - unit, 1.0, [0.0; 3]);
+        is_inside.then_some(Grid { word, position, stretch, reach, span, corners, unit, base, offset })
     }
 
     /// A light on the grid, in the finest steps in which the way from any point of the box to it fits: 2^(word-1) - 8 along each axis, since no ray starts
@@ -129,7 +160,9 @@ impl Grid {
         let power = self.position + self.unit;
         // Both are scaled before they are subtracted, which gives the same: a light may be so far that it leaves double precision in raw units.
         let place = |exponent: i32| {
-            AXES.map(|k| shifted(position[k], self.position - exponent) - shifted(self.middle[k], power - exponent))
+            let from_base =
+                AXES.map(|k| shifted(position[k], self.position - exponent) - shifted(self.base[k], power - exponent));
+            AXES.map(|k| from_base[k] * self.stretch + shifted(self.offset[k], -exponent))
         };
         let fits = |exponent: i32| {
             let at = place(exponent).map(nearest);
@@ -148,7 +181,10 @@ impl Grid {
 
     /// A point relative to the grid's origin in raw units, not rounded.
     pub fn local(&self, point: Vec3) -> Vec3 {
-        AXES.map(|k| shifted(shifted(point[k], -self.unit) - self.middle[k], self.position + self.unit))
+        AXES.map(|k| {
+            let from_base = shifted(shifted(point[k], -self.unit) - self.base[k], self.position + self.unit);
+            from_base * self.stretch + self.offset[k]
+        })
     }
 
     /// A point on the grid: the nearest raw coordinates, ties up, saturated to the word.
@@ -160,9 +196,14 @@ impl Grid {
     /// The point of the scene that raw coordinates stand for.
     pub fn scene(&self, raw: [i32; 3]) -> Vec3 {
         AXES.map(|k| {
-            let step = shifted(f64::from(raw[k]), -(self.position + self.unit));
-            shifted(step + self.middle[k], self.unit)
+            let from_base = (f64::from(raw[k]) - self.offset[k]) / self.stretch;
+            shifted(shifted(from_base, -(self.position + self.unit)) + self.base[k], self.unit)
         })
+    }
+
+    /// Length of a step in scene units.
+    pub fn step(&self) -> f64 {
+        shifted(1.0 / self.stretch, -self.position)
     }
 
     /// The point of the scene that lies at raw 0.

@@ -169,8 +169,9 @@ impl MemoryImage {
 /// name, coefficients that do not fit their format, leaves with more triangles than a node can count, and an image beyond 32-bit addresses.
 pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<MemoryImage, Report> {
     let layout = options.layout;
-    let grid = Grid::new(scene, view, options.word, options.formats.position)?;
     let shift = layout.coordinate_shift(options.word);
+    let grid = if shift == 0 { Grid::new } else { Grid::of_powers };
+    let grid = grid(scene, view, options.word, options.formats.position)?;
     // Leave out first what the layout does not store, so that tree, boxes and kernels all see the same corners
     let vertices: Vec<[i32; 3]> = scene.vertices.iter().map(|&vertex| stored_place(&grid, layout, vertex)).collect();
     let mesh = GridMesh { vertices: &vertices, triangles: &scene.triangles };

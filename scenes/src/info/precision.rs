@@ -6,12 +6,15 @@ use serde::Serialize;
 use crate::image::MemoryImage;
 use crate::model::{Scene, Vec3};
 use crate::read::mesh::is_flat;
+use crate::vector::shifted;
 
 /// Distances by which vertices move when they are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Precision {
     /// Distance of neighbouring stored coordinates, in scene units.
     pub step: f64,
+    /// Factor by which steps are shorter than a power of two ([`crate::grid::Grid::stretch`]).
+    pub stretch: f64,
     /// Longest side of the triangles' box in such steps.
     pub steps: u64,
     /// Largest distance between a triangle's corner and where it is stored, in scene units.
@@ -58,7 +61,8 @@ impl Precision {
             if side > 0.0 { distance / side } else { 0.0 }
         };
         Precision {
-            step: f64::from(shift as i32 - image.formats.position).exp2(),
+            step: shifted(image.grid.step(), shift as i32),
+            stretch: image.grid.stretch,
             steps: u64::from(longest) >> shift,
             largest_move,
             rms_move,
@@ -98,7 +102,9 @@ mod tests {
     fn shorter_words_move_corners_further() {
         let of = |word| precision("sphereflake", MemoryOptions { word, ..MemoryOptions::default() });
         let (long, short) = (of(32), of(16));
-        assert_eq!(short.step, long.step * 65_536.0);
+        // A bit is the near lights', which short words do not give away, and less than another one the stretch's.
+        assert_eq!((short.step * short.stretch, long.stretch), (long.step * 32_768.0, 1.0));
+        assert!((1.0..2.0).contains(&short.stretch), "{}", short.stretch);
         // Half a step along each of three axes is the worst.
         for precision in [long, short] {
             assert!(precision.largest_move <= 0.75_f64.sqrt() * precision.step * 1.000_001);
@@ -111,7 +117,8 @@ mod tests {
     #[test]
     fn the_reports_layout_has_the_steps_of_16_bits() {
         let of = |layout, word| precision("terrain", MemoryOptions { layout, word, ..MemoryOptions::default() });
-        assert_eq!(of(Layout::Report, 32).step, of(Layout::Report, 16).step);
+        let [long, middle, short] = [32, 24, 16].map(|word| of(Layout::Report, word));
+        assert_eq!((long.step, middle.step, middle.stretch), (short.step * short.stretch, long.step, 1.0));
         assert!(of(Layout::Report, 32).rms_move > 1000.0 * of(Layout::Wide, 32).rms_move);
     }
 

@@ -70,9 +70,9 @@ Structures follow each other without gaps too, in this order; each kind starts a
 ";
 
 const FAR: &str = "\
-A light is near if its way to every point of the scene's box is within 2^(w-1) - 8 steps of the grid along each axis. Where one bit less for
-positions does not make all lights of a scene near, all have the longer structure, and the far ones have steps of their own, the finest powers of two in
-which the way fits. So lights take at most one bit from the mesh, and lose none themselves, however far away they stand.
+A light is near if its way to every point of the scene's box is within 2^(w-1) - 8 steps of the grid along each axis. In words of 32 bits
+positions have one bit less where that makes all lights near. Else all lights have the longer structure, and the far ones have steps of their own, powers of two of the
+grid's, the finest ones in which the way fits. So lights take at most one bit from the mesh, none in short words, and lose none themselves, however far away they stand.
 ";
 
 const FORMATS: &str = "
@@ -82,7 +82,7 @@ or set with `--format`:
 
 | format | what has it | default in a word of `w` bits |
 | --- | --- | --- |
-| position | coordinates, relative to the middle of the scene's box | the finest power of two with the triangles within 2^(w-2), or one bit less where that brings the way to each light within 2^(w-1) |
+| position | coordinates, relative to the middle of the scene's box | the finest power of two with the triangles within 2^(w-2), or, of 32 bits, one less where that brings the way to each light within 2^(w-1); words below 32 bits have steps up to twice as fine ([exactness.md](exactness.md)), but not where the layout `report` shifts |
 | weight | material coefficients and colours, 0 to 1 | w - 2 |
 | colour | light colours and pixels | the most that hold the brightest sum, at most w - 3 |
 | index | indices of refraction | w - 4 |

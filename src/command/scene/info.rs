@@ -133,11 +133,12 @@ fn text(facts: &SceneInfo) -> String {
     let formats: Vec<String> = facts.formats.0.iter().skip(1).map(|(name, bits)| format!("{name} {bits}")).collect();
     text += &format!("formats: word {}, fraction bits {}\n", facts.formats.0[0].1, formats.join(", "));
     let precision = &facts.precision;
+    let divided = if precision.stretch == 1.0 { String::new() } else { format!(" / {:.4}", precision.stretch) };
     text + &format!(
-        "grid: steps of 2^{} = {:.3e}, the box's longest side is {} steps;\n\
+        "grid: steps of 2^{}{divided} = {:.3e}, the box's longest side is {} steps;\n\
          corners move by up to {:.3e}, {:.3e} of that side (rms {:.3e}, {:.3e} of it)\n\
          {} without area, and {} that lose it on the grid\n",
-        precision.step.log2(),
+        (precision.step * precision.stretch).log2().round(),
         precision.step,
         grouped(precision.steps),
         precision.largest_move,

@@ -108,7 +108,7 @@ impl<'a> PictureFrames<'a> {
             Some(KeptRecordings { store, settings }) => {
                 let mut settings = settings.clone();
                 settings.machine.config.clone_from(config);
-                store.recording(&identity::recording(&settings), &setup, memory).map(|found| found.recorded)
+                store.recording(&identity::recording(&settings), &setup, memory)
             }
             None => Recorded::new(&setup, memory),
         };

@@ -47,14 +47,6 @@ pub struct RecordingStore {
     notes: Mutex<Vec<String>>,
 }
 
-/// A recording with where it came from.
-pub struct FoundRecording {
-    /// The recording.
-    pub recorded: Recorded,
-    /// Nothing ran for it: it was in the folder.
-    pub is_reused: bool,
-}
-
 impl RecordingStore {
     /// The store in a folder, which is made where it is not there. `limit` is in octets.
     ///
@@ -74,7 +66,7 @@ impl RecordingStore {
     ///
     /// # Errors
     /// Reason for which the work items cannot be replayed.
-    pub fn recording(&self, digest: &[u8; 32], setup: &Setup, memory: &Memory) -> Result<FoundRecording, Reason> {
+    pub fn recording(&self, digest: &[u8; 32], setup: &Setup, memory: &Memory) -> Result<Recorded, Reason> {
         let mut found = self.read(digest, setup);
         let mut lock = None;
         if !matches!(found, Ok(Some(_))) {
@@ -85,7 +77,7 @@ impl RecordingStore {
         match found {
             Ok(Some(recorded)) => {
                 self.reused.fetch_add(1, Ordering::Relaxed);
-                return Ok(FoundRecording { recorded, is_reused: true });
+                return Ok(recorded);
             }
             Ok(None) => {}
             Err(why) => self.note(format!("{} is recorded anew: {why}", self.path(digest).display())),
@@ -95,7 +87,7 @@ impl RecordingStore {
             self.keep(digest, &octets);
         }
         drop(lock);
-        Ok(FoundRecording { recorded, is_reused: false })
+        Ok(recorded)
     }
 
     /// Recordings that were in the folder.

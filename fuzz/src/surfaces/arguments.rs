@@ -29,7 +29,9 @@ const SETTINGS: &str = "SETTINGS.toml";
 
 /// File of the settings of a picture.
 static STORED: LazyLock<PathBuf> = LazyLock::new(|| {
-    let path = root().join("target/fuzz").join(SETTINGS);
+    let folder = root().join("target/fuzz");
+    std::fs::create_dir_all(&folder).expect("it can be made");
+    let path = folder.join(SETTINGS);
     std::fs::write(&path, toml::to_string(&Settings::default()).expect("settings are TOML"))
         .expect("it can be written");
     path
@@ -95,8 +97,7 @@ fn parse(input: &[u8], seen: &mut Seen) {
             seen.count("words", text.lines().count());
             assert!(serde_json::to_value(&given).is_ok(), "options are settings");
             let shown = format!("{arguments:?}");
-            let is_planted = ["Some(7)", "Some(31)", "Some(64)"].iter().any(|number| shown.contains(number));
-            seen.plant(PlantedFault::Panic, is_planted);
+            seen.plant(PlantedFault::Panic, shown.contains("threads: Some("));
         }
     }
 }

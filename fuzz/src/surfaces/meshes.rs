@@ -135,7 +135,7 @@ fn read_stl(input: &[u8], seen: &mut Seen) {
 
 fn read_ply(input: &[u8], seen: &mut Seen) {
     let Some(mesh) = mark(ply::parse(input, "a.ply"), input, seen) else { return };
-    seen.plant(PlantedFault::Large, mesh.triangles.len() == 1 && mesh.vertices.len() != 3);
+    seen.plant(PlantedFault::Large, mesh.triangles.len() == 1 && !mesh.warnings.0.is_empty());
 }
 
 fn read_obj(input: &[u8], seen: &mut Seen) {
@@ -150,7 +150,7 @@ fn read_obj(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_mtl(input: &[u8], seen: &mut Seen) {
-    const USER: &[u8] = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl material_0\nf 2 3 1\nusemtl material_1\nf 3 2 1\nusemtl material_2\nf 3 1 2\nusemtl material_3\nf 1 3 2\nusemtl red brick\nf 3 1 2\n";
+    const USER: &[u8] = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl material_0\nf 2 3 1\nusemtl material_1\nf 3 2 1\nusemtl material_6\nf 3 1 2\nusemtl material_7\nf 1 3 2\nusemtl red brick\nf 3 1 2\n";
     let mut open = |name: &str| Ok((name.to_owned(), input.to_vec()));
     let Some(mesh) = mark(obj::parse(USER, "a.obj", Some(&mut open)), input, seen) else { return };
     seen.plant(PlantedFault::Endless, mesh.materials.iter().any(|material| material.index > 2.0));

@@ -130,6 +130,7 @@ fn read_words(input: &[u8], seen: &mut Seen) {
             let assembled = asm::assemble(&source, isa, &asm::Options::default());
             let words = assembled.unwrap_or_else(|report| panic!("{}", report.render(false))).program.words;
             assert!(words == program.words, "words are shown as text that assembles to themselves");
+            let _ = asm::disassemble_program(&program, isa);
         }
         let last = program.words.last().and_then(|&word| isa.decode(word));
         seen.plant(PlantedFault::Abort, last.is_some_and(|last| &*isa.definition(last.op).name == "vcross"));
@@ -137,6 +138,14 @@ fn read_words(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_hexadecimal(input: &[u8], seen: &mut Seen) {
+    // Octets of one form under the name of another.
+    for name in ["a.bin", "a.o"].map(Path::new) {
+        let form = ProgramFile::of(name).expect("the ending is one of programs");
+        match form.decode(name, input.to_vec()) {
+            Err(report) => seen.report(&report, input),
+            Ok(program) => drop(form.encode(&program)),
+        }
+    }
     match ProgramFile::Hexadecimal.decode(Path::new("a.hex"), input.to_vec()) {
         Err(report) => seen.report(&report, input),
         Ok(program) => {

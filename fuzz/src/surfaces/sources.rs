@@ -152,7 +152,7 @@ fn assemble(input: &[u8], seen: &mut Seen) {
             assert!(again == assembled.program, "a program is read as it was written");
         }
         let program = &assembled.program;
-        seen.plant(PlantedFault::Panic, program.regions.len() == 2 && program.words.len() % 3 == 0);
+        seen.plant(PlantedFault::Panic, program.regions.len() == 2);
     }
 }
 

@@ -117,7 +117,7 @@ fn read_plan(input: &[u8], seen: &mut Seen) {
             plan.write(&mut octets).expect("memory can be written");
             let again = StudyPlan::parse(&String::from_utf8_lossy(&octets), "b.jsonl");
             assert!(again.is_ok_and(|again| again == plan), "a plan is read as it was written");
-            seen.plant(PlantedFault::Abort, plan.head.repeated > 1);
+            seen.plant(PlantedFault::Abort, plan.points.iter().any(|point| point.recording.len() < 8));
         }
     }
 }

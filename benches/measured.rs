@@ -52,6 +52,12 @@ const PARTS: &[Part] = &[
         commands: &["cargo bench --bench intersection", "cargo bench --bench extension"],
     },
     Part {
+        name: "peers",
+        title: "Loops, beside other emulators",
+        about: "The intersection loop on lancer, on qemu-riscv64 and on wasmi, in turns.",
+        commands: &["benches/peers/run.sh"],
+    },
+    Part {
         name: "trees",
         title: "Trees",
         about: "Building kd trees of landscapes.",

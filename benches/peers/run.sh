@@ -78,7 +78,7 @@ for _ in $(seq "$runs"); do
 done
 
 # The lines of the table: name, nanoseconds, checksum.
-lancer() { # form, engine, name
+lancer() { # form, contender, name
     local time sum
     time=$(sed -n "s/^$1 *$2 *\([0-9.]*\) ns a test.*/\1/p" "$folder/lancer")
     sum=$(sed -n "s/^$1 *checksum //p" "$folder/lancer")
@@ -86,8 +86,8 @@ lancer() { # form, engine, name
     printf '%s\t%s\t%s\n' "$3" "$time" "$sum"
 }
 {
-    lancer rtri fast "lancer, ray-triangle instruction"
-    lancer branchy fast "lancer, branchy"
+    lancer rtri lancer "lancer, ray-triangle instruction"
+    lancer branchy lancer "lancer, branchy"
     lancer branchy native "native code, branchy"
     printf 'qemu-riscv64, branchy\t%s\t%s\n' "$(median < "$folder/riscv.times")" "$(riscv 1)"
     printf 'wasmi, branchy\t%s\t%s\n' "$(median < "$folder/wasm.times")" "$(wasm 1)"

@@ -24,6 +24,7 @@ pub mod extension;
 pub mod failure;
 pub mod files;
 pub mod formats;
+pub mod inject;
 pub mod input;
 pub mod job;
 pub mod load;

@@ -11,6 +11,7 @@ mod contract;
 mod energy;
 mod extension;
 mod faults;
+mod inject;
 mod laws;
 mod profiles;
 mod python;

@@ -18,6 +18,7 @@ mod explain;
 mod explain_pixel;
 mod extension;
 mod formats;
+mod inject;
 pub mod invocation;
 mod machine;
 mod manual;
@@ -95,6 +96,7 @@ enum Command {
     ExplainPixel(Box<explain_pixel::ExplainPixelArguments>),
     Accuracy(Box<accuracy::AccuracyArguments>),
     Formats(formats::FormatsArguments),
+    Inject(Box<inject::InjectArguments>),
     Stress(stress::StressArguments),
     Bench(bench::BenchArguments),
     Diff(diff::DiffArguments),
@@ -193,6 +195,7 @@ pub fn execute(arguments: &Lancer, given: &CommandSettings, terminal: &mut Termi
         Some(Command::Formats(arguments)) => formats::execute(arguments, given, terminal),
         Some(Command::Bench(arguments)) => bench::execute(arguments, given, terminal),
         Some(Command::Diff(arguments)) => diff::execute(arguments, terminal),
+        Some(Command::Inject(arguments)) => inject::execute(arguments, terminal),
         Some(Command::Stress(arguments)) => stress::execute(arguments, given, terminal),
         Some(Command::Arithmetic(arguments)) => arithmetic::execute(arguments, given, terminal),
         Some(Command::Manual(arguments)) => manual::execute(arguments, terminal),

@@ -29,6 +29,9 @@ use crate::difference::{self, DiffResult};
 use crate::extension::{self, ExtensionResult};
 use crate::failure::{Exit, Failure};
 use crate::formats::{self, FormatsResult};
+use crate::inject;
+use crate::inject::result::InjectResult;
+use crate::inject::row::{self, InjectionResult};
 use crate::message::{self, JsonMessage};
 use crate::pixel::{self, PixelExplanation};
 use crate::profiles::{self, Profiles};
@@ -84,6 +87,12 @@ const SCHEMAS: &[Known] = &[
         make: printed::<AccuracyResults, CommandSettings>,
     },
     Known { name: formats::SCHEMA, command: "lancer formats --json", make: printed::<FormatsResult, CommandSettings> },
+    Known { name: inject::SCHEMA, command: "lancer inject --json", make: printed::<InjectResult, Settings> },
+    Known {
+        name: row::ROW_SCHEMA,
+        command: "lancer inject --number N --json",
+        make: printed::<InjectionResult, Settings>,
+    },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: printed::<Catalogue, CommandSettings> },
     Known {
         name: extension::SCHEMA,

@@ -190,7 +190,7 @@ fn sources_stay_short() {
 }
 
 /// Wings of the emulator, each of which uses only itself and those before it.
-const WINGS: [&str; 11] = [
+const WINGS: [&str; 12] = [
     "code",
     "semantics",
     "extension",
@@ -199,6 +199,7 @@ const WINGS: [&str; 11] = [
     "machine",
     "replay",
     "run",
+    "inject",
     "shadow",
     "stepper",
     "conformance",

@@ -1,4 +1,4 @@
-//! Help texts, messages and the examples of `docs/machine.md`, `docs/pixel.md`, `docs/bits.md` and `docs/servers.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test -p lancer help` renews them.
+//! Help texts, messages and the examples of `docs/machine.md`, `docs/pixel.md`, `docs/bits.md`, `docs/inject.md` and `docs/servers.md`, word by word: `tests/cmd/*.trycmd`. `TRYCMD=overwrite cargo test -p lancer help` renews them.
 
 use super::session::Session;
 
@@ -9,6 +9,7 @@ fn help_and_messages_say_what_they_said() {
         .case("docs/machine.md")
         .case("docs/pixel.md")
         .case("docs/bits.md")
+        .case("docs/inject.md")
         .case("docs/servers.md");
 }
 

@@ -2,6 +2,7 @@
 
 use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Verdict};
 use super::config::BusConfig;
+use super::grant_fault::{FaultyArbiter, GrantFault};
 use super::waits::Waits;
 use crate::code::quantity::{Clocks, Octets};
 
@@ -177,6 +178,15 @@ impl Bus {
             waits: vec![Waits::default(); masters as usize],
             circle: (0..u64::from(masters)).cycle().take(4 * masters as usize).collect(),
         }
+    }
+
+    /// The bus with a fault of its grants, where there is one.
+    #[must_use]
+    pub fn with_fault(mut self, fault: Option<GrantFault>) -> Bus {
+        if let Some(fault) = fault {
+            self.arbiter = Box::new(FaultyArbiter::new(self.arbiter, fault));
+        }
+        self
     }
 
     /// A master begins to ask; each has at most one transfer at a time.

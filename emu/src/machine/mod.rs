@@ -7,6 +7,7 @@ pub mod cache;
 pub mod config;
 pub mod course;
 pub(crate) mod finish;
+mod grant_fault;
 pub(crate) mod kinds;
 pub mod mailbox;
 pub mod one_core;
@@ -28,6 +29,7 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
+pub use grant_fault::{GrantFault, GrantFaultKind};
 pub use outcome::{Item, KindUse, Method, ProcessorUse, RunOutcome};
 
 use trace::Window;
@@ -109,6 +111,8 @@ pub struct RunOptions {
     pub simd: Option<HostSimd>,
     /// Programs that run briefly are compiled as well, where that is what the engine does.
     pub is_eager: bool,
+    /// Fault of the bus's grants, on purpose.
+    pub grant_fault: Option<GrantFault>,
 }
 
 impl RunOptions {

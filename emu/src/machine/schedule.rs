@@ -128,7 +128,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             processors,
             shared: Shared::new(memory, cores + 1),
             // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
-            bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)),
+            bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)).with_fault(setup.options.grant_fault),
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             course: setup.options.has_course.then(BusCourse::default),
             kinds: Kinds::new(&setup.kinds),

@@ -47,8 +47,21 @@ impl Recorded {
     /// # Errors
     /// As [`crate::run()`]; the inner error says why this machine would not do what was recorded.
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, RunFailure> {
+        self.replay_with(setup, memory, &mut |_| {})
+    }
+
+    /// Replays them, and tells `progress` the number of work items finished, each time one is.
+    ///
+    /// # Errors
+    /// As [`Recorded::replay`].
+    pub fn replay_with(
+        &self,
+        setup: &Setup,
+        memory: Memory,
+        progress: &mut dyn FnMut(u64),
+    ) -> Result<Result<RunOutcome, Reason>, RunFailure> {
         check(setup)?;
-        match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory }) {
+        match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory, progress }) {
             Ok(ended) => Ok(Ok(super::with_counts(ended?, setup, &self.totals))),
             Err(reason) => Ok(Err(reason)),
         }
@@ -84,6 +97,7 @@ struct ReplayTask<'a> {
     recorded: &'a Recorded,
     setup: &'a Setup<'a>,
     memory: Memory,
+    progress: &'a mut dyn FnMut(u64),
 }
 
 impl Task for ReplayTask<'_> {
@@ -98,6 +112,6 @@ impl Task for ReplayTask<'_> {
         drop(sender);
         let Recorded { prefix, cores, .. } = *self.recorded;
         let feed = Feed::new(prefix, cores, self.setup.config.cores, receiver);
-        super::on_clock::<T, O>(self.setup, self.memory, arithmetic, feed, &mut |_| {})
+        super::on_clock::<T, O>(self.setup, self.memory, arithmetic, feed, self.progress)
     }
 }

@@ -50,6 +50,14 @@ impl Message {
         &self.vectors[..usize::from(self.length)]
     }
 
+    /// The message with flipped bits of one of its words, counted through its vectors.
+    pub(crate) fn flipped(mut self, word: usize, mask: u32) -> Message {
+        if let Some(component) = self.vectors.as_flattened_mut().get_mut(word) {
+            *component ^= mask as i32;
+        }
+        self
+    }
+
     /// The `N` vectors that a receiver takes.
     fn open<const N: usize>(self) -> Result<[Vector; N], Fault> {
         if usize::from(self.length) != N {

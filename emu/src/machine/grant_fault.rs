@@ -1,0 +1,137 @@
+//! Faults of the bus's grants, as an arbiter around the machine's own: from a clock on a grant is lost, the arbiter is stuck, or a master that
+//! has stopped is never heard of again.
+
+use super::arbiter::{Arbiter, BusRequests, NEVER, Verdict};
+use crate::code::quantity::Clocks;
+
+/// Kind of a fault of grants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GrantFaultKind {
+    /// The next grant reaches nobody: the bus is idle for its burst, and the arbiter takes the request for served. A master that asks again after
+    /// some clocks is heard again; 0 for one that never does.
+    Lost {
+        /// Clocks after which the master asks again.
+        retry: Clocks,
+    },
+    /// The arbiter grants to one master, whoever else asks.
+    Stuck,
+    /// A master has stopped, so that it asks no more.
+    Stopped,
+}
+
+/// Fault of grants from a clock on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GrantFault {
+    /// Kind of the fault.
+    pub kind: GrantFaultKind,
+    /// Clock from which it is there.
+    pub at: Clocks,
+    /// The master that an arbiter is stuck at, or that has stopped.
+    pub master: u32,
+}
+
+/// A request whose grant was lost.
+#[derive(Clone, Copy)]
+struct LostRequest {
+    master: u32,
+    arrival: Clocks,
+    /// Clock at which it is made again.
+    again: Clocks,
+}
+
+/// An arbiter with a fault.
+pub(super) struct FaultyArbiter {
+    inner: Box<dyn Arbiter>,
+    fault: GrantFault,
+    lost: Option<LostRequest>,
+}
+
+impl FaultyArbiter {
+    /// An arbiter that is right before its fault.
+    pub fn new(inner: Box<dyn Arbiter>, fault: GrantFault) -> FaultyArbiter {
+        FaultyArbiter { inner, fault, lost: None }
+    }
+
+    /// Decision without a master, which may be asking, up to a clock.
+    fn without(&mut self, master: u32, until: Clocks, clock: Clocks, requests: &BusRequests) -> Verdict {
+        let mut rest = requests.clone();
+        rest.withdraw(master);
+        let verdict = match rest.first_at(clock) {
+            Some(first) if first <= clock => self.inner.choose(clock, &rest),
+            // The bus asks again of itself when another master comes.
+            _ => Verdict::Later(NEVER),
+        };
+        match verdict {
+            Verdict::Later(later) => Verdict::Later(later.min(until)),
+            grant => grant,
+        }
+    }
+
+    fn lose(&mut self, retry: Clocks, clock: Clocks, requests: &BusRequests) -> Verdict {
+        if let Some(LostRequest { master, arrival, again }) = self.lost {
+            let is_hidden = requests.arrival(master) == arrival && clock < again;
+            return match is_hidden {
+                true => self.without(master, again, clock, requests),
+                false => self.inner.choose(clock, requests),
+            };
+        }
+        let verdict = self.inner.choose(clock, requests);
+        if let Verdict::Grant(master) = verdict {
+            let again = if retry == Clocks(0) { NEVER } else { clock + retry };
+            self.lost = Some(LostRequest { master, arrival: requests.arrival(master), again });
+            return Verdict::Later(clock + requests.length(master));
+        }
+        verdict
+    }
+}
+
+impl Arbiter for FaultyArbiter {
+    fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
+        let GrantFault { kind, at, master } = self.fault;
+        if clock < at {
+            return self.inner.choose(clock, requests);
+        }
+        match kind {
+            GrantFaultKind::Lost { retry } => self.lose(retry, clock, requests),
+            GrantFaultKind::Stuck if requests.arrival(master) <= clock => Verdict::Grant(master),
+            GrantFaultKind::Stuck => Verdict::Later(NEVER),
+            GrantFaultKind::Stopped => self.without(master, NEVER, clock, requests),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::code::quantity::Octets;
+    use crate::machine::arbiter::ArbiterKind;
+    use crate::machine::bus::Bus;
+    use crate::machine::config::BusConfig;
+
+    /// Masters and clocks of the grants of three masters that ask at 0 for 10 octets each, one by number.
+    fn grants(kind: GrantFaultKind, master: u32) -> Vec<(u32, u64)> {
+        let config = BusConfig {
+            arbiter: ArbiterKind::FixedPriority,
+            octets_per_beat: 1,
+            clocks_per_beat: 1,
+            ..BusConfig::default()
+        };
+        let fault = GrantFault { kind, at: Clocks(5), master };
+        let mut bus = Bus::new(&config, 3).with_fault(Some(fault));
+        (0..3).for_each(|master| bus.request(master, Clocks(0), Octets(10)));
+        let mut found = Vec::new();
+        while let Some(clock) = bus.next_decision().filter(|&clock| clock < NEVER) {
+            found.extend(bus.decide(clock).map(|grant| (grant.master, grant.start.0)));
+        }
+        found
+    }
+
+    #[test]
+    fn faults_strike_from_their_clock_on() {
+        assert_eq!(grants(GrantFaultKind::Stopped, 2), [(0, 0), (1, 10)]);
+        assert_eq!(grants(GrantFaultKind::Stuck, 2), [(0, 0), (2, 10)]);
+        // The grant to master 1 at 10 is lost, so that master 2 follows when its burst would have ended.
+        assert_eq!(grants(GrantFaultKind::Lost { retry: Clocks(0) }, 0), [(0, 0), (2, 20)]);
+        assert_eq!(grants(GrantFaultKind::Lost { retry: Clocks(50) }, 0), [(0, 0), (2, 20), (1, 60)]);
+    }
+}

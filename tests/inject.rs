@@ -1,6 +1,5 @@
 //! Faults on purpose: the frame that is put together again equals one that is run as a whole, and campaigns do not depend on who runs them.
 
-use emu::engine::Pause;
 use emu::inject::{
     BitFlip, FaultKind, GoldenFrame, HangLimit, InjectedEnd, InjectedFlip, Protection, REGISTER_WORDS, RegisterWord,
     SeenFlip, inject_at,
@@ -87,13 +86,20 @@ fn a_flipped_register_does_what_it_does_on_a_lone_core() {
         // The frame as that core leaves it
         match stepper.end().unwrap() {
             LoneEnd::Halt => {
-                let [answer] = stepper.sent() else { panic!("{flip:?}: {} answers", stepper.sent().len()) };
+                // An answer that goes astray, to the core itself or to another pixel, is the whole machine's business.
+                let [answer] = stepper.sent() else { continue };
                 let [[pixel, ..], colour] = answer.vectors() else { panic!("an answer has two vectors") };
+                if *pixel != golden.message(flip.item).unwrap().first()[0] {
+                    continue;
+                }
                 let mut wanted = golden.memory().clone();
                 wanted.put_words(small.frame.start + 12 * *pixel as u32, colour).unwrap();
                 let InjectedEnd::Frame { memory, .. } = injected.end else { panic!("{flip:?}: {:?}", injected.end) };
                 assert!(memory.unwrap_or(golden.memory().clone()) == wanted, "{flip:?}");
                 seen[usize::from(wanted != *golden.memory())] += 1;
+            }
+            LoneEnd::Fault(Fault::Deadlock) => {
+                assert!(matches!(injected.end, InjectedEnd::Hang { limit: HangLimit::ItemWait, .. }), "{flip:?}");
             }
             LoneEnd::Fault(Fault::StepLimit(_)) => {
                 let limit = HangLimit::ItemSteps;
@@ -111,16 +117,21 @@ fn a_flipped_register_does_what_it_does_on_a_lone_core() {
 }
 
 /// Compares a frame that was put together with one that ran as a whole on the machine.
-fn check_whole(golden: &GoldenFrame, injected: &InjectedFlip, whole: Result<Memory, RunFailure>) -> &'static str {
+fn check_whole(
+    small: &Small,
+    golden: &GoldenFrame,
+    injected: &InjectedFlip,
+    whole: Result<Memory, RunFailure>,
+) -> &'static str {
     let flip = injected.flip;
     match (whole, &injected.end) {
         (Ok(memory), InjectedEnd::Frame { memory: found, .. }) => {
             let mut found = found.clone().unwrap_or(golden.memory().clone());
             // Where nothing else changes, a flip in memory is not shown.
-            if flip.target == FaultKind::Memory && found == *golden.memory() {
+            let is_in_image = flip.target == FaultKind::Memory && !small.frame.contains(&(4 * flip.word));
+            if is_in_image && found == *golden.memory() {
                 let word = found.word(4 * flip.word).unwrap();
-                let is_there = golden.image().word(4 * flip.word).unwrap() == word;
-                found.put_words(4 * flip.word, &[if is_there { word ^ flip.mask as i32 } else { word }]).unwrap();
+                found.put_words(4 * flip.word, &[word ^ flip.mask as i32]).unwrap();
             }
             assert!(found == memory, "{flip:?}");
             if memory == *golden.memory() { "same" } else { "other" }
@@ -156,14 +167,14 @@ fn a_flip_that_lasts_does_what_it_does_in_a_whole_run() {
         let mut memory = small.load.memory.clone();
         let (address, mask) = (4 * injected.flip.word, injected.flip.mask as i32);
         memory.put_words(address, &[memory.word(address).unwrap() ^ mask]).unwrap();
-        seen.push(check_whole(&golden, &injected, run(&setup, memory)));
+        seen.push(check_whole(&small, &golden, &injected, run(&setup, memory)));
     }
     let flips_of_program = flips(&golden, FaultKind::Program, small.load.build.cores.words.len() as u64, 120);
     for injected in inject_at(&golden, &flips_of_program) {
         let mut program = small.load.build.cores.clone();
         program.words[injected.flip.word as usize] ^= injected.flip.mask;
         let whole = run(&Setup { core: &program, ..setup.clone() }, small.load.memory.clone());
-        seen.push(check_whole(&golden, &injected, whole));
+        seen.push(check_whole(&small, &golden, &injected, whole));
     }
     for end in ["same", "other", "trap"] {
         assert!(seen.contains(&end), "{end} is not among the ends");
@@ -182,7 +193,6 @@ fn a_lone_core_halts_where_nothing_flips() {
     let none = BitFlip { target: FaultKind::Registers, item: 3, moment: 5, word: 0, mask: 0 };
     let end = &inject_at(&golden, &[none])[0].end;
     assert_eq!(*end, InjectedEnd::Frame { counts_differ: false, memory: None });
-    assert_ne!(Pause::Halt, Pause::Wait);
 }
 
 #[test]

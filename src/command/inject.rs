@@ -7,6 +7,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use emu::inject::{FaultKind, FlipPattern, FlipShape, Protection};
 use messages::Diagnostic;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::arguments::JobArguments;
 use crate::failure::{Exit, Failure};
@@ -87,6 +89,45 @@ pub struct InjectArguments {
     /// Says beside the results how long the injections took, and how many a minute that is.
     #[arg(long, help_heading = "Results")]
     timing: bool,
+}
+
+/// Settings of a picture, and the faults that are put into it.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub(super) struct InjectSettings {
+    /// The picture.
+    #[serde(flatten)]
+    job: Settings,
+    /// Kinds of faults.
+    kind: Vec<&'static str>,
+    /// Injections of each kind.
+    injections: u64,
+    /// Bits of a word that flip together.
+    bits: u32,
+    /// Places of several bits.
+    pattern: &'static str,
+    /// Beginning of the series of random numbers.
+    seed: u64,
+    /// Protections, such as memory=ecc.
+    protect: Vec<String>,
+    /// Number of the one injection that was run; left out where all were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    number: Option<u64>,
+}
+
+impl InjectSettings {
+    fn new(job: &Job, campaign: &FaultCampaign, number: Option<u64>) -> InjectSettings {
+        let protect = |(kind, protection): (&FaultKind, &Protection)| format!("{}={}", kind.name(), protection.name());
+        InjectSettings {
+            job: Settings::of(job),
+            kind: campaign.kinds.iter().map(|kind| kind.name()).collect(),
+            injections: campaign.injections,
+            bits: campaign.shape.bits,
+            pattern: campaign.shape.pattern.name(),
+            seed: campaign.seed,
+            protect: campaign.protections.iter().map(protect).collect(),
+            number,
+        }
+    }
 }
 
 fn kind() -> impl TypedValueParser<Value = FaultKind> {
@@ -172,7 +213,8 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
                 continue;
             }
             let one = InjectionResult { schema: ROW_SCHEMA, seed: campaign.seed, injection };
-            terminal.print(&result::json(&WithSettings::new(&one, Settings::of(&job))))?;
+            terminal
+                .print(&result::json(&WithSettings::new(&one, InjectSettings::new(&job, &campaign, Some(number)))))?;
         }
         return Ok(Exit::Done);
     }
@@ -189,7 +231,9 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
     }
     files::write_all(&written)?;
     match arguments.json {
-        true => terminal.print(&result::json(&WithSettings::new(&result, Settings::of(&job))))?,
+        true => {
+            terminal.print(&result::json(&WithSettings::new(&result, InjectSettings::new(&job, &campaign, None))))?
+        }
         false if is_taken => {}
         false => terminal.tell(&inject::text(&result))?,
     }

@@ -224,7 +224,10 @@ fn picture(stored: &StoredSettings) -> Result<OptionList, Report> {
     let mut stored = stored.clone();
     // `lancer cores` has lists of machines and of cores beside the settings of a picture.
     let mut more = OptionList::new();
-    for (key, option) in [("machines", "machine"), ("cores", "cores"), ("extension", "file.isa"), ("most", "most")] {
+    // `lancer inject` has what it injects, `lancer extension suggest` a file and a number.
+    let lists = [("machines", "machine"), ("cores", "cores"), ("extension", "file.isa"), ("most", "most")];
+    let faults = ["kind", "injections", "bits", "pattern", "seed", "protect", "number"].map(|name| (name, name));
+    for (key, option) in lists.into_iter().chain(faults) {
         let values = match stored.keys.remove(key) {
             Some(Value::Array(values)) => values,
             value => value.into_iter().collect(),

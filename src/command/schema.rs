@@ -14,6 +14,7 @@ use super::bench::{self, Benches};
 use super::cores::CoresSettings;
 use super::extension::compare::CompareSettings;
 use super::extension::suggest::SuggestSettings;
+use super::inject::InjectSettings;
 use super::invocation::CommandSettings;
 use super::machine::{self, MachineResult};
 use super::run_result::{self, RunResult};
@@ -87,11 +88,11 @@ const SCHEMAS: &[Known] = &[
         make: printed::<AccuracyResults, CommandSettings>,
     },
     Known { name: formats::SCHEMA, command: "lancer formats --json", make: printed::<FormatsResult, CommandSettings> },
-    Known { name: inject::SCHEMA, command: "lancer inject --json", make: printed::<InjectResult, Settings> },
+    Known { name: inject::SCHEMA, command: "lancer inject --json", make: printed::<InjectResult, InjectSettings> },
     Known {
         name: row::ROW_SCHEMA,
         command: "lancer inject --number N --json",
-        make: printed::<InjectionResult, Settings>,
+        make: printed::<InjectionResult, InjectSettings>,
     },
     Known { name: stress::SCHEMA, command: "lancer stress --json", make: printed::<Catalogue, CommandSettings> },
     Known {

@@ -175,6 +175,8 @@ fn a_result_given_back_is_printed_again() {
         ("scene info cornell --word 20 --format dir=12".to_owned(), "scene info"),
         ("accuracy triangle --size 4x4 --words 20-22 --profiles ray --roundings RND --layouts wide --bounces 1 --cutoffs 0 --interpolate none".to_owned(), "accuracy"),
         ("formats triangle --size 4x3 --shifts 1 --guard 0 --largest 1/255 --check triangle".to_owned(), "formats"),
+        ("inject triangle --size 4x3 --kind bus --kind results --injections 30 --seed 7 --protect bus=parity".to_owned(), "inject"),
+        ("inject triangle --size 4x3 --kind memory --number 5 --bits 2 --pattern scattered".to_owned(), "inject"),
         ("stress --case sqrt".to_owned(), "stress"),
     ] {
         if line.starts_with("stress") && !session.succeed("stress --list").contains("sqrt") {

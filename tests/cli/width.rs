@@ -104,6 +104,7 @@ fn no_line_of_tables_is_wider_than_the_terminal() {
             "trace triangle --size 4x3 --pixel 1,1",
             "explain-pixel cornell 4,3 --size 8x6",
             "stress --list",
+            "inject triangle --size 4x3 --injections 30",
             "explain",
             "explain E003",
             "schema",

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::cost::{self, ProtectionCost};
 use super::row::{InjectionClass, InjectionRow};
-use super::statistics::ShareInterval;
+use super::statistics::{GroupCount, ShareInterval};
 use super::{FaultCampaign, SCHEMA};
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
@@ -79,7 +79,7 @@ pub struct HangLimits {
 pub struct KindVulnerability {
     /// Name of the structure, or of what goes wrong.
     pub kind: String,
-    /// Its protection: none, parity, ecc, duplicated, residue, retry or watchdog.
+    /// Protection of it: none, parity, ecc, duplicated, residue, retry or watchdog.
     pub protection: &'static str,
     /// Injections, the sum of the classes.
     pub injections: u64,
@@ -198,14 +198,6 @@ pub struct UnprotectedBits {
     pub injections: u64,
     /// Upper end of the share of them that is harmful after all, with a confidence of 95 %.
     pub high: f64,
-}
-
-/// Injections of a group.
-#[derive(Clone, Copy, Default)]
-struct GroupCount {
-    injections: u64,
-    harmful: u64,
-    beyond: u64,
 }
 
 /// Shares of groups, in the order of their keys.
@@ -428,9 +420,9 @@ mod tests {
             row(5, Trap, 30, 0.0),
         ];
         let found = unprotected(&[FaultKind::Registers], &rows);
-        assert_eq!(found.len(), 1);
-        assert_eq!((found[0].bits, found[0].injections, found[0].format.as_str()), (10, 3, "pos"));
-        assert!(found[0].high > 0.5, "three injections say little: {}", found[0].high);
+        let [found] = &found[..] else { panic!("one format: {found:?}") };
+        assert_eq!((found.bits, found.injections, found.format.as_str()), (10, 3, "pos"));
+        assert!(found.high > 0.5, "three injections say little: {}", found.high);
         assert!(unprotected(&[FaultKind::Registers], &rows[3..]).is_empty());
     }
 

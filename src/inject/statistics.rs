@@ -36,6 +36,17 @@ impl ShareInterval {
     }
 }
 
+/// Counts of injections of a group.
+#[derive(Clone, Copy, Default)]
+pub(super) struct GroupCount {
+    /// All of them.
+    pub injections: u64,
+    /// Harmful ones.
+    pub harmful: u64,
+    /// Those that leave no picture within 1/255.
+    pub beyond: u64,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -28,10 +28,10 @@ pub(super) struct MainRun {
 }
 
 /// Answers of a work item to the main processor, with the cores that send them; `None` where the frame ends with it.
-type Answers = Option<Vec<(Message, u32)>>;
+type ItemAnswers = Option<Vec<(Message, u32)>>;
 
 /// Gives the answers of a work item by its number, its core and its message; may change global memory.
-type AnswerItem<'f> = &'f mut dyn FnMut(usize, u32, Message, &mut Memory) -> Answers;
+type AnswerItem<'f> = &'f mut dyn FnMut(usize, u32, Message, &mut Memory) -> ItemAnswers;
 
 /// The machine as the main processor sees it.
 pub(super) struct MainLink<'f> {

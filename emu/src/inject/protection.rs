@@ -26,9 +26,9 @@ pub const RETRY_CLOCKS: u64 = 4_096;
 /// Flipped bits behind a protection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeenFlip {
-    /// They are put right.
+    /// All are put right.
     Corrected,
-    /// They are found, and the machine stops.
+    /// Something is found to be wrong, and the machine stops.
     Detected,
     /// Nothing is found; these bits of the word are wrong then.
     Passed(u32),

@@ -50,6 +50,7 @@ pub const SURFACES: &[Surface] = &[
     surfaces::settings::SETTINGS,
     surfaces::results::PLAN,
     surfaces::results::PART,
+    surfaces::results::INJECTIONS,
     surfaces::results::TABLE,
     surfaces::results::RESULT,
     surfaces::sources::ASSEMBLER,

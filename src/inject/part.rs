@@ -36,17 +36,8 @@ pub fn path(folder: &Path, campaign: &str, kind: FaultKind, block: &Range<u64>) 
     folder.join(format!("{short}-{}-{}-{}.part.jsonl", kind.name(), block.start, block.end))
 }
 
-/// Writes a part as a whole, and through to the disk.
-///
-/// # Errors
-/// A folder or a disk that cannot be written.
-pub fn write(
-    folder: &Path,
-    campaign: &str,
-    kind: FaultKind,
-    block: &Range<u64>,
-    rows: &[InjectionRow],
-) -> Result<(), Report> {
+/// Text of a block's part: a head with the checksum of the rest, and a row a line.
+pub fn text(campaign: &str, kind: FaultKind, block: &Range<u64>, rows: &[InjectionRow]) -> String {
     let mut rest = String::new();
     for row in rows {
         rest += &serde_json::to_string(row).expect("rows have string keys");
@@ -60,8 +51,35 @@ pub fn write(
         to: block.end,
         sha256: hexadecimal(&Sha256::digest(&rest)),
     };
-    let text = serde_json::to_string(&head).expect("a head has string keys") + "\n" + &rest;
-    files::write_through(&path(folder, campaign, kind, block), text.as_bytes())
+    serde_json::to_string(&head).expect("a head has string keys") + "\n" + &rest
+}
+
+/// Rows of a block from the text of its part; `None` where it is that of another block, or was cut short or changed.
+pub fn parse(text: &str, campaign: &str, kind: FaultKind, block: &Range<u64>) -> Option<Vec<InjectionRow>> {
+    let (first, rest) = text.split_once('\n')?;
+    let head: InjectPartHead = serde_json::from_str(first).ok()?;
+    let is_it = head.schema == PART
+        && (head.campaign.as_str(), head.kind.as_str()) == (campaign, kind.name())
+        && (head.from, head.to) == (block.start, block.end)
+        && head.sha256 == hexadecimal(&Sha256::digest(rest));
+    let rows: Vec<InjectionRow> = rest.lines().map(|line| serde_json::from_str(line).ok()).collect::<Option<_>>()?;
+    let is_right = |row: &InjectionRow| row.kind == kind.name() && row.bits.iter().all(|&bit| bit < u64::BITS);
+    let is_numbered = rows.iter().map(|row| row.number).eq(block.clone());
+    (is_it && is_numbered && rows.iter().all(is_right)).then_some(rows)
+}
+
+/// Writes a part as a whole, and through to the disk.
+///
+/// # Errors
+/// A folder or a disk that cannot be written.
+pub fn write(
+    folder: &Path,
+    campaign: &str,
+    kind: FaultKind,
+    block: &Range<u64>,
+    rows: &[InjectionRow],
+) -> Result<(), Report> {
+    files::write_through(&path(folder, campaign, kind, block), text(campaign, kind, block, rows).as_bytes())
 }
 
 /// Rows of a block's part; `None` where there is no such file, or one that was cut short or changed.
@@ -78,17 +96,7 @@ pub fn read(
     if !path.exists() {
         return Ok(None);
     }
-    let text = files::text(files::read_up_to(LARGEST, &path)?);
-    let Some((first, rest)) = text.split_once('\n') else { return Ok(None) };
-    let Ok(head) = serde_json::from_str::<InjectPartHead>(first) else { return Ok(None) };
-    let is_it = head.schema == PART
-        && (head.campaign.as_str(), head.kind.as_str()) == (campaign, kind.name())
-        && (head.from, head.to) == (block.start, block.end)
-        && head.sha256 == hexadecimal(&Sha256::digest(rest));
-    if !is_it {
-        return Ok(None);
-    }
-    Ok(rest.lines().map(|line| serde_json::from_str(line).ok()).collect())
+    Ok(parse(&files::text(files::read_up_to(LARGEST, &path)?), campaign, kind, block))
 }
 
 /// Makes a folder for parts.

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{files, root};
 
 /// Files below `src` that open what a user names, each with the surfaces that try what is read there.
-const DOORS: [(&str, &[&str]); 19] = [
+const DOORS: [(&str, &[&str]); 20] = [
     ("src/command/arithmetic.rs", &["arithmetic"]),
     ("src/command/assemble.rs", &["assembler"]),
     ("src/command/debug.rs", &["assembler", "debugger", "dap"]),
@@ -17,6 +17,7 @@ const DOORS: [(&str, &[&str]); 19] = [
     ("src/command/sweep/mod.rs", &["study"]),
     ("src/extension/file.rs", &["extension"]),
     ("src/files/program.rs", &["object", "words", "hex"]),
+    ("src/inject/part.rs", &["injections"]),
     ("src/input.rs", &["off", "stl", "dsc", "obj", "mtl", "ply"]),
     ("src/machine.rs", &["machine"]),
     ("src/settings/job.rs", &["kernel"]),

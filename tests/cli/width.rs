@@ -1,7 +1,8 @@
 //! Help and tables in terminals of 80 and 120 columns, looked at through a pseudo-terminal.
 #![cfg(unix)]
 
-use std::io::Read;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
 use std::process::Stdio;
 
@@ -11,6 +12,9 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 use super::help::commands;
 use super::session::Session;
+
+/// Octets that no command shows: they stand behind the last ones of each.
+const END: &[u8] = b"\0end";
 
 /// Everything that a command shows on a terminal of so many columns.
 fn shown(session: &Session, arguments: &str, columns: u16) -> String {
@@ -30,16 +34,21 @@ fn shown(session: &Session, arguments: &str, columns: u16) -> String {
         .env("TERM", "xterm")
         .env("NO_COLOR", "1");
     let mut child = command.spawn().unwrap();
-    // With our own end closed, and the command's copies with it, the terminal hangs up when the command ends.
-    drop((command, theirs));
-    let mut octets = Vec::new();
-    let mut part = [0; 4096];
-    let mut ours = std::fs::File::from(ours);
-    // Linux says EIO where nobody is on the other side any more.
-    while let Ok(length @ 1..) = ours.read(&mut part) {
-        octets.extend_from_slice(&part[..length]);
-    }
+    drop(command);
+    let reader = std::thread::spawn(move || {
+        let (mut octets, mut part, mut ours) = (Vec::new(), [0; 4096], File::from(ours));
+        while !octets.ends_with(END) {
+            let length = ours.read(&mut part).unwrap();
+            octets.extend_from_slice(&part[..length]);
+        }
+        octets.truncate(octets.len() - END.len());
+        octets
+    });
     child.wait().unwrap();
+    // A terminal that hangs up may lose what it has not passed on, so our own end stays open until the reader has met the end.
+    let mut theirs = File::from(theirs);
+    theirs.write_all(END).unwrap();
+    let octets = reader.join().unwrap();
     // A bar begins its line again and again.
     String::from_utf8_lossy(&octets).replace("\r\n", "\n").replace('\r', "\n")
 }

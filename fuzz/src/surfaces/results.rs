@@ -1,9 +1,14 @@
 //! Files that commands write and others read: plans, parts and tables of studies, and results that are compared.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::LazyLock;
 
+use emu::inject::{FaultKind, FlipShape};
 use lancer::difference::{self, DiffSide};
+use lancer::inject::row::InjectionRow;
+use lancer::inject::{self, FaultCampaign};
 use lancer::settings::Settings;
 use lancer::sweep::contents::Contents;
 use lancer::sweep::dataset::{Dataset, DatasetForm};
@@ -12,7 +17,7 @@ use lancer::sweep::row::{CellKind, PointRow};
 use lancer::sweep::study::Study;
 use lancer::sweep::{front, group, merge, part, svg};
 use messages::Source;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::source;
 use crate::project::{files, literals, pieces};
@@ -37,6 +42,9 @@ pub const PLAN: Surface = result_surface("plan", plans, read_plan, &["src/sweep/
 /// Parts of studies.
 pub const PART: Surface = result_surface("part", parts, read_part, &["src/sweep/part.rs", "src/sweep/merge.rs"]);
 
+/// Parts of campaigns of faults.
+pub const INJECTIONS: Surface = result_surface("injections", injections, read_injections, &["src/inject/part.rs"]);
+
 /// Tables of studies: JSON lines where the first character says so, else CSV.
 pub const TABLE: Surface =
     result_surface("table", tables, read_table, &["src/sweep/dataset.rs", "src/sweep/front.rs", "src/sweep/chart.rs"]);
@@ -55,7 +63,7 @@ static PLANNED: LazyLock<(StudyPlan, Vec<PointRow>)> = LazyLock::new(|| {
     let mut rows = Vec::new();
     for point in &plan.points {
         let settings = plan.settings(point, &contents).expect("points have settings");
-        for (labels, result) in group::run(&[settings], &contents).expect("the scene is there") {
+        for (labels, result) in group::run(&[settings], &contents, None).expect("the scene is there") {
             let (figures, refused) = match result {
                 Ok(figures) => (Some(figures), None),
                 Err(reason) => (None, Some(reason)),
@@ -79,6 +87,23 @@ fn plans() -> Vec<Vec<u8>> {
 fn parts() -> Vec<Vec<u8>> {
     let rows = &PLANNED.1;
     (1..=2).map(|count| whole_part(&rows[..count]).into_bytes()).collect()
+}
+
+/// The block of injections that a part is read for.
+const BLOCK: Range<u64> = 0..2;
+
+fn injection(number: u64) -> InjectionRow {
+    let row = json!({
+        "kind": FaultKind::Registers.name(), "number": number, "class": "trap", "item": 3, "pixel": 3, "moment": 40, "structure": "scalars",
+        "place": "s7", "function": "trace", "format": "pos", "bits": [4, 9], "change": 0, "wrong_pixels": 0, "largest_difference": 0.0,
+        "trap": "bounds", "trap_at": "core 0, word 17", "limit": null, "steps": null, "items": 1,
+    });
+    serde_json::from_value(row).expect("it has the keys of a row")
+}
+
+fn injections() -> Vec<Vec<u8>> {
+    let rows: Vec<InjectionRow> = BLOCK.map(injection).collect();
+    vec![inject::part::text("c", FaultKind::Registers, &BLOCK, &rows).into_bytes()]
 }
 
 fn tables() -> Vec<Vec<u8>> {
@@ -152,6 +177,39 @@ fn read_whole_part(text: &str, input: &[u8], seen: &mut Seen) {
             seen.plant(PlantedFault::Panic, drawn == 3);
         }
     }
+}
+
+fn read_injections(input: &[u8], seen: &mut Seen) {
+    let text = String::from_utf8_lossy(input);
+    read_whole_injections(&text, seen);
+    // As of the parts of studies.
+    let Some((head, rest)) = text.split_once('\n') else { return };
+    let Ok(mut head) = serde_json::from_str::<Value>(head) else { return };
+    if head.is_object() {
+        head["sha256"] = part::checksum(rest).into();
+        read_whole_injections(&format!("{head}\n{rest}"), seen);
+    }
+}
+
+fn read_whole_injections(text: &str, seen: &mut Seen) {
+    let Some(rows) = inject::part::parse(text, "c", FaultKind::Registers, &BLOCK) else { return };
+    seen.count("bits", rows.iter().map(|row| row.bits.len()).sum());
+    seen.count("harmful", rows.iter().filter(|row| row.class.is_harmful()).count());
+    let again = inject::part::text("c", FaultKind::Registers, &BLOCK, &rows);
+    assert!(
+        inject::part::parse(&again, "c", FaultKind::Registers, &BLOCK) == Some(rows.clone()),
+        "a part is read as it was written"
+    );
+    let campaign = FaultCampaign {
+        kinds: vec![FaultKind::Registers],
+        injections: BLOCK.end,
+        shape: FlipShape::SINGLE,
+        seed: 1,
+        protections: BTreeMap::new(),
+    };
+    let map = inject::map(&campaign, &rows);
+    assert_eq!(map.colours.len() as u32, map.size.0 * map.size.1, "a map has its pixels");
+    seen.plant(PlantedFault::Panic, rows[1].item == 7);
 }
 
 fn read_table(input: &[u8], seen: &mut Seen) {

@@ -37,6 +37,8 @@ struct LostRequest {
     arrival: Clocks,
     /// Clock at which it is made again.
     again: Clocks,
+    /// End of the burst that does not happen.
+    idle_until: Clocks,
 }
 
 /// An arbiter with a fault.
@@ -68,7 +70,11 @@ impl FaultyArbiter {
     }
 
     fn lose(&mut self, retry: Clocks, clock: Clocks, requests: &BusRequests) -> Verdict {
-        if let Some(LostRequest { master, arrival, again }) = self.lost {
+        if let Some(LostRequest { master, arrival, again, idle_until }) = self.lost {
+            // The bus asks as well when another master comes in the middle of it.
+            if clock < idle_until {
+                return Verdict::Later(idle_until);
+            }
             let is_hidden = requests.arrival(master) == arrival && clock < again;
             return match is_hidden {
                 true => self.without(master, again, clock, requests),
@@ -78,8 +84,9 @@ impl FaultyArbiter {
         let verdict = self.inner.choose(clock, requests);
         if let Verdict::Grant(master) = verdict {
             let again = if retry == Clocks(0) { NEVER } else { clock + retry };
-            self.lost = Some(LostRequest { master, arrival: requests.arrival(master), again });
-            return Verdict::Later(clock + requests.length(master));
+            let idle_until = clock + requests.length(master);
+            self.lost = Some(LostRequest { master, arrival: requests.arrival(master), again, idle_until });
+            return Verdict::Later(idle_until);
         }
         verdict
     }
@@ -108,8 +115,8 @@ mod tests {
     use crate::machine::bus::Bus;
     use crate::machine::config::BusConfig;
 
-    /// Masters and clocks of the grants of three masters that ask at 0 for 10 octets each, one by number.
-    fn grants(kind: GrantFaultKind, master: u32) -> Vec<(u32, u64)> {
+    /// A bus for three masters, served by number, of which some ask at 0 for 10 octets each.
+    fn bus(kind: GrantFaultKind, master: u32, asking: u32) -> Bus {
         let config = BusConfig {
             arbiter: ArbiterKind::FixedPriority,
             octets_per_beat: 1,
@@ -118,12 +125,21 @@ mod tests {
         };
         let fault = GrantFault { kind, at: Clocks(5), master };
         let mut bus = Bus::new(&config, 3).with_fault(Some(fault));
-        (0..3).for_each(|master| bus.request(master, Clocks(0), Octets(10)));
+        (0..asking).for_each(|master| bus.request(master, Clocks(0), Octets(10)));
+        bus
+    }
+
+    /// Masters and clocks of the grants of a bus.
+    fn granted(mut bus: Bus) -> Vec<(u32, u64)> {
         let mut found = Vec::new();
         while let Some(clock) = bus.next_decision().filter(|&clock| clock < NEVER) {
             found.extend(bus.decide(clock).map(|grant| (grant.master, grant.start.0)));
         }
         found
+    }
+
+    fn grants(kind: GrantFaultKind, master: u32) -> Vec<(u32, u64)> {
+        granted(bus(kind, master, 3))
     }
 
     #[test]
@@ -133,5 +149,21 @@ mod tests {
         // The grant to master 1 at 10 is lost, so that master 2 follows when its burst would have ended.
         assert_eq!(grants(GrantFaultKind::Lost { retry: Clocks(0) }, 0), [(0, 0), (2, 20)]);
         assert_eq!(grants(GrantFaultKind::Lost { retry: Clocks(50) }, 0), [(0, 0), (2, 20), (1, 60)]);
+    }
+
+    #[test]
+    fn a_lost_burst_keeps_the_bus_from_those_who_come_in_the_middle() {
+        for (retry, expected) in [(0, vec![(0, 0), (2, 20)]), (50, vec![(0, 0), (2, 20), (1, 60)])] {
+            let mut bus = bus(GrantFaultKind::Lost { retry: Clocks(retry) }, 0, 2);
+            let mut found = Vec::new();
+            // The first grant, and the lost one at 10.
+            for clock in [0, 10] {
+                assert_eq!(bus.next_decision(), Some(Clocks(clock)));
+                found.extend(bus.decide(Clocks(clock)).map(|grant| (grant.master, grant.start.0)));
+            }
+            bus.request(2, Clocks(12), Octets(10));
+            found.extend(granted(bus));
+            assert_eq!(found, expected, "{retry}");
+        }
     }
 }

@@ -206,6 +206,9 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
     let load = FaultLoad::new(&job)?;
     let setup = load.setup(&job);
     let frame = FaultFrame::new(&load, &setup)?;
+    if !arguments.merge {
+        frame.check(&campaign)?;
+    }
     if let Some(number) = arguments.number {
         for injection in frame.run(&campaign, campaign.kinds[0], number..number.saturating_add(1)) {
             if !arguments.json {

@@ -18,6 +18,7 @@ use std::ops::Range;
 use emu::inject::{FaultKind, FlipRequest, FlipShape, GoldenFrame, InjectedEnd, InjectedFlip, Protection, inject};
 use emu::machine::{RunOptions, Setup};
 use emu::octets::Memory;
+use messages::Diagnostic;
 use random::SplitMix64;
 use rayon::prelude::*;
 use scenes::image::{MemoryImage, MemoryKind};
@@ -144,6 +145,19 @@ impl<'a> FaultFrame<'a> {
         let pixels = load.image.region(MemoryKind::Frame);
         let colours = octets(golden.memory(), &pixels);
         Ok(FaultFrame { golden, load, pixels, colours })
+    }
+
+    /// Checks that a campaign's faults can be put into the frame.
+    ///
+    /// # Errors
+    /// A machine that stops without a fault, where faults of its grants are wanted.
+    pub fn check(&self, campaign: &FaultCampaign) -> Result<(), Failure> {
+        let Some(kind) = campaign.kinds.iter().find(|kind| kind.is_of_clocks()) else { return Ok(()) };
+        let Err(failure) = self.golden.clocks() else { return Ok(()) };
+        let message = format!("{} needs a machine that comes to its end without a fault: {failure}", kind.name());
+        let report = Diagnostic::error(message).hint("name the kinds that flip bits: `--kind registers`").into();
+        let Failure::Message { exit, .. } = Failure::from(failure) else { return Ok(()) };
+        Err(Failure::Message { report, exit })
     }
 
     /// Rows of injections by their numbers, computed on all host threads, in order.

@@ -86,7 +86,7 @@ pub struct GoldenFrame<'a> {
     /// Limits of faulty runs.
     pub(super) limits: GuestLimits,
     /// The machine without a fault, made where somebody asks for it.
-    pub(super) grants: OnceLock<GrantRuns>,
+    pub(super) grants: OnceLock<Result<GrantRuns, RunFailure>>,
 }
 
 /// Limits at which a faulty program counts as hanging, in steps of the guest: instructions, and steps of bodies.

@@ -9,6 +9,7 @@ use random::SplitMix64;
 use super::flip::{BitFlip, FaultKind, FlipShape, REGISTER_WORDS};
 use super::frame::{FaultyStore, FrameFault, HangLimit, frame_end};
 use super::golden::GoldenFrame;
+use super::grants::draw_grant;
 use super::item::{FlipHit, ItemRun, ItemRunner, ItemTask};
 use super::protection::{Protection, SeenFlip};
 use crate::code::Code;
@@ -175,7 +176,7 @@ impl<'g, T: Watch> Injector<'g, T> {
         let mut series = SplitMix64::new(seed);
         let mask = shape.mask(&mut series);
         if target.is_of_clocks() {
-            return golden.grant_runs().draw(golden, target, &mut series);
+            return draw_grant(golden, target, &mut series);
         }
         let mask = if target.has_bits() { mask } else { 0 };
         let is_on_bus = matches!(target, FaultKind::Bus | FaultKind::DoubledGrant);

@@ -274,6 +274,12 @@ fn sums_add_up_and_protections_do_what_was_foretold() {
         assert_eq!(Some(harmful(&protected)), foretold, "{name} {scheme}");
         assert!(count(&protected, "corrected") + count(&protected, "detected") > 0, "{name} {scheme}");
     }
+    // Two bits of results, accumulators among them, change a number by what 3 may divide.
+    let pair = "inject cornell --size 4x3 --injections 300 --kind results --bits 2";
+    let [plain_pair, protected] =
+        ["", " --protect results=residue"].map(|more| kind(&session.json(&format!("{pair}{more}")), "results"));
+    let residue = plain_pair["protections"].as_array().unwrap().iter().find(|one| one["protection"] == "residue");
+    assert_eq!(residue.unwrap()["passed"], harmful(&protected), "two bits of results");
     assert_eq!(Protection::Secded.sees(1, 1), SeenFlip::Corrected);
     // A request that is made again is granted, so that only clocks are lost.
     let retried = kind(&session.json(&format!("{base} --kind lost_grant --protect lost_grant=retry")), "lost_grant");

@@ -82,8 +82,8 @@ pub struct InjectionRow {
     pub format: Option<String>,
     /// Bits that flip, 0 the lowest; up to 63 in an accumulator; none where that is not what goes wrong.
     pub bits: Vec<u32>,
-    /// Number that the flipped bits add to a result, 0 elsewhere.
-    pub change: i64,
+    /// Number that the flipped bits add to a result, of an accumulator to the whole of it; 0 elsewhere.
+    pub change: i128,
     /// Pixels that are others.
     pub wrong_pixels: u64,
     /// Largest difference of a component of those, in [0, 1], in steps of 10^-12.

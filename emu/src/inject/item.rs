@@ -21,8 +21,8 @@ pub struct FlipHit {
     pub register: Option<RegisterWord>,
     /// Word on the bus that flipped.
     pub bus: Option<BusWord>,
-    /// Bits of a result that flipped, added to its number.
-    pub change: i64,
+    /// What the bits of a result that flipped add to its number, of an accumulator to the whole of it.
+    pub change: i128,
 }
 
 /// Course of a work item.
@@ -239,10 +239,10 @@ fn result_words(code: &Code, slot: u32) -> Vec<RegisterWord> {
     words
 }
 
-/// Flips bits of a word of the registers, and yields what that adds to the word's number.
-fn flip_register(registers: &mut Registers, word: RegisterWord, mask: u32) -> i64 {
+/// Flips bits of a word of the registers, and yields what that adds to the register's number.
+fn flip_register(registers: &mut Registers, word: RegisterWord, mask: u32) -> i128 {
     let RegisterWord { file, number, part } = word;
-    let flipped = |before: i32| (before ^ mask as i32, i64::from(before ^ mask as i32) - i64::from(before));
+    let flipped = |before: i32| (before ^ mask as i32, i128::from(before ^ mask as i32) - i128::from(before));
     match file {
         's' => {
             let (after, change) = flipped(registers.scalar(number));
@@ -258,9 +258,31 @@ fn flip_register(registers: &mut Registers, word: RegisterWord, mask: u32) -> i6
         }
         _ => {
             let before = registers.wide(number);
-            registers.set_wide(number, before ^ i64::from(mask) << word.bits_below());
-            // 2^32 is 1 modulo 3, so a half changes the remainder as its word does.
-            flipped((before >> word.bits_below()) as i32).1
+            let after = before ^ i64::from(mask) << word.bits_below();
+            registers.set_wide(number, after);
+            // Bit 31 of an accumulator is no sign, and its sign changes it by more than an `i64` holds.
+            i128::from(after) - i128::from(before)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flip_changes_the_number_of_the_whole_register() {
+        let mut registers = Registers::default();
+        let [low, high] = [0, 1].map(|part| RegisterWord { file: 'w', number: 2, part });
+        registers.set_wide(2, 1 << 31);
+        assert_eq!(flip_register(&mut registers, low, 0b11 << 30), (1 << 30) - (1 << 31));
+        assert_eq!(registers.wide(2), 1 << 30);
+        assert_eq!(flip_register(&mut registers, low, 0b11 << 30), (1 << 31) - (1 << 30));
+        assert_eq!(flip_register(&mut registers, high, 0b101), 5 << 32);
+        // 2^62 - 2^63, and back by what an `i64` does not hold
+        assert_eq!(flip_register(&mut registers, high, 0b11 << 30), (1 << 62) - (1 << 63));
+        assert_eq!(flip_register(&mut registers, high, 0b1 << 31), 1 << 63);
+        let scalar = RegisterWord { file: 's', number: 1, part: 0 };
+        assert_eq!(flip_register(&mut registers, scalar, 1 << 31), -(1 << 31));
     }
 }

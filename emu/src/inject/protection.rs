@@ -93,7 +93,7 @@ impl Protection {
     ///
     /// A check of remainders sees a change that 3 does not divide: one bit changes a number by a power of 2, two bits in neighbouring places
     /// by 3 times one, or by 1 time.
-    pub fn sees(self, mask: u32, change: i64) -> SeenFlip {
+    pub fn sees(self, mask: u32, change: i128) -> SeenFlip {
         match self {
             Protection::Unprotected => SeenFlip::Passed(mask),
             Protection::Parity if mask.count_ones() % 2 == 1 => SeenFlip::Detected,

@@ -291,11 +291,22 @@ fn sums_add_up_and_protections_do_what_was_foretold() {
 }
 
 #[test]
+fn the_last_number_is_one_too() {
+    let session = Session::new();
+    let one = session.json(&format!("inject triangle --size 4x3 --kind registers --number {}", u64::MAX));
+    assert_eq!(one["number"], u64::MAX);
+}
+
+#[test]
 fn what_cannot_be_injected_is_named() {
     let session = Session::new();
     session.fail("inject cornell --number 3", 2, "name the kind");
     session.fail("inject cornell --protect memory=residue", 2, "the protections of memory are none, parity, ecc");
     session.fail("inject cornell --protect memory", 2, "KIND=PROTECTION");
     session.fail("inject cornell --shard 1/2", 2, "--parts");
+    for result in ["--rows rows.jsonl", "--heat heat.png", "--json"] {
+        let refusal = format!("'--shard <I/N>' cannot be used with '{}", result.split(' ').next().unwrap_or_default());
+        session.fail(&format!("inject cornell --parts parts --shard 1/2 {result}"), 2, &refusal);
+    }
     session.fail("inject cornell --heat map.gif", 2, "map.gif");
 }

@@ -72,7 +72,7 @@ pub struct InjectArguments {
     #[arg(long, value_name = "FOLDER", help_heading = "Results")]
     parts: Option<PathBuf>,
     /// Runs one of N shares and writes its parts: I/N, counted from 0 or 1.
-    #[arg(long, value_name = "I/N", value_parser = Shard::parse, requires = "parts", help_heading = "Results")]
+    #[arg(long, value_name = "I/N", value_parser = Shard::parse, requires = "parts", conflicts_with_all = ["rows", "heat", "json"], help_heading = "Results")]
     shard: Option<Shard>,
     /// Brings the parts together that are there, and runs nothing; parts that are missing are named.
     #[arg(long, requires = "parts", conflicts_with = "shard", help_heading = "Results")]
@@ -210,7 +210,7 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
         frame.check(&campaign)?;
     }
     if let Some(number) = arguments.number {
-        for injection in frame.run(&campaign, campaign.kinds[0], number..number.saturating_add(1)) {
+        for injection in frame.run(&campaign, campaign.kinds[0], number..=number) {
             if !arguments.json {
                 terminal.tell(&inject::one(&injection))?;
                 continue;
@@ -269,7 +269,7 @@ fn rows(
             Some(known) => rows.extend(known),
             None if arguments.merge => missing.push(format!("{} {} to {}", kind.name(), block.start, block.end - 1)),
             None => {
-                let new = frame.run(campaign, kind, block.clone());
+                let new = frame.run(campaign, kind, block.start..=block.end - 1);
                 if let Some(folder) = folder {
                     part::write(folder, &identity, kind, &block, &new)?;
                 }

@@ -13,7 +13,7 @@ pub mod statistics;
 mod text;
 
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use emu::inject::{FaultKind, FlipRequest, FlipShape, GoldenFrame, InjectedEnd, InjectedFlip, Protection, inject};
 use emu::machine::{RunOptions, Setup};
@@ -161,7 +161,7 @@ impl<'a> FaultFrame<'a> {
     }
 
     /// Rows of injections by their numbers, computed on all host threads, in order.
-    pub fn run(&self, campaign: &FaultCampaign, kind: FaultKind, numbers: Range<u64>) -> Vec<InjectionRow> {
+    pub fn run(&self, campaign: &FaultCampaign, kind: FaultKind, numbers: RangeInclusive<u64>) -> Vec<InjectionRow> {
         let numbers: Vec<u64> = numbers.collect();
         let portion = |numbers: &[u64]| -> Vec<InjectionRow> {
             let requests: Vec<FlipRequest> = numbers.iter().map(|&number| campaign.request(kind, number)).collect();

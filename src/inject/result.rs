@@ -99,7 +99,7 @@ pub struct KindVulnerability {
     pub by_function: Vec<GroupShare>,
     /// By format of a number or field of memory.
     pub by_format: Vec<GroupShare>,
-    /// By the lowest bit that flips.
+    /// By the lowest bit of the word that flips.
     pub by_bit: Vec<GroupShare>,
     /// Protections that the structure could have, what they would see of the harmful injections, and what they cost.
     pub protections: Vec<ProtectionEffect>,
@@ -351,6 +351,7 @@ impl PixelHarm {
 
 /// Bits of each format that may be left unprotected: as many of the lowest ones as were hit without harm.
 ///
+            format_bits: vec![bit],
 /// Of a format whose bits 0 to 9 were hit 100 times without harm, bit 10 never, and bit 11 with harm, the lowest ten are named, not eleven: the
 /// last bit has to have been hit.
 fn unprotected(kinds: &[FaultKind], rows: &[InjectionRow]) -> Vec<UnprotectedBits> {

@@ -80,7 +80,9 @@ pub struct InjectionRow {
     pub function: Option<String>,
     /// Format of the number in a register, or field of a structure in memory; null where that is not known.
     pub format: Option<String>,
-    /// Bits that flip, 0 the lowest; up to 63 in an accumulator; none where that is not what goes wrong.
+    /// Bits of that number or field that flip, 0 its lowest; a field need not begin where a word does. None where there is no format.
+    pub format_bits: Vec<u32>,
+    /// Bits of a word of 32 bits that flip, 0 the lowest; up to 63 in an accumulator; none where that is not what goes wrong.
     pub bits: Vec<u32>,
     /// Number that the flipped bits add to a result, of an accumulator to the whole of it; 0 elsewhere.
     pub change: i128,

@@ -171,6 +171,7 @@ pub fn one(injection: &InjectionRow) -> String {
             injection.item,
             injection.pixel.map_or("-".to_owned(), |at| at.to_string())
         ),
+    let format_bits: Vec<String> = injection.format_bits.iter().map(u32::to_string).collect();
         format!("moment      {}", grouped(injection.moment)),
         format!("place       {}, {}", injection.structure.replace('_', " "), injection.place),
         format!("bits        {}", bits.join(", ")),
@@ -186,6 +187,9 @@ pub fn one(injection: &InjectionRow) -> String {
     }
     if let (Some(trap), Some(at)) = (&injection.trap, &injection.trap_at) {
         lines.push(format!("trap        {}, {at}", trap.replace('_', " ")));
+    if !format_bits.is_empty() {
+        lines.push(format!("its bits    {}", format_bits.join(", ")));
+    }
     }
     if let (Some(limit), Some(steps)) = (&injection.limit, injection.steps) {
         lines.push(format!("hang        found by {} after {} steps", limit.replace('_', " "), grouped(steps)));

@@ -95,7 +95,8 @@ const BLOCK: Range<u64> = 0..2;
 fn injection(number: u64) -> InjectionRow {
     let row = json!({
         "kind": FaultKind::Registers.name(), "number": number, "class": "trap", "item": 3, "pixel": 3, "moment": 40, "structure": "scalars",
-        "place": "s7", "function": "trace", "format": "pos", "bits": [4, 9], "change": 0, "wrong_pixels": 0, "largest_difference": 0.0,
+        "place": "s7", "function": "trace", "format": "pos", "format_bits": [4, 9],
+        "bits": [4, 9], "change": 0, "wrong_pixels": 0, "largest_difference": 0.0,
         "trap": "bounds", "trap_at": "core 0, word 17", "limit": null, "steps": null, "items": 1,
     });
     serde_json::from_value(row).expect("it has the keys of a row")

@@ -11,6 +11,7 @@ pub mod row;
 pub mod statistics;
 #[cfg(feature = "cli")]
 mod text;
+pub mod unprotected;
 
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};

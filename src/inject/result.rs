@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::cost::{self, ProtectionCost};
 use super::row::{InjectionClass, InjectionRow};
 use super::statistics::{GroupCount, ShareInterval};
+use super::unprotected::{UnprotectedBits, unprotected};
 use super::{FaultCampaign, SCHEMA};
 use crate::failure::Failure;
 use crate::job::{Job, result_name};
@@ -185,21 +186,6 @@ pub struct ProtectionEffect {
     pub cost: ProtectionCost,
 }
 
-/// Bits of a format that may be left unprotected.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct UnprotectedBits {
-    /// Name of the structure.
-    pub kind: String,
-    /// Format of a number, or field of memory.
-    pub format: String,
-    /// Lowest bits, counted from bit 0, of which no flip left anything but a picture within 1/255.
-    pub bits: u32,
-    /// Injections into those bits.
-    pub injections: u64,
-    /// Upper end of the share of them that is harmful after all, with a confidence of 95 %.
-    pub high: f64,
-}
-
 /// Shares of groups, in the order of their keys.
 fn grouped<K: Ord + ToString>(rows: &[&InjectionRow], key: impl Fn(&InjectionRow) -> Option<K>) -> Vec<GroupShare> {
     let mut groups: BTreeMap<K, GroupCount> = BTreeMap::new();
@@ -259,7 +245,7 @@ impl InjectResult {
             },
             limits: HangLimits { item_steps: limits.item, main_steps: limits.main, items: limits.items as u64 },
             most_vulnerable,
-            unprotected: unprotected(&campaign.kinds, rows),
+            unprotected: unprotected(&campaign.kinds, campaign.shape.bits, rows),
             kinds,
         })
     }
@@ -349,43 +335,11 @@ impl PixelHarm {
     }
 }
 
-/// Bits of each format that may be left unprotected: as many of the lowest ones as were hit without harm.
-///
-            format_bits: vec![bit],
-/// Of a format whose bits 0 to 9 were hit 100 times without harm, bit 10 never, and bit 11 with harm, the lowest ten are named, not eleven: the
-/// last bit has to have been hit.
-fn unprotected(kinds: &[FaultKind], rows: &[InjectionRow]) -> Vec<UnprotectedBits> {
-    let mut formats: BTreeMap<(usize, &str), BTreeMap<u32, GroupCount>> = BTreeMap::new();
-    for row in rows {
-        // A part of an instruction is no number, and a protected flip says nothing of the bit.
-        let is_told = !matches!(row.class, InjectionClass::Corrected | InjectionClass::Detected);
-        let Some(kind) = kinds.iter().position(|kind| kind.name() == row.kind).filter(|_| is_told) else { continue };
-        let Some(format) = &row.format else { continue };
-        let bit = formats.entry((kind, format)).or_default().entry(row.highest_bit()).or_default();
-        bit.injections += 1;
-        bit.beyond += u64::from(!row.is_within_step());
-    }
-    let mut found = Vec::new();
-    for ((kind, format), bits) in formats {
-        let safe = || bits.iter().take_while(|(_, bit)| bit.beyond == 0);
-        let Some((&highest, _)) = safe().last() else { continue };
-        let injections = safe().map(|(_, bit)| bit.injections).sum();
-        found.push(UnprotectedBits {
-            kind: kinds[kind].name().to_owned(),
-            format: format.to_owned(),
-            bits: highest + 1,
-            injections,
-            high: ShareInterval::of(0, injections).high,
-        });
-    }
-    found
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn row(number: u64, class: InjectionClass, bit: u32, difference: f64) -> InjectionRow {
+    pub fn row(number: u64, class: InjectionClass, bit: u32, difference: f64) -> InjectionRow {
         InjectionRow {
             kind: "registers".to_owned(),
             number,
@@ -397,6 +351,7 @@ mod tests {
             place: "s1".to_owned(),
             function: Some("sqrt".to_owned()),
             format: Some("pos".to_owned()),
+            format_bits: vec![bit],
             bits: vec![bit],
             change: 0,
             wrong_pixels: u64::from(class == InjectionClass::WrongPixel),
@@ -407,24 +362,6 @@ mod tests {
             steps: None,
             items: 1,
         }
-    }
-
-    #[test]
-    fn lowest_bits_without_harm_are_named() {
-        use InjectionClass::{Masked, Trap, WrongPixel};
-        let rows = [
-            row(0, Masked, 0, 0.0),
-            row(1, WrongPixel, 3, 0.001),
-            row(2, WrongPixel, 9, 0.003),
-            row(3, WrongPixel, 12, 0.1),
-            row(4, Masked, 20, 0.0),
-            row(5, Trap, 30, 0.0),
-        ];
-        let found = unprotected(&[FaultKind::Registers], &rows);
-        let [found] = &found[..] else { panic!("one format: {found:?}") };
-        assert_eq!((found.bits, found.injections, found.format.as_str()), (10, 3, "pos"));
-        assert!(found.high > 0.5, "three injections say little: {}", found.high);
-        assert!(unprotected(&[FaultKind::Registers], &rows[3..]).is_empty());
     }
 
     #[test]

@@ -132,9 +132,9 @@ impl InjectionRow {
         self.bits.iter().fold(0, |mask, bit| mask | 1 << (bit % u32::BITS))
     }
 
-    /// The highest bit that flips.
-    pub fn highest_bit(&self) -> u32 {
-        self.bits.iter().copied().max().unwrap_or(0)
+    /// The highest bit of the number or field that flips; `None` where there is no format.
+    pub fn highest_bit(&self) -> Option<u32> {
+        self.format_bits.iter().copied().max()
     }
 }
 

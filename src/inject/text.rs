@@ -124,10 +124,19 @@ fn left_unprotected(result: &InjectResult) -> String {
     if result.unprotected.is_empty() {
         return String::new();
     }
-    let mut rows = vec![row(["structure", "format or field", "lowest bits", "injections", "harmful at most (95 %)"])];
+    let head = [
+        "structure",
+        "format or field",
+        "lowest bits",
+        "injections",
+        "beyond 1/255 at most (95 %)",
+        "weakest bit at most (95 %)",
+    ];
+    let mut rows = vec![row(head)];
     rows.extend(result.unprotected.iter().map(|one| {
         let bits = if one.bits == 1 { "0".to_owned() } else { format!("0 to {}", one.bits - 1) };
-        vec![one.kind.clone(), one.format.clone(), bits, grouped(one.injections), percent(one.high)]
+        let highs = [percent(one.high), percent(one.weakest_high)];
+        [one.kind.clone(), one.format.clone(), bits, grouped(one.injections)].into_iter().chain(highs).collect()
     }));
     format!("\nBits that may be left unprotected for a picture within 1/255:\n{}", table(rows))
 }
@@ -162,6 +171,7 @@ fn protections(kinds: &[KindVulnerability]) -> String {
 /// One injection, line by line.
 pub fn one(injection: &InjectionRow) -> String {
     let bits: Vec<String> = injection.bits.iter().map(u32::to_string).collect();
+    let format_bits: Vec<String> = injection.format_bits.iter().map(u32::to_string).collect();
     let or_dash = |text: &Option<String>| text.clone().unwrap_or_else(|| "-".to_owned());
     let mut lines = vec![
         format!("injection   {} {}", injection.kind, injection.number),
@@ -171,13 +181,15 @@ pub fn one(injection: &InjectionRow) -> String {
             injection.item,
             injection.pixel.map_or("-".to_owned(), |at| at.to_string())
         ),
-    let format_bits: Vec<String> = injection.format_bits.iter().map(u32::to_string).collect();
         format!("moment      {}", grouped(injection.moment)),
         format!("place       {}, {}", injection.structure.replace('_', " "), injection.place),
         format!("bits        {}", bits.join(", ")),
         format!("function    {}", or_dash(&injection.function)),
         format!("format      {}", or_dash(&injection.format)),
     ];
+    if !format_bits.is_empty() {
+        lines.push(format!("its bits    {}", format_bits.join(", ")));
+    }
     if injection.wrong_pixels != 0 {
         lines.push(format!(
             "picture     {} wrong pixels, the worst by {:.6}",
@@ -187,9 +199,6 @@ pub fn one(injection: &InjectionRow) -> String {
     }
     if let (Some(trap), Some(at)) = (&injection.trap, &injection.trap_at) {
         lines.push(format!("trap        {}, {at}", trap.replace('_', " ")));
-    if !format_bits.is_empty() {
-        lines.push(format!("its bits    {}", format_bits.join(", ")));
-    }
     }
     if let (Some(limit), Some(steps)) = (&injection.limit, injection.steps) {
         lines.push(format!("hang        found by {} after {} steps", limit.replace('_', " "), grouped(steps)));

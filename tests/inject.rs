@@ -204,6 +204,8 @@ fn shares_of_a_campaign_come_together_to_the_same_octets() {
     session.succeed(&format!("{campaign} --parts parts --shard 2/3 --threads 1"));
     session.fail(&format!("{campaign} --parts parts --merge"), 1, "missing");
     session.succeed(&format!("{campaign} --parts parts --shard 0/3 --threads 3"));
+    let again = session.succeed(&format!("{campaign} --parts parts --shard 0/3"));
+    assert!(again.starts_with("0 injections run, ") && again.ends_with(" were there\n"), "{again}");
     let parts = std::fs::read_dir(session.path("parts")).unwrap();
     let part = parts.map(|entry| entry.unwrap().path()).min().unwrap();
     let text = std::fs::read_to_string(&part).unwrap();
@@ -309,4 +311,10 @@ fn what_cannot_be_injected_is_named() {
         session.fail(&format!("inject cornell --parts parts --shard 1/2 {result}"), 2, &refusal);
     }
     session.fail("inject cornell --heat map.gif", 2, "map.gif");
+    // Nothing is injected for a file that cannot be written.
+    for option in ["--rows /proc/rows.jsonl", "--heat /proc/heat.png"] {
+        let file = option.split(' ').next_back().unwrap();
+        session.fail(&format!("inject triangle --size 4x3 --parts parts {option}"), 1, file);
+    }
+    assert_eq!(session.names(), Vec::<String>::new());
 }

@@ -188,7 +188,7 @@ impl InjectArguments {
     fn check(&self, job: &Job) -> Result<bool, Failure> {
         let paths: Vec<&Path> = [&self.heat, &self.rows].into_iter().flatten().map(PathBuf::as_path).collect();
         for path in &paths {
-            files::check_target(path)?;
+            files::check_writable(path)?;
         }
         let is_taken = files::takes_output(paths.iter().copied(), self.json).map_err(Failure::usage)?;
         files::check_distinct(paths.iter().copied()).map_err(Failure::usage)?;
@@ -221,8 +221,10 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
         }
         return Ok(Exit::Done);
     }
+    // What could fail comes before the injections, so that none of them is in vain.
+    let costs = inject::protection_costs(&job, frame.golden.program(), &campaign.kinds)?;
     let Some(rows) = rows(arguments, &campaign, &job, &frame, terminal)? else { return Ok(Exit::Done) };
-    let result = InjectResult::new(&job, &frame.golden, &campaign, &rows)?;
+    let result = InjectResult::new(&job, &frame.golden, &campaign, &costs, &rows);
     let mut written: Vec<(&Path, Vec<u8>)> = Vec::new();
     if let Some(path) = &arguments.heat {
         let format = PictureFormat::of(path).expect("the parser lets only such names pass");
@@ -259,14 +261,23 @@ fn rows(
     let shard = arguments.shard.unwrap_or(Shard::WHOLE);
     let identity = campaign.identity(job);
     let blocks = campaign.blocks();
-    let (start, mut ran, mut missing) = (Instant::now(), 0, Vec::new());
+    let (start, mut ran, mut there, mut missing) = (Instant::now(), 0, 0, Vec::new());
     let bar = terminal.progress("injections", blocks.iter().map(|(_, block)| block.end - block.start).sum());
     let mut rows = Vec::new();
+    // The rows of a share are in its parts.
+    let mut keep = |new: Vec<InjectionRow>| {
+        if arguments.shard.is_none() {
+            rows.extend(new)
+        }
+    };
     for (_, (kind, block)) in blocks.into_iter().enumerate().filter(|(number, _)| shard.has(*number)) {
         let known = folder.map(|folder| part::read(folder, &identity, kind, &block)).transpose()?.flatten();
         let length = block.end - block.start;
         match known {
-            Some(known) => rows.extend(known),
+            Some(known) => {
+                there += length;
+                keep(known);
+            }
             None if arguments.merge => missing.push(format!("{} {} to {}", kind.name(), block.start, block.end - 1)),
             None => {
                 let new = frame.run(campaign, kind, block.start..=block.end - 1);
@@ -274,7 +285,7 @@ fn rows(
                     part::write(folder, &identity, kind, &block, &new)?;
                 }
                 ran += length;
-                rows.extend(new);
+                keep(new);
             }
         }
         bar.inc(length);
@@ -291,8 +302,7 @@ fn rows(
         terminal.say(&format!("{} injections in {seconds:.1} s, {} a minute\n", grouped(ran), grouped(rate)));
     }
     if arguments.shard.is_some() {
-        let there = grouped(rows.len() as u64 - ran);
-        terminal.print(&format!("{} injections run, {there} were there\n", grouped(ran)))?;
+        terminal.print(&format!("{} injections run, {} were there\n", grouped(ran), grouped(there)))?;
         return Ok(None);
     }
     Ok(Some(rows))

@@ -119,6 +119,19 @@ pub fn check_target(path: &Path) -> Result<(), Report> {
     Ok(())
 }
 
+/// Check as [`check_target`] does, and that a file can be made there: a result of hours is not lost to a folder that cannot be written.
+///
+/// # Errors
+/// See [`check_target`]; a folder or disk that takes no file.
+pub fn check_writable(path: &Path) -> Result<(), Report> {
+    check_target(path)?;
+    // A pipe is opened once, by whoever writes to it.
+    if path != Path::new(STANDARD) && fs::metadata(path).map_or(true, |metadata| metadata.is_file()) {
+        FileStream::new(path)?;
+    }
+    Ok(())
+}
+
 fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),

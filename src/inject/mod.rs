@@ -26,7 +26,7 @@ use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::PIXEL;
 use scenes::metrics;
 
-pub use cost::{ProtectionCost, possible as possible_protections};
+pub use cost::{ProtectionCost, costs as protection_costs, possible as possible_protections};
 #[cfg(feature = "cli")]
 pub use heat::map;
 #[cfg(feature = "cli")]

@@ -6,12 +6,11 @@ use emu::inject::{FaultKind, GoldenFrame, Protection, SeenFlip};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::cost::{self, ProtectionCost};
+use super::cost::ProtectionCost;
 use super::row::{InjectionClass, InjectionRow};
 use super::statistics::{GroupCount, ShareInterval};
 use super::unprotected::{UnprotectedBits, unprotected};
 use super::{FaultCampaign, SCHEMA};
-use crate::failure::Failure;
 use crate::job::{Job, result_name};
 
 /// Structures that a result names as the most vulnerable ones.
@@ -207,27 +206,24 @@ fn grouped<K: Ord + ToString>(rows: &[&InjectionRow], key: impl Fn(&InjectionRow
 }
 
 impl InjectResult {
-    /// The result of rows, of each kind in the order of their numbers.
-    ///
-    /// # Errors
-    /// What keeps the picture from being drawn on a machine with protections, for their cost.
+    /// The result of rows, of each kind in the order of their numbers, with the costs of protections that [`super::protection_costs`] has.
     pub fn new(
         job: &Job,
         golden: &GoldenFrame,
         campaign: &FaultCampaign,
+        costs: &BTreeMap<(FaultKind, Protection), ProtectionCost>,
         rows: &[InjectionRow],
-    ) -> Result<InjectResult, Failure> {
+    ) -> InjectResult {
         let (totals, limits, crop) = (golden.totals(), golden.limits(), job.crop());
-        let costs = cost::costs(job, golden.program(), &campaign.kinds)?;
         let mut kinds = Vec::new();
         for &kind in &campaign.kinds {
             let rows: Vec<&InjectionRow> = rows.iter().filter(|row| row.kind == kind.name()).collect();
-            kinds.push(KindVulnerability::new(kind, campaign.protection(kind), &rows, &costs));
+            kinds.push(KindVulnerability::new(kind, campaign.protection(kind), &rows, costs));
         }
         let mut worst: Vec<&KindVulnerability> = kinds.iter().filter(|kind| kind.injections != 0).collect();
         worst.sort_by(|a, b| b.vulnerability.share.total_cmp(&a.vulnerability.share));
         let most_vulnerable = worst.iter().take(MOST_NAMED).map(|kind| kind.kind.clone()).collect();
-        Ok(InjectResult {
+        InjectResult {
             schema: SCHEMA,
             scene: result_name(&job.scene),
             profile: job.kernels.profile.name(),
@@ -247,7 +243,7 @@ impl InjectResult {
             most_vulnerable,
             unprotected: unprotected(&campaign.kinds, campaign.shape.bits, rows),
             kinds,
-        })
+        }
     }
 }
 

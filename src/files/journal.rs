@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
 use serde::{Deserialize, Serialize};
-use tempfile::TempPath;
+use tempfile::NamedTempFile;
 
 use super::folder_of;
 use super::leftover::{temporary, writer};
@@ -49,11 +49,11 @@ impl FileState {
     }
 }
 
-/// Journals of a set of files, one in each folder that has two of them or more; they go away with the value.
+/// Journals of a set of files, one in each folder that has two of them or more; they are locked as long as the value lives, and go away with it.
 ///
 /// Between two folders, a kill can still part a set: no rename spans them.
 pub struct SetJournals {
-    _files: Vec<TempPath>,
+    _files: Vec<NamedTempFile>,
 }
 
 impl SetJournals {
@@ -76,19 +76,25 @@ impl SetJournals {
             let mut file = temporary().suffix(ENDING).tempfile_in(folder)?;
             // A journal that was cut short is no JSON, and then nothing has been renamed.
             file.write_all(&serde_json::to_vec(entries)?)?;
-            Ok(file.into_temp_path())
+            // File systems that know no locks have the number of the process alone.
+            let _ = file.as_file().try_lock();
+            Ok(file)
         };
         let files = folders.iter().map(journal).collect::<io::Result<Vec<_>>>()?;
         Ok(SetJournals { _files: files })
     }
 }
 
-/// Puts the files of a journal in their places, unless somebody has changed one of these places since.
-pub fn complete(path: &Path) {
+/// Puts the files of a journal in their places, unless somebody has changed one of these places since. False where a file that waits is not held, and
+/// the journal is still to be done.
+pub fn complete(path: &Path, is_held: &dyn Fn(&Path) -> bool) -> bool {
     let folder = folder_of(path);
-    let Some(entries) = read(path) else { return };
+    let Some(entries) = read(path) else { return true };
     let waiting: Vec<&JournalEntry> = entries.iter().filter(|entry| folder.join(&entry.written).is_file()).collect();
     let is_unchanged = |entry: &&JournalEntry| FileState::at(&folder.join(&entry.place)) == entry.before;
+    if !waiting.iter().all(|entry| is_held(&folder.join(&entry.written))) {
+        return false;
+    }
     // Where nothing has been renamed, the set is whole as it was.
     if waiting.len() < entries.len() && waiting.iter().all(is_unchanged) {
         for entry in waiting {
@@ -96,6 +102,7 @@ pub fn complete(path: &Path) {
             let _ = fs::rename(folder.join(&entry.written), folder.join(&entry.place));
         }
     }
+    true
 }
 
 /// The entries of a journal of this user's; none of one that is not whole, or that names anything but leftovers of its own run.
@@ -173,6 +180,23 @@ mod tests {
         assert_eq!(after(halfway(entries).path()), "new");
     }
 
+    /// Another run that begins at the same time has a lock on the journal, or on what waits: the rest is its to complete.
+    #[test]
+    fn a_set_that_another_run_completes_is_left_to_it() {
+        for held in [JOURNAL, ".lancer-4294967295-bbbbbb"] {
+            let folder = halfway(entries);
+            let other = fs::File::open(folder.path().join(held)).unwrap();
+            other.lock().unwrap();
+            write(&folder.path().join("c"), b"next").unwrap();
+            assert_eq!(fs::read_to_string(folder.path().join("b")).unwrap(), "old", "{held}");
+            assert!(folder.path().join(".lancer-4294967295-bbbbbb").exists(), "{held}");
+            // With both free, the next run completes it.
+            drop(other);
+            fs::remove_file(folder.path().join("c")).unwrap();
+            assert_eq!(after(folder.path()), "new", "{held}");
+        }
+    }
+
     #[test]
     fn a_place_that_somebody_has_changed_is_kept() {
         let folder = halfway(entries);
@@ -215,6 +239,8 @@ mod tests {
         let count = || fs::read_dir(folder.path()).unwrap().count();
         let journals = SetJournals::write(names.iter().map(|name| (name.as_path(), name.as_path()))).unwrap();
         assert_eq!(count(), 1);
+        let journal = fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+        assert!(fs::File::open(&journal).unwrap().try_lock().is_err(), "a journal is locked while its run lives");
         drop(journals);
         drop(SetJournals::write(names.iter().take(1).map(|name| (name.as_path(), name.as_path()))).unwrap());
         assert_eq!(count(), 0);

@@ -1,5 +1,6 @@
 //! Leftovers of runs that were killed: their names, and the next run in a folder that completes what only had to be renamed and removes the rest.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -22,21 +23,34 @@ pub fn temporary() -> Builder<'static, 'static> {
     builder
 }
 
-/// Completes and removes what killed runs have left in a folder, as far as that is possible.
+/// Completes and removes what killed runs have left in a folder, as far as that is possible; nothing in a folder with more entries than are looked at.
+///
+/// What is found stays locked until the end, so that of two runs which begin at once each finds a file or leaves it. A file of a set waits for its
+/// journal: it is removed by a run that has both, or that sees no journal of the same writer.
 pub fn clean(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
-    let is_left = |path: &PathBuf| {
-        let process = path.file_name().and_then(|name| writer(name.to_str()?));
-        process.is_some_and(|process| !is_running(process)) && is_unlocked(path)
-    };
-    let paths = entries.take(MOST_ENTRIES).flatten().map(|entry| entry.path());
-    let (journals, rest): (Vec<PathBuf>, Vec<PathBuf>) =
-        paths.filter(is_left).partition(|path| path.extension().is_some_and(|ending| ending == &ENDING[1..]));
-    journals.iter().for_each(|path| complete(path));
-    for path in rest.iter().chain(&journals) {
-        // Another run may have been faster, and what took its place is no leftover any more.
+    let mut paths: Vec<PathBuf> = entries.take(MOST_ENTRIES + 1).flatten().map(|entry| entry.path()).collect();
+    if paths.len() > MOST_ENTRIES {
+        return;
+    }
+    paths.retain(|path| writer_of(path).is_some_and(|process| !is_running(process)));
+    let is_journal = |path: &Path| path.extension().is_some_and(|ending| ending == &ENDING[1..]);
+    let held: BTreeMap<PathBuf, File> = paths.iter().filter_map(|path| Some((path.clone(), locked(path)?))).collect();
+    // Complete the sets of which everything that waits is held; the others are another run's, or the next one's.
+    let is_done =
+        |journal: &&PathBuf| held.contains_key(*journal) && complete(journal, &|file| held.contains_key(file));
+    let journals = paths.iter().filter(|path| is_journal(path));
+    let (done, open): (Vec<&PathBuf>, Vec<&PathBuf>) = journals.partition(is_done);
+    let open: BTreeSet<Option<u32>> = open.into_iter().map(|path| writer_of(path)).collect();
+    let rest = held.keys().filter(|path| !is_journal(path) && !open.contains(&writer_of(path)));
+    for path in rest.chain(done) {
+        // What has taken its place is no leftover any more.
         let _ = fs::remove_file(path);
     }
+}
+
+fn writer_of(path: &Path) -> Option<u32> {
+    writer(path.file_name()?.to_str()?)
 }
 
 /// Number of the process that writes a file, by the file's name; `None` for a name that no run gives: `.lancer-217-a8Kd0z` is one of
@@ -52,10 +66,11 @@ fn is_running(process: u32) -> bool {
     process == std::process::id() || Path::new("/proc").join(process.to_string()).is_dir()
 }
 
-/// True of a regular file that no run has locked.
-fn is_unlocked(path: &Path) -> bool {
+/// A regular file, locked; `None` of anything else, and of one that another run has locked.
+fn locked(path: &Path) -> Option<File> {
     let is_file = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file());
-    is_file && File::open(path).is_ok_and(|file| file.try_lock().is_ok())
+    let file = is_file.then(|| File::open(path).ok()).flatten()?;
+    file.try_lock().is_ok().then_some(file)
 }
 
 #[cfg(test)]

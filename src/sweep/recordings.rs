@@ -114,8 +114,13 @@ impl RecordingStore {
     /// # Errors
     /// Reason for which its file is none.
     fn read(&self, digest: &[u8; 32], setup: &Setup) -> Result<Option<Recorded>, String> {
+        let path = self.path(digest);
+        // A pipe of that name would never be opened.
+        if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+            return Err("it is no file".to_owned());
+        }
         // A file that is open stays whole, whoever removes it or puts another one in its place.
-        let file = match File::open(self.path(digest)) {
+        let file = match File::open(path) {
             Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(format!("it cannot be read: {error}")),

@@ -34,8 +34,11 @@ const SHAPE: usize = 12;
 /// Octets of an item whose message has one vector, without segments and without messages that it sends.
 const LEAST_ITEM: usize = 1 + 12 + 8 + 8 + 8 + 4 + 4 + 4;
 
-/// Passes, units and clocks that a count may come to: far more than a frame takes, and so few that sums of them fit.
+/// Passes, units and clocks that a count may come to: far more than a frame takes.
 const MOST_COUNT: u64 = 1 << 48;
+
+/// Sum of all counts of a recording, so that whatever is added up of them fits.
+const MOST_SUM: u64 = 1 << 60;
 
 const CUT_SHORT: Reason = "it is cut short";
 const FOREIGN: Reason = "it is of another program";
@@ -93,7 +96,7 @@ impl Recorded {
     pub fn decode(setup: &Setup, octets: &[u8]) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
         let code = Code::new(setup.core, setup.isa, setup.config.timing());
-        let mut reader = OctetReader { rest: octets };
+        let mut reader = OctetReader { rest: octets, sum: 0 };
         let [cores, pc] = reader.words()?;
         let [clocks] = reader.numbers()?;
         let prefix = Prefix { clocks, pc };
@@ -107,10 +110,13 @@ impl Recorded {
         if shapes.iter().any(|&[_, pc, _]| pc >= slots) {
             return Err(FOREIGN);
         }
-        let count = reader.length(4)?;
+        let count = reader.length(4 + LEAST_ITEM)?;
         let mut batches = Vec::with_capacity(count);
         for _ in 0..count {
             let count = reader.length(LEAST_ITEM)?;
+            if count == 0 {
+                return Err(IMPOSSIBLE);
+            }
             let items = (0..count).map(|_| item(&mut reader, &shapes, slots).map(Arc::new));
             batches.push(Arc::new(Batch::Ok(items.collect::<Result<_, Reason>>()?)));
         }
@@ -193,6 +199,8 @@ fn put_item(out: &mut Vec<u8>, item: &Recording, shapes: &mut ShapeTable) -> Opt
 /// Octets that have not been read.
 struct OctetReader<'a> {
     rest: &'a [u8],
+    /// Sum of the numbers up to here.
+    sum: u64,
 }
 
 impl<'a> OctetReader<'a> {
@@ -220,9 +228,11 @@ impl<'a> OctetReader<'a> {
         let mut numbers = [0; N];
         for number in &mut numbers {
             *number = u64::from_le_bytes(self.array()?);
-            if *number > MOST_COUNT {
+            // Each is checked by itself first, so that the sum cannot wrap.
+            if *number > MOST_COUNT || self.sum + *number > MOST_SUM {
                 return Err(IMPOSSIBLE);
             }
+            self.sum += *number;
         }
         Ok(numbers)
     }

@@ -25,7 +25,7 @@ pub struct UnprotectedBits {
     pub injections: u64,
     /// Upper end of the share of them that leaves no picture within 1/255 after all, with a confidence of 95 %.
     pub high: f64,
-    /// The same of the bit among them that was hit least, by itself.
+    /// Upper end of the share of the bit among them that was hit least, by itself.
     pub weakest_high: f64,
 }
 

@@ -21,7 +21,7 @@ pub struct FlipHit {
     pub register: Option<RegisterWord>,
     /// Word on the bus that flipped.
     pub bus: Option<BusWord>,
-    /// What the bits of a result that flipped add to its number, of an accumulator to the whole of it.
+    /// Change of the number by the bits of a result that flipped, of an accumulator as a whole.
     pub change: i128,
 }
 

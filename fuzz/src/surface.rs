@@ -32,6 +32,19 @@ pub struct Surface {
     pub reader: &'static [&'static str],
 }
 
+impl Surface {
+    /// A surface of text, with the most octets of an input and the most that a run may have allocated.
+    pub const fn text(
+        (longest, memory): (usize, usize),
+        name: &'static str,
+        seeds: fn() -> Vec<Vec<u8>>,
+        run: fn(&[u8], &mut Seen),
+        reader: &'static [&'static str],
+    ) -> Surface {
+        Surface { name, form: InputForm::Text, longest, memory, seeds, run, reader }
+    }
+}
+
 /// All surfaces, the cheap ones first.
 pub const SURFACES: &[Surface] = &[
     surfaces::programs::OBJECT,

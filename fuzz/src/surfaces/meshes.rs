@@ -9,33 +9,28 @@ use scenes::write::{self, MeshFormat};
 
 use crate::project::{literals, pieces};
 use crate::seen::{PlantedFault, Seen};
-use crate::surface::{InputForm, Surface};
+use crate::surface::Surface;
 
 const LONGEST: usize = 1500;
 
 /// Octets that a reader may take for an input of that length, messages and their sources included.
 const MEMORY: usize = 8 << 20;
 
-const fn mesh_surface(
-    name: &'static str,
-    seeds: fn() -> Vec<Vec<u8>>,
-    run: fn(&[u8], &mut Seen),
-    reader: &'static [&'static str],
-) -> Surface {
-    Surface { name, form: InputForm::Text, longest: LONGEST, memory: MEMORY, seeds, run, reader }
-}
-
 /// OFF, as text and binary.
-pub const OFF: Surface = mesh_surface("off", || seeds(MeshFormat::Off), read_off, &["scenes/src/read/off"]);
+pub const OFF: Surface =
+    Surface::text((LONGEST, MEMORY), "off", || seeds(MeshFormat::Off), read_off, &["scenes/src/read/off"]);
 
 /// STL, as text and binary.
-pub const STL: Surface = mesh_surface("stl", || seeds(MeshFormat::Stl), read_stl, &["scenes/src/read/stl"]);
+pub const STL: Surface =
+    Surface::text((LONGEST, MEMORY), "stl", || seeds(MeshFormat::Stl), read_stl, &["scenes/src/read/stl"]);
 
 /// PLY, as text and binary.
-pub const PLY: Surface = mesh_surface("ply", || seeds(MeshFormat::Ply), read_ply, &["scenes/src/read/ply"]);
+pub const PLY: Surface =
+    Surface::text((LONGEST, MEMORY), "ply", || seeds(MeshFormat::Ply), read_ply, &["scenes/src/read/ply"]);
 
 /// OBJ, with a library of materials beside it.
-pub const OBJ: Surface = mesh_surface(
+pub const OBJ: Surface = Surface::text(
+    (LONGEST, MEMORY),
     "obj",
     || seeds(MeshFormat::Obj),
     read_obj,
@@ -43,11 +38,16 @@ pub const OBJ: Surface = mesh_surface(
 );
 
 /// Libraries of materials, read from an OBJ file that uses some of their names.
-pub const MTL: Surface =
-    mesh_surface("mtl", mtl_seeds, read_mtl, &["scenes/src/read/obj/material.rs", "scenes/src/read/obj/library.rs"]);
+pub const MTL: Surface = Surface::text(
+    (LONGEST, MEMORY),
+    "mtl",
+    mtl_seeds,
+    read_mtl,
+    &["scenes/src/read/obj/material.rs", "scenes/src/read/obj/library.rs"],
+);
 
 /// Descriptions of scenes.
-pub const DSC: Surface = mesh_surface("dsc", dsc_seeds, read_dsc, &["scenes/src/read/dsc"]);
+pub const DSC: Surface = Surface::text((LONGEST, MEMORY), "dsc", dsc_seeds, read_dsc, &["scenes/src/read/dsc"]);
 
 /// Small scenes with materials of all kinds.
 fn small_scenes() -> Vec<Scene> {

@@ -22,35 +22,33 @@ use serde_json::{Value, json};
 use super::source;
 use crate::project::{files, literals, pieces};
 use crate::seen::{PlantedFault, Seen, is_sample};
-use crate::surface::{InputForm, Surface};
+use crate::surface::Surface;
 
 const LONGEST: usize = 4000;
 const MEMORY: usize = 16 << 20;
 
-const fn result_surface(
-    name: &'static str,
-    seeds: fn() -> Vec<Vec<u8>>,
-    run: fn(&[u8], &mut Seen),
-    reader: &'static [&'static str],
-) -> Surface {
-    Surface { name, form: InputForm::Text, longest: LONGEST, memory: MEMORY, seeds, run, reader }
-}
-
 /// Plans of studies.
-pub const PLAN: Surface = result_surface("plan", plans, read_plan, &["src/sweep/plan.rs"]);
+pub const PLAN: Surface = Surface::text((LONGEST, MEMORY), "plan", plans, read_plan, &["src/sweep/plan.rs"]);
 
 /// Parts of studies.
-pub const PART: Surface = result_surface("part", parts, read_part, &["src/sweep/part.rs", "src/sweep/merge.rs"]);
+pub const PART: Surface =
+    Surface::text((LONGEST, MEMORY), "part", parts, read_part, &["src/sweep/part.rs", "src/sweep/merge.rs"]);
 
 /// Parts of campaigns of faults.
-pub const INJECTIONS: Surface = result_surface("injections", injections, read_injections, &["src/inject/part.rs"]);
+pub const INJECTIONS: Surface =
+    Surface::text((LONGEST, MEMORY), "injections", injections, read_injections, &["src/inject/part.rs"]);
 
 /// Tables of studies: JSON lines where the first character says so, else CSV.
-pub const TABLE: Surface =
-    result_surface("table", tables, read_table, &["src/sweep/dataset.rs", "src/sweep/front.rs", "src/sweep/chart.rs"]);
+pub const TABLE: Surface = Surface::text(
+    (LONGEST, MEMORY),
+    "table",
+    tables,
+    read_table,
+    &["src/sweep/dataset.rs", "src/sweep/front.rs", "src/sweep/chart.rs"],
+);
 
 /// Results and files of settings that are compared.
-pub const RESULT: Surface = result_surface("result", results, read_result, &["src/difference.rs"]);
+pub const RESULT: Surface = Surface::text((LONGEST, MEMORY), "result", results, read_result, &["src/difference.rs"]);
 
 /// A study of two machines, of which one cannot be drawn.
 const STUDY: &str = "name = \"small\"\n[settings]\nscene = \"triangle\"\nview.size = [4, 3]\n[product]\ncores = [1, 2]\nformats.pos = [8, 31]\n";

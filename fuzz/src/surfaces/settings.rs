@@ -11,22 +11,14 @@ use lancer::sweep::study::Study;
 use super::source;
 use crate::project::{files, listings, literals, pieces};
 use crate::seen::{PlantedFault, Seen, is_sample};
-use crate::surface::{InputForm, Surface};
+use crate::surface::Surface;
 
 const LONGEST: usize = 2000;
 const MEMORY: usize = 16 << 20;
 
-const fn settings_surface(
-    name: &'static str,
-    seeds: fn() -> Vec<Vec<u8>>,
-    run: fn(&[u8], &mut Seen),
-    reader: &'static [&'static str],
-) -> Surface {
-    Surface { name, form: InputForm::Text, longest: LONGEST, memory: MEMORY, seeds, run, reader }
-}
-
 /// Machine files.
-pub const MACHINE: Surface = settings_surface(
+pub const MACHINE: Surface = Surface::text(
+    (LONGEST, MEMORY),
     "machine",
     machines,
     read_machine,
@@ -40,10 +32,11 @@ pub const MACHINE: Surface = settings_surface(
 
 /// Study files.
 pub const STUDY: Surface =
-    settings_surface("study", studies, read_study, &["src/sweep/study.rs", "src/sweep/latin.rs"]);
+    Surface::text((LONGEST, MEMORY), "study", studies, read_study, &["src/sweep/study.rs", "src/sweep/latin.rs"]);
 
 /// Settings of pictures, as TOML and JSON.
-pub const SETTINGS: Surface = settings_surface(
+pub const SETTINGS: Surface = Surface::text(
+    (LONGEST, MEMORY),
     "settings",
     settings,
     read_settings,
@@ -51,10 +44,11 @@ pub const SETTINGS: Surface = settings_surface(
 );
 
 /// States of runs of the catalogue of stress.
-pub const STRESS: Surface = settings_surface("stress", states, read_state, &["src/stress/progress.rs"]);
+pub const STRESS: Surface = Surface::text((LONGEST, MEMORY), "stress", states, read_state, &["src/stress/progress.rs"]);
 
 /// Vectors of arithmetic.
-pub const ARITHMETIC: Surface = settings_surface("arithmetic", vectors, read_vectors, &["conformance/src/vector.rs"]);
+pub const ARITHMETIC: Surface =
+    Surface::text((LONGEST, MEMORY), "arithmetic", vectors, read_vectors, &["conformance/src/vector.rs"]);
 
 fn machines() -> Vec<Vec<u8>> {
     let presets = PRESETS.iter().map(|preset| preset.config().text().into_bytes());

@@ -25,7 +25,7 @@ pub fn temporary() -> Builder<'static, 'static> {
 
 /// Completes and removes what killed runs have left in a folder, as far as that is possible; nothing in a folder with more entries than are looked at.
 ///
-/// What is found stays locked until the end, so that of two runs which begin at once each finds a file or leaves it. A file of a set waits for its
+/// Leftovers stay locked until the end, so that of two runs which begin at once one has each file and the other leaves it. A file of a set waits for its
 /// journal: it is removed by a run that has both, or that sees no journal of the same writer.
 pub fn clean(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };

@@ -48,7 +48,7 @@ pub fn possible(kind: FaultKind) -> &'static [Protection] {
 /// Costs of all protections that the structures may have.
 ///
 /// # Errors
-/// What keeps the picture from being drawn.
+/// A picture that cannot be drawn on a machine with a protection.
 pub fn costs(
     job: &Job,
     program: &Program,

@@ -1,5 +1,5 @@
 //! Faults on purpose: a campaign of injections into a picture's frame, each of which follows from its number alone, and what comes of them.
-//! How a fault is carried out is said in `emu::inject`.
+//! Faults are carried out by `emu::inject`.
 
 mod cost;
 #[cfg(feature = "cli")]

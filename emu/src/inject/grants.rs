@@ -40,7 +40,7 @@ impl GoldenFrame<'_> {
     /// Clocks of the frame on the whole machine, in which faults of grants are put; it is run when this is asked first.
     ///
     /// # Errors
-    /// What keeps the machine from its end without a fault: a trap, or processors that all wait.
+    /// A machine that does not come to its end without a fault: a trap, or processors that all wait.
     pub fn clocks(&self) -> Result<Clocks, RunFailure> {
         self.grant_runs().map(|runs| runs.clocks).map_err(RunFailure::clone)
     }

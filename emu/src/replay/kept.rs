@@ -92,7 +92,7 @@ impl Recorded {
     /// the octets, whatever they are.
     ///
     /// # Errors
-    /// Why they hold no recording of this program.
+    /// Octets that hold no recording of this program, with the reason.
     pub fn decode(setup: &Setup, octets: &[u8]) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
         let code = Code::new(setup.core, setup.isa, setup.config.timing());

@@ -87,13 +87,11 @@ impl<'a> PictureFrames<'a> {
     /// Frames of machines that compute alike, of a recording that is kept.
     fn replays(&mut self, machines: &[Config]) -> Vec<FrameResult> {
         let recorded = self.recorded(&machines[0]);
-        let step = |setup: &Setup| emu::step(setup, self.load.memory.clone(), &mut |_| {});
-        let one = |config: &Config| {
-            let setup = self.setup(config);
-            match &recorded {
-                Ok(recorded) => recorded.replay(&setup, self.load.memory.clone())?.or_else(|_| step(&setup)),
-                Err(_) => step(&setup),
-            }
+        let step = |config: &Config| emu::step(&self.setup(config), self.load.memory.clone(), &mut |_| {});
+        let replays = recorded.as_ref().map(|recorded| recorded.replays(&self.setup(&machines[0])));
+        let one = |config: &Config| match &replays {
+            Ok(replays) => replays.replay(config, self.load.memory.clone())?.or_else(|_| step(config)),
+            Err(_) => step(config),
         };
         machines.par_iter().map(one).collect()
     }

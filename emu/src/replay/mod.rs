@@ -22,7 +22,7 @@ use isa::Class;
 
 pub use count::{FrameTotals, count};
 pub use kept::RECORDING_FORMAT;
-pub use recorded::Recorded;
+pub use recorded::{Recorded, Replays};
 pub use recording::Reason;
 
 use crate::code::Code;
@@ -61,12 +61,13 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
         Ok(prefix) => prefix,
         Err(why) => return setups.iter().map(|setup| step(setup, why, progress)).collect(),
     };
-    let (totals, endings) = replay::<T, O>(setups, prefix, memory, arithmetic, progress);
+    let codes = codes(first);
+    let (totals, endings) = replay::<T, O>(setups, &codes, prefix, memory, arithmetic, progress);
     let mut results = Vec::with_capacity(setups.len());
     for (setup, ending) in setups.iter().zip(endings) {
         // A machine that could not use the recordings is stepped alone; the others keep their results.
         results.push(match ending {
-            Ok(ended) => ended.map(|ended| with_counts(ended, setup, &totals)),
+            Ok(ended) => ended.map(|ended| with_counts(ended, &codes, &totals)),
             Err(why) => step(setup, why, progress),
         });
     }
@@ -82,12 +83,18 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
     Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
 }
 
+/// The programs of the cores and of the main processor, decoded for machines that compute alike, which then share what is made of them.
+fn codes<'a>(setup: &Setup<'a>) -> [Code<'a>; 2] {
+    [setup.core, setup.main].map(|program| Code::new(program, setup.isa, setup.config.timing()))
+}
+
 /// Outcome of one machine, or the reason for which it has to be stepped.
 type Replayed = Result<Result<EndedRun, RunFailure>, Reason>;
 
 /// The prerun on a thread of its own, the first machine on this one, each other one on another.
 fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
+    codes: &[Code; 2],
     prefix: Prefix,
     memory: &Memory,
     arithmetic: &T,
@@ -111,12 +118,12 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
         let others: Vec<_> = machines
             .map(|(setup, batches)| {
                 let (own, feed) = (arithmetic.clone(), feed(setup, batches));
-                scope.spawn(move || on_clock::<T, O>(setup, memory.clone(), &own, feed, &mut |_| {}))
+                scope.spawn(move || on_clock::<T, O>(setup, codes, memory.clone(), &own, feed, &mut |_| {}))
             })
             .collect();
         // The first machine stays on this thread, because only that may call `progress`.
         let feed = feed(first, batches);
-        let mut endings = vec![on_clock::<T, O>(first, memory.clone(), arithmetic, feed, progress)];
+        let mut endings = vec![on_clock::<T, O>(first, codes, memory.clone(), arithmetic, feed, progress)];
         let panicless = "a machine does not panic";
         endings.extend(others.into_iter().map(|other| other.join().expect(panicless)));
         (prerun.join().expect("the prerun does not panic").items, endings)
@@ -129,18 +136,16 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
 /// Reason for which the machine does not do what was recorded; the inner error is a trap.
 fn on_clock<T: Watch, O: Observer>(
     setup: &Setup,
+    [core_code, main_code]: &[Code; 2],
     memory: Memory,
     arithmetic: &T,
     feed: Feed,
     progress: &mut dyn FnMut(u64),
 ) -> Replayed {
-    let timing = setup.config.timing();
-    let core_code = Code::new(setup.core, setup.isa, timing);
-    let main_code = Code::new(setup.main, setup.isa, timing);
     let feed = RefCell::new(feed);
-    let core = |core| Replayer::Core(ItemCursor::new(&core_code, core, &feed, setup.level::<O>()));
-    let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, &main_code, arithmetic)));
-    let done = Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run();
+    let core = |core| Replayer::Core(ItemCursor::new(core_code, core, &feed, setup.level::<O>()));
+    let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, main_code, arithmetic)));
+    let done = Machine::new(setup, memory, [core_code, main_code], core, main, progress).run();
     let mut feed = feed.into_inner();
     // Recordings that nobody asked for mean that the prerun was given other work than this machine.
     if done.is_ok() && feed.lost.is_none() && !feed.is_used_up() {
@@ -153,15 +158,12 @@ fn on_clock<T: Watch, O: Observer>(
 }
 
 /// The frame with what the cores counted, which the replay does not know.
-pub(crate) fn with_counts(EndedRun { frame, logs }: EndedRun, setup: &Setup, totals: &ItemTotals) -> RunOutcome {
-    let timing = setup.config.timing();
-    let code = Code::new(setup.core, setup.isa, timing);
-    let main_code = Code::new(setup.main, setup.isa, timing);
-    let counts = totals.tally.counts(&code) + frame.main_tally.counts(&main_code);
+fn with_counts(EndedRun { frame, logs }: EndedRun, [code, main_code]: &[Code; 2], totals: &ItemTotals) -> RunOutcome {
+    let counts = totals.tally.counts(code) + frame.main_tally.counts(main_code);
     let mut kinds = totals.kinds.clone();
     kinds.merge(&frame.kinds);
     let mut profile = totals.profile.clone();
-    let clocks = logs.iter().filter_map(|log| finish::add_clocks(log, &totals.keys, &code, &mut profile));
+    let clocks = logs.iter().filter_map(|log| finish::add_clocks(log, &totals.keys, code, &mut profile));
     RunOutcome {
         method: Method::Replayed,
         tally: totals.tally.clone(),

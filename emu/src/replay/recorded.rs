@@ -9,9 +9,10 @@ use super::item::RecordLevel;
 use super::prerun::{self, ItemTotals, PrerunTotals};
 use super::record::Prefix;
 use super::recording::Reason;
+use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::engine::{Pause, Task};
-use crate::machine::{RunFailure, RunOutcome, Setup, check, on_arithmetic};
+use crate::machine::{Config, RunFailure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::Observer;
 use crate::semantics::Watch;
 
@@ -47,7 +48,7 @@ impl Recorded {
     /// # Errors
     /// As [`crate::run()`]; the inner error says why this machine would not do what was recorded.
     pub fn replay(&self, setup: &Setup, memory: Memory) -> Result<Result<RunOutcome, Reason>, RunFailure> {
-        self.replay_with(setup, memory, &mut |_| {})
+        self.replays(setup).replay(setup.config, memory)
     }
 
     /// Replays them, and tells `progress` the number of work items finished, each time one is.
@@ -60,9 +61,44 @@ impl Recorded {
         memory: Memory,
         progress: &mut dyn FnMut(u64),
     ) -> Result<Result<RunOutcome, Reason>, RunFailure> {
+        self.replays(setup).replay_on(setup, memory, progress)
+    }
+
+    /// Replays of them on many machines, of which this is one, all with its programs and its options.
+    pub fn replays<'a>(&'a self, setup: &Setup<'a>) -> Replays<'a> {
+        Replays { recorded: self, setup: setup.clone(), codes: super::codes(setup) }
+    }
+}
+
+/// Replays of recorded work items on machines that compute alike: their programs are decoded, and compiled, once for all machines.
+pub struct Replays<'a> {
+    recorded: &'a Recorded,
+    setup: Setup<'a>,
+    codes: [Code<'a>; 2],
+}
+
+impl Replays<'_> {
+    /// A replay on one machine.
+    ///
+    /// # Errors
+    /// As [`Recorded::replay`].
+    pub fn replay(&self, config: &Config, memory: Memory) -> Result<Result<RunOutcome, Reason>, RunFailure> {
+        if !config.computes_like(self.setup.config) {
+            return Ok(Err("the machine computes otherwise than the one that was recorded"));
+        }
+        self.replay_on(&Setup { config, ..self.setup.clone() }, memory, &mut |_| {})
+    }
+
+    fn replay_on(
+        &self,
+        setup: &Setup,
+        memory: Memory,
+        progress: &mut dyn FnMut(u64),
+    ) -> Result<Result<RunOutcome, Reason>, RunFailure> {
         check(setup)?;
-        match on_arithmetic(setup, ReplayTask { recorded: self, setup, memory, progress }) {
-            Ok(ended) => Ok(Ok(super::with_counts(ended?, setup, &self.totals))),
+        let Replays { recorded, codes, .. } = self;
+        match on_arithmetic(setup, ReplayTask { recorded, codes, setup, memory, progress }) {
+            Ok(ended) => Ok(Ok(super::with_counts(ended?, codes, &recorded.totals))),
             Err(reason) => Ok(Err(reason)),
         }
     }
@@ -95,6 +131,7 @@ impl Task for RecordTask<'_> {
 
 struct ReplayTask<'a> {
     recorded: &'a Recorded,
+    codes: &'a [Code<'a>; 2],
     setup: &'a Setup<'a>,
     memory: Memory,
     progress: &'a mut dyn FnMut(u64),
@@ -112,6 +149,6 @@ impl Task for ReplayTask<'_> {
         drop(sender);
         let Recorded { prefix, cores, .. } = *self.recorded;
         let feed = Feed::new(prefix, cores, self.setup.config.cores, receiver);
-        super::on_clock::<T, O>(self.setup, self.memory, arithmetic, feed, self.progress)
+        super::on_clock::<T, O>(self.setup, self.codes, self.memory, arithmetic, feed, self.progress)
     }
 }

@@ -1,10 +1,14 @@
 //! The shared bus: one burst at a time, to its end. Who comes next is the arbiter's choice.
 
-use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Verdict};
+mod slots;
+
+use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Tdma, Verdict};
 use super::config::BusConfig;
 use super::grant_fault::{FaultyArbiter, GrantFault};
 use super::waits::Waits;
 use crate::code::quantity::{Clocks, Octets};
+
+pub use slots::BusMasters;
 
 /// Use of the bus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,6 +33,15 @@ impl BusUse {
         self.transfers += u64::from(grant.is_last);
         self.bursts += 1;
         self.longest_wait = self.longest_wait.max(grant.waited);
+    }
+
+    /// Adds a use that was noted apart.
+    fn merge(&mut self, more: &BusUse) {
+        self.busy += more.busy;
+        self.moved += more.moved;
+        self.transfers += more.transfers;
+        self.bursts += more.bursts;
+        self.longest_wait = self.longest_wait.max(more.longest_wait);
     }
 
     #[inline(always)]
@@ -104,7 +117,7 @@ impl Lengths {
 }
 
 /// A master of the bus that may go from one transfer to the next by itself.
-pub trait NextTransfer: Default {
+pub trait NextTransfer: Clone + Default {
     /// Goes on from a transfer that ended at a clock to the next one, and yields the clocks between them and the first burst; `None` when something else
     /// is next.
     fn next_transfer(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)>;
@@ -235,7 +248,13 @@ impl Bus {
 
     /// Decides as long as that is before a clock and concerns nobody but the bus and its masters, and yields the grant that ends a transfer of a master
     /// who has something else to do then.
-    pub fn serve(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
+    pub fn serve<M: NextTransfer>(&mut self, masters: &mut BusMasters<M>, until: Clocks) -> Option<Grant> {
+        // A burst that no slot has room for waits for ever, turn by turn.
+        let has_room = |slots: &Tdma| slots.holds(self.lengths.burst(self.lengths.longest_burst).length);
+        if let Some(slots) = self.arbiter.slots().filter(has_room) {
+            return self.serve_slots(slots, masters, until);
+        }
+        let masters = &mut masters.all;
         // Clocks share their number with six bits of rank, and half of what is left is room for what this adds.
         let is_ranked =
             self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.requests.are_before(1 << 57);

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::arbiter::NEVER;
-use super::bus::Bus;
+use super::bus::{Bus, BusMasters};
 use super::cache::Cache;
 use super::course::BusCourse;
 use super::finish::EndedRun;
@@ -91,7 +91,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
     /// The masters of the bus, which go from transfer to transfer by themselves; none where somebody watches each transfer.
-    masters: Option<Vec<W::Master>>,
+    masters: Option<BusMasters<W::Master>>,
     /// Octets that were written when the masters were told of it.
     written: Range<u64>,
     progress: &'a mut dyn FnMut(u64),
@@ -139,8 +139,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            masters: (window.is_none() && !setup.options.has_course)
-                .then(|| (0..=cores).map(|_| W::Master::default()).collect()),
+            masters: (window.is_none() && !setup.options.has_course).then(|| BusMasters::new(cores + 1)),
             written: 0..0,
             progress,
         }
@@ -297,7 +296,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             let (written, lengths) = (&self.shared.written, &self.bus.lengths);
             let (clock, overlaps) = (processor.clock, self.setup.config.bus.overlap);
             let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut processor.cache };
-            processor.worker.hand_over(&mut masters[number], transfer)
+            processor.worker.hand_over(&mut masters.all[number], transfer)
         });
         if is_ahead && !is_handed_over {
             self.account(number);
@@ -351,12 +350,17 @@ impl<'a, W: Worker> Machine<'a, W> {
         if self.written != self.shared.written {
             // Masters look only at recordings, so they have to be told of what might make those wrong.
             self.written = self.shared.written.clone();
-            masters.iter_mut().for_each(|master| W::stop_at(master, &self.written));
+            for number in 0..self.processors.len() {
+                if W::depends_on(&masters.all[number], &self.written) {
+                    self.bus.go_back(masters, number as u32, self.now);
+                    W::stop_at(&mut masters.all[number], &self.written);
+                }
+            }
         }
         let Some(grant) = self.bus.serve(masters, until) else { return false };
         self.now = grant.start;
         let number = grant.master as usize;
-        if self.processors[number].take_back(&mut masters[number], grant.end) {
+        if self.processors[number].take_back(&mut masters.all[number], grant.end) {
             self.run_on(number, true, true);
         }
         self.end_transfer(number, grant.end);

@@ -31,6 +31,11 @@ impl Waits {
         self.0[0] += count;
     }
 
+    /// Adds waits that were noted apart.
+    pub fn merge(&mut self, more: &Waits) {
+        self.0.iter_mut().zip(more.0).for_each(|(column, more)| *column += more);
+    }
+
     /// Number of waits.
     pub fn total(&self) -> u64 {
         self.0.iter().sum()

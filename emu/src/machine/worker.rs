@@ -107,7 +107,10 @@ pub trait Worker {
     /// handed over.
     fn take_back(&mut self, master: &mut Self::Master, end: Clocks, cache: &mut Option<Cache>) -> Option<Played>;
 
-    /// Makes a master stop after the transfer that it asks for, where what follows may depend on what was written.
+    /// True where what a master goes on to may depend on what was written.
+    fn depends_on(master: &Self::Master, written: &Range<u64>) -> bool;
+
+    /// Makes a master that depends on what was written stop after the transfer that it asks for.
     fn stop_at(master: &mut Self::Master, written: &Range<u64>);
 
     /// Everything that was counted of its program.
@@ -127,7 +130,7 @@ pub struct WorkerCounts {
 }
 
 /// Master that goes on to nothing by itself.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct PlainMaster {
     longest_wait: Clocks,
 }
@@ -264,6 +267,10 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
 
     fn take_back(&mut self, _: &mut PlainMaster, _: Clocks, _: &mut Option<Cache>) -> Option<Played> {
         None
+    }
+
+    fn depends_on(_: &PlainMaster, _: &Range<u64>) -> bool {
+        false
     }
 
     fn stop_at(_: &mut PlainMaster, _: &Range<u64>) {}

@@ -235,6 +235,10 @@ impl Worker for ItemCursor<'_> {
         Some(played)
     }
 
+    fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {
+        master.depends_on(written)
+    }
+
     fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
         master.stop_at(written);
     }
@@ -302,6 +306,10 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
             Replayer::Core(core) => core.take_back(master, end, cache),
             Replayer::Main(_) => None,
         }
+    }
+
+    fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {
+        master.depends_on(written)
     }
 
     fn stop_at(master: &mut BusCursor, written: &Range<u64>) {

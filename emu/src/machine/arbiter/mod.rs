@@ -100,6 +100,11 @@ pub trait Arbiter: Send {
     fn ranking(&mut self) -> Option<Ranking<'_>> {
         None
     }
+
+    /// The slots of time in which masters have the bus whoever else asks, where that says all.
+    fn slots(&self) -> Option<Tdma> {
+        None
+    }
 }
 
 /// An order of masters which tells who of those that ask comes first.

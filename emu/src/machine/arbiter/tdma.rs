@@ -17,27 +17,60 @@ impl Tdma {
         Tdma { masters: u64::from(masters.max(1)), slot: slot.0.max(1) }
     }
 
-    /// Clock, at or after one, at which a master can get the bus for a time.
-    fn next(&self, clock: Clocks, master: u32, length: Clocks) -> Clocks {
-        let frame = self.slot * self.masters;
-        let offset = u64::from(master) * self.slot;
-        // Clocks since the master's last slot began, or what is missing to its first one.
-        let (begin, into) = match clock.0.checked_sub(offset) {
-            Some(since) => (offset + since / frame * frame, since % frame),
-            None => return Clocks(offset),
-        };
-        if into + length.0 <= self.slot { clock } else { Clocks(begin + frame) }
+    /// The slots of a master, before its first one.
+    #[inline]
+    pub fn slots_of(&self, master: u32) -> OwnSlots {
+        OwnSlots { slot: self.slot, frame: self.slot * self.masters, begin: u64::from(master) * self.slot }
+    }
+
+    /// True where a slot has room for bursts of a length. One that is longer would never be granted.
+    #[inline]
+    pub fn holds(&self, length: Clocks) -> bool {
+        length.0 <= self.slot
+    }
+}
+
+/// Slots of one master, from one that begins at a clock on.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnSlots {
+    slot: u64,
+    /// Clocks from the beginning of a slot to that of the next one.
+    frame: u64,
+    /// Beginning of a slot that is not over before the clock that was asked for last.
+    begin: u64,
+}
+
+impl OwnSlots {
+    /// First clock, at or after one, at which the master can get the bus for a time. Clocks must not come before those that were found earlier.
+    ///
+    /// Slots of 10 clocks at 10, 40 and 70, and 4 clocks of the bus: at 3 that is 10, at 16 it is 16, at 17 it is 40, and at 95 it is 100.
+    #[inline(always)]
+    pub fn start(&mut self, clock: Clocks, length: Clocks) -> Clocks {
+        let Some(mut into) = clock.0.checked_sub(self.begin) else { return Clocks(self.begin) };
+        // Mostly the next burst comes within a frame, and dividing takes longer than all the rest.
+        if into >= self.frame {
+            self.begin += into / self.frame * self.frame;
+            into %= self.frame;
+        }
+        // Nobody could foresee which it is, so there is no branch.
+        let (fits, next) = (into + length.0 <= self.slot, self.begin + self.frame);
+        self.begin = if fits { self.begin } else { next };
+        if fits { clock } else { Clocks(next) }
     }
 }
 
 impl Arbiter for Tdma {
     fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
-        let next = |master| (self.next(clock, master, requests.length(master)), master);
+        let next = |master| (self.slots_of(master).start(clock, requests.length(master)), master);
         match requests.asking(clock).map(next).min() {
             Some((time, master)) if time == clock => Verdict::Grant(master),
             Some((time, _)) => Verdict::Later(time),
             None => Verdict::Later(clock + Clocks(1)),
         }
+    }
+
+    fn slots(&self) -> Option<Tdma> {
+        Some(*self)
     }
 }
 
@@ -55,6 +88,14 @@ mod tests {
             let verdict = arbiter.choose(Clocks(clock), &requests(3, [(1, 0, length)]));
             let wanted = if expected == clock { Verdict::Grant(1) } else { Verdict::Later(Clocks(expected)) };
             assert_eq!(verdict, wanted, "{length} clocks at {clock}");
+        }
+    }
+
+    #[test]
+    fn slots_go_on_from_clock_to_clock() {
+        let mut slots = Tdma::new(3, Clocks(10)).slots_of(1);
+        for (clock, length, expected) in [(3, 4, 10), (14, 4, 14), (18, 4, 40), (44, 6, 44), (50, 0, 50), (51, 0, 70), (95, 4, 100)] {
+            assert_eq!(slots.start(Clocks(clock), Clocks(length)), Clocks(expected), "{length} clocks at {clock}");
         }
     }
 

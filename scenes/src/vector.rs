@@ -41,8 +41,10 @@ pub fn unit(a: Vec3) -> Option<Vec3> {
     if !(a.iter().all(|x| x.is_finite()) && most > 0.0) {
         return None;
     }
-    // Bringing the largest component into [1, 2) first keeps the squares in range, and gives the same bits for a * 2^k.
-    let near = a.map(|x| shifted(x, 1 - exponent(most)));
+    // Bringing the largest component into [1, 2) first keeps the squares in range, and gives the same bits for a * 2^k. Most vectors need not be brought
+    // anywhere: powers of two change no rounding there.
+    const NEAR: f64 = (1u64 << 63) as f64;
+    let near = if most > 1.0 / NEAR && most < NEAR { a } else { a.map(|x| shifted(x, 1 - exponent(most))) };
     Some(scale(near, 1.0 / dot(near, near).sqrt()))
 }
 

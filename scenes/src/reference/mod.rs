@@ -6,6 +6,9 @@ mod hierarchy;
 mod log_tests;
 mod ray_log;
 mod search;
+mod short;
+#[cfg(test)]
+mod short_tests;
 #[cfg(test)]
 mod tests;
 mod tie;

@@ -233,12 +233,15 @@ proptest! {
             .collect();
         let shapes = Shapes { vertices, triangles: &triangles };
         let indices = shapes.visible();
-        let (tree, all) = (Hierarchy::new(shapes.clone(), indices.clone()), Exhaustive { shapes, indices });
+        let trees = [60, 0].map(|most| Hierarchy::with_copies(shapes.clone(), indices.clone(), most));
+        let all = Exhaustive { shapes, indices };
         for (origin, direction) in rays {
             let Some(direction) = unit(quarter(direction)) else { continue };
             let ray = ShearedRay::new(quarter(origin), direction);
-            prop_assert_eq!(tree.nearest(&ray), all.nearest(&ray));
-            prop_assert_eq!(tree.is_blocked(&ray, end), all.is_blocked(&ray, end));
+            for tree in &trees {
+                prop_assert_eq!(tree.nearest(&ray), all.nearest(&ray));
+                prop_assert_eq!(tree.is_blocked(&ray, end), all.is_blocked(&ray, end));
+            }
         }
     }
 }

@@ -42,6 +42,7 @@ impl ShearedRay<'_> {
     }
 
     /// The point in sheared space, and how large the terms were that its x and y are differences of.
+    #[inline]
     fn sheared(&self, point: Vec3) -> (Vec3, [f64; 2]) {
         let p = sub(point, self.origin);
         let [x, y, z] = self.axes;

@@ -58,6 +58,12 @@ const PARTS: &[Part] = &[
         commands: &["benches/peers/run.sh"],
     },
     Part {
+        name: "tracer",
+        title: "Pictures, beside a ray tracer without emulation",
+        about: "CPU time of whole processes: a plain tracer in C++, and `lancer render --no-error` as multiples of it.",
+        commands: &["benches/peers/tracer.sh"],
+    },
+    Part {
         name: "trees",
         title: "Trees",
         about: "Building kd trees of landscapes.",
@@ -88,6 +94,7 @@ const LEVERS: &[(&str, &[&str])] = &[
         "line tables, nothing stripped",
         &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
     ),
+    ("panics that unwind", &["profile.release.panic=\"unwind\""]),
     ("everything at opt-level 3 but what prints", &["profile.release.opt-level=3"]),
     (
         "what prints at opt-level 1",

@@ -11,7 +11,7 @@
 //! are rounded to n, only edges less than 1/2 - p beyond the sample are wrong; in turn all samples are p off. For example, an edge 0.44 steps
 //! beyond the samples of a column of 170 pixels is wrong at p = 0 and right at p = 1/16.
 
-use super::Grid;
+use super::{Grid, box_limit};
 use crate::camera::Rays;
 use crate::kdtree::Bounds;
 use crate::model::{Camera, Scene, Vec3, View};
@@ -19,6 +19,10 @@ use crate::vector::{AXES, largest, nearest, scale, shifted, sub};
 
 /// Words from this length on have steps of a power of two: they have more bits than a picture asks for, and their coordinates can be read.
 pub(super) const LONGEST: u32 = 32;
+
+/// Bound below the stretch of positions that are given. A box of 8 has corners at 2^8 steps of 2^-6, where the box of a word of 10 bits ends at 2^8 - 4: with
+/// steps longer by a fiftieth it takes 10 bits, and without it would take 11.
+pub(super) const LEAST_GIVEN: f64 = 31.0 / 32.0;
 
 /// Fewest steps of a pitch: with fewer, a whole number of them would lose too much of a step's length.
 const FEWEST_STEPS: f64 = 8.0;
@@ -29,31 +33,32 @@ const ON_EDGE: i32 = -42;
 /// Places of samples between two numbers that are tried, in 1/64 steps; from 32 on a sample would be rounded up.
 const PLACES: std::ops::Range<u32> = 0..32;
 
-/// The grid of a scene with the shortest steps that fit it; `None` where the powers of two hold all corners as they are, or fit as well.
-pub(super) fn fitted(finest: &Grid, scene: &Scene, view: &View) -> Option<Grid> {
+/// The grid of a scene with the shortest steps that fit a box of `width` bits, from one with steps of a power of two; `None` where the powers of two hold
+/// all corners as they are, or where the stretch would not be more than `least`.
+pub(super) fn fitted(powers: &Grid, (width, least): (u32, f64), scene: &Scene, view: &View) -> Option<Grid> {
     let corners = || scene.triangles.iter().flat_map(|triangle| triangle.vertices);
     let is_exact = |vertex: u32| {
-        let place = finest.local(scene.vertices[vertex as usize]);
+        let place = powers.local(scene.vertices[vertex as usize]);
         place == place.map(nearest)
     };
     if corners().all(is_exact) {
         return None;
     }
     // Sides are differences, so they do not change when a scene is moved by whole steps.
-    let limit = f64::from((1u32 << (finest.word - 2)) - 4);
-    let down = |p: Vec3| p.map(|x| shifted(x, -finest.unit));
-    let base = down(finest.corners.0);
-    let power = finest.position + finest.unit;
-    let side = sub(down(finest.corners.1), base).map(|x| shifted(x, power));
+    let limit = box_limit(width) as f64;
+    let down = |p: Vec3| p.map(|x| shifted(x, -powers.unit));
+    let base = down(powers.corners.0);
+    let power = powers.position + powers.unit;
+    let side = sub(down(powers.corners.1), base).map(|x| shifted(x, power));
     // A step is left on each side for the middle and for rounding.
     let most = 2.0 * (limit - 1.0) / largest(side);
     let parallel = match view.camera {
         Camera::Orthographic => Rays::new(([0.0; 3], side), view).ok(),
         Camera::Perspective { .. } => None,
     };
-    let samples = parallel.and_then(|rays| SampleLattice::new(rays, most));
+    let samples = parallel.and_then(|rays| SampleLattice::new(rays, (least, most)));
     let stretch = samples.as_ref().map_or(most, |samples| samples.stretch);
-    if !(stretch > 1.0 && stretch.is_finite()) {
+    if !(stretch > least && stretch.is_finite()) {
         return None;
     }
     // The middle of the box becomes 0, or as near to it as the samples let it.
@@ -76,7 +81,7 @@ pub(super) fn fitted(finest: &Grid, scene: &Scene, view: &View) -> Option<Grid> 
     let raw = |from_base: Vec3| AXES.map(|k| nearest(from_base[k] * stretch + offset[k]) as i32);
     let reach = Bounds { low: raw([0.0; 3]), high: raw(side) };
     let span = AXES.map(|axis| reach.side(axis));
-    Some(Grid { stretch, reach, span, base, offset, ..*finest })
+    Some(Grid { stretch, reach, span, base, offset, ..*powers })
 }
 
 /// Samples of parallel rays, in steps from the box's lowest corner.
@@ -89,13 +94,13 @@ struct SampleLattice {
 }
 
 impl SampleLattice {
-    /// The samples with the most steps of a pitch that `most` allows as stretch; `None` where there are too few.
-    fn new(rays: Rays, most: f64) -> Option<SampleLattice> {
+    /// The samples with the most steps of a pitch that `most` allows as stretch; `None` where there are too few, or the stretch is not more than `least`.
+    fn new(rays: Rays, (least, most): (f64, f64)) -> Option<SampleLattice> {
         let Rays::Orthographic { first, pitch, .. } = rays else { return None };
         let steps = (pitch * most).floor();
         let stretch = steps / pitch;
         let samples = SampleLattice { stretch, pitch: steps, first: first.map(|x| x * stretch) };
-        (steps >= FEWEST_STEPS && stretch > 1.0).then_some(samples)
+        (steps >= FEWEST_STEPS && stretch > least).then_some(samples)
     }
 
     /// Places of samples beyond whole numbers along x and y, 0 up to 1/2, for which the fewest samples are expected on wrong sides of edges.

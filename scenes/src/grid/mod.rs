@@ -28,7 +28,7 @@ pub struct Grid {
     pub word: u32,
     /// Raw units in a scene unit, as a power of two, but for the stretch: raw = (x - centre) 2^position stretch.
     pub position: i32,
-    /// Factor by which steps are shorter than 2^-position: 1 in words of 32 bits, else 1 up to about 2. In programs, whose positions and distances are
+    /// Factor by which steps are shorter than 2^-position: 1 in words of 32 bits, else 1 (31/32 where the position is given) up to about 2. In programs, whose positions and distances are
     /// multiples of 2^-position, a scene unit is this long.
     pub stretch: f64,
     /// Box of the triangles, raw: where rays start and end.
@@ -95,7 +95,7 @@ impl Grid {
         let down = |p: Vec3| p.map(|x| shifted(x, -unit));
         let box_down = (down(corners.0), down(corners.1));
         let grid = |power: i32| Grid::with(box_down, corners, word, unit, power);
-        let limit = (1i64 << (word - 2)) - 4;
+        let limit = box_limit(word);
         let middle = camera::centre(box_down);
         let far = largest(sub(box_down.0, middle)).max(largest(sub(box_down.1, middle)));
         // Begin a step or two finer than the extent says, and go down: rounding decides which is the finest that fits.
@@ -107,21 +107,19 @@ impl Grid {
             }
         };
         let has_near_lights = |grid: &Grid| scene.lights.iter().all(|light| grid.light(light.position).exponent == 0);
-        let coarser = || grid(power - 1).filter(has_near_lights);
-        let fitted = if is_fitted { fit::fitted(&finest, scene, view) } else { None };
-        let best = match fitted {
-            Some(fitted) => fitted,
+        let powers = match position {
             None if is_fitted || has_near_lights(&finest) => finest,
-            None => coarser().unwrap_or(finest),
-        };
-        // A format that the user sets may be coarser than the finest, and is refused if it does not fit.
-        let mut chosen = match position {
+            None => grid(power - 1).filter(has_near_lights).unwrap_or(finest),
+            // A format that the user sets may be coarser than the finest, and is refused if it does not fit.
             Some(position) => grid(position.clamp(-5000, 5000) + unit).ok_or_else(|| {
                 Diagnostic::error(format!("positions with {position} fraction bits do not fit a word of {word} bits"))
                     .hint(format!("this scene has room for pos={} or less", finest.position))
             })?,
-            None => best,
         };
+        // With a position that is given the box keeps its bits, so that steps are the same in any word that has these bits.
+        let room = if position.is_some() { (powers.width(), fit::LEAST_GIVEN) } else { (word, 1.0) };
+        let fitted = || fit::fitted(&powers, room, scene, view);
+        let mut chosen = if is_fitted { fitted().unwrap_or(powers) } else { powers };
         let bounds = chosen.bounds();
         let side = AXES.map(|axis| bounds.side(axis)).into_iter().max().unwrap_or(0);
         if corners.0 != corners.1 && side < 1 << FEWEST_BITS.min(word - 4) {
@@ -138,7 +136,7 @@ impl Grid {
 
     /// The grid with 2^power steps in a unit; `None` when the box does not fit.
     fn with(box_down: Corners, corners: Corners, word: u32, unit: i32, power: i32) -> Option<Grid> {
-        let limit = ((1i64 << (word - 2)) - 4) as f64;
+        let limit = box_limit(word) as f64;
         let base = AXES.map(|k| rounded_middle(box_down.0[k], box_down.1[k], power));
         let raw = |at: Vec3| AXES.map(|k| nearest(shifted(at[k] - base[k], power)));
         let (low, high) = (raw(box_down.0), raw(box_down.1));
@@ -147,6 +145,12 @@ impl Grid {
         let span = AXES.map(|k| (high[k] - low[k]) as u32);
         let (position, stretch, offset) = (power - unit, 1.0, [0.0; 3]);
         is_inside.then_some(Grid { word, position, stretch, reach, span, corners, unit, base, offset })
+    }
+
+    /// Bits of the shortest word whose box holds that of the triangles, but for the four numbers that boxes leave free at each end.
+    fn width(&self) -> u32 {
+        let raw = self.reach.low.iter().chain(&self.reach.high).map(|x| i64::from(x.unsigned_abs())).max();
+        (5..self.word).find(|&width| raw.is_none_or(|raw| raw <= 1 << (width - 2))).unwrap_or(self.word)
     }
 
     /// A light on the grid, in the finest steps in which the way from any point of the box to it fits: 2^(word-1) - 8 along each axis, since no ray starts
@@ -220,6 +224,11 @@ impl Grid {
     pub fn local_corners(&self) -> Corners {
         (self.local(self.corners.0), self.local(self.corners.1))
     }
+}
+
+/// Farthest raw coordinate of a triangle's corner from 0, in a word or in that part of it which the box is to take.
+const fn box_limit(width: u32) -> i64 {
+    (1 << (width - 2)) - 4
 }
 
 /// Middle of `low` and `high` on the grid of 2^power steps in a unit. It is counted in steps from `low`, so that it moves with the scene.

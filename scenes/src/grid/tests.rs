@@ -130,7 +130,7 @@ proptest! {
     fn short_words_use_what_a_box_leaves(vertices in points(2, 5), view in views(), word in 16u32..=32) {
         let scene = scene(vertices, vec![]);
         let Ok(grid) = Grid::new(&scene, &view, word, None) else { return Ok(()) };
-        let plain = Grid::new(&scene, &view, word, Some(grid.position)).unwrap();
+        let plain = Grid::of_powers(&scene, &view, word, Some(grid.position)).unwrap();
         prop_assert_eq!(plain.stretch, 1.0);
         prop_assert!((1.0..2.1).contains(&grid.stretch), "{}", grid.stretch);
         if word == 32 || grid.stretch == 1.0 {
@@ -149,6 +149,38 @@ proptest! {
                 prop_assert!((pitch - pitch.round()).abs() < 1e-6 * pitch || longest > room - 4.0, "{pitch}");
                 prop_assert!(longest > room * (1.0 - 1.0 / pitch) - 4.0 && longest <= room, "{longest} of {room}, {pitch}");
             }
+        }
+    }
+
+    #[test]
+    fn given_positions_use_what_their_bits_leave(
+        vertices in points(2, 5), view in views(), word in 16u32..=32, fewer in 0i32..7, longer in 0u32..8,
+    ) {
+        let scene = scene(vertices, vec![]);
+        let Ok(chosen) = Grid::new(&scene, &view, word, None) else { return Ok(()) };
+        let position = Some(chosen.position - fewer);
+        let Ok(given) = Grid::new(&scene, &view, word, position) else { return Ok(()) };
+        prop_assert_eq!(Some(given.position), position);
+        let powers = Grid::of_powers(&scene, &view, word, position).unwrap();
+        if word == 32 || given.stretch == 1.0 {
+            prop_assert_eq!(&given, &powers);
+            return Ok(());
+        }
+        // As many bits as the powers of two take, and all of them; at most a 32nd longer where they take a few numbers more.
+        let most = |b: &Bounds| b.low.iter().chain(&b.high).map(|x| x.abs()).max().unwrap();
+        let bits = (5..=word).find(|bits| most(&powers.reach) <= 1 << (bits - 2)).unwrap();
+        let room = (1 << (bits - 2)) - 4;
+        prop_assert!(most(&given.reach) <= room && (0.96..2.1).contains(&given.stretch), "{given:?}");
+        if let Camera::Perspective { .. } = view.camera {
+            prop_assert!(most(&given.reach) >= room - 3, "{:?} of {room}", given.reach);
+        }
+        // The finest position that fills its word is what is chosen.
+        prop_assert!(fewer > 0 || bits < word || chosen.stretch <= 1.0 || given == chosen, "{given:?} {chosen:?}");
+        // The same integers in any word that has steps that fit.
+        let other = (bits + longer).min(31);
+        let Ok(other) = Grid::new(&scene, &view, other, position) else { return Ok(()) };
+        for &vertex in &scene.vertices[..scene.triangles.len() * 3] {
+            prop_assert_eq!(other.raw(vertex), given.raw(vertex));
         }
     }
 
@@ -221,13 +253,31 @@ fn on_wrong_sides(count: u32, view: &View, options: &crate::image::MemoryOptions
 fn edges_along_columns_of_samples_keep_their_side() {
     // 150 strips and 320 columns: every 32 columns an edge is a 3,000th of a pixel beyond a sample, 0.44 of the steps that fit.
     let view = View { shift: [-0.367, -0.283], ..View::new((320, 240)) };
-    let of = |word, position| {
-        let formats = crate::cadrage::Overrides { position, ..Default::default() };
+    let of = |word, position, direction| {
+        let formats = crate::cadrage::Overrides { position, direction, ..Default::default() };
         on_wrong_sides(150, &view, &crate::image::MemoryOptions { word, formats, ..Default::default() })
     };
-    assert_eq!((of(20, None), of(24, None)), (0, 0));
+    assert_eq!((of(20, None, None), of(24, None, None)), (0, 0));
     let grid = Grid::new(&strips(150), &view, 20, None).unwrap();
-    assert_eq!(of(20, Some(grid.position)), 8, "steps of a power of two round both to the same number");
+    assert_eq!(of(28, Some(grid.position), None), 0, "these steps in a word that is longer");
+    assert_eq!(of(32, Some(grid.position), None), 8, "steps of a power of two round both to the same number");
+}
+
+#[test]
+fn a_given_position_fills_the_bits_that_it_takes() {
+    // 5 wide: 320 steps of 2^-6, 160 on both sides of the middle, where a box of 10 bits has 252 and one of 9 has 124.
+    let box_of_five = scene(vec![[0.0; 3], [5.0, 3.1, 0.0], [5.0, 0.0, 0.0]], vec![]);
+    let of = |word, position| Grid::new(&box_of_five, &perspective(None), word, Some(position));
+    let given = of(20, 6).unwrap();
+    assert_eq!((given.position, given.bounds().side(0)), (6, 502), "320 steps are 2^-6, and 2 (2^8 - 4 - 1) are there");
+    assert_eq!(of(31, 6).unwrap().raw([5.0, 3.1, 0.0]), given.raw([5.0, 3.1, 0.0]));
+    assert_eq!(of(32, 6).unwrap().bounds().side(0), 320);
+    // 8 wide, not on the grid: 256 steps of 2^-6 on both sides, of which a box of 10 bits has 252, so these are a little longer.
+    let box_of_eight = scene(vec![[0.1; 3], [8.1, 3.1, 0.1], [5.0, 0.1, 0.1]], vec![]);
+    let longer = Grid::new(&box_of_eight, &perspective(None), 20, Some(6)).unwrap();
+    assert_eq!((longer.position, longer.reach.side(0)), (6, 502));
+    assert!((0.98..1.0).contains(&longer.stretch), "{}", longer.stretch);
+    assert!(of(20, 5).is_err_and(|report| report.render(false).contains("246 grid steps long")));
 }
 
 #[test]

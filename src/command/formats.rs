@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 use kernels::KernelSet;
 use messages::Diagnostic;
+use scenes::cadrage::Overrides;
 use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::layout::Layout;
 use scenes::model::View;
@@ -62,7 +63,8 @@ pub struct FormatsArguments {
     /// Pictures of each scene that the search draws, at as many places of the samples in their pixels, 1 to 8.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=8), default_value = "4")]
     shifts: u8,
-    /// Bits that are added to the fewest that keep the error, for scenes and sample positions that the search does not see, 0 to 8.
+    /// Bits that are added to the fewest that keep the error, for scenes and sample positions that the search does not see, 0 to 8; half
+    /// as many to weights and colours.
     #[arg(long, value_name = "BITS", value_parser = clap::value_parser!(u32).range(0..=8), default_value = "2")]
     guard: u32,
     /// Scenes that the search does not see, to check on; may be repeated [default: up to 5 generated ones].
@@ -206,8 +208,11 @@ fn settings_file(found: &FormatsResult) -> String {
     let mut word = 0;
     for quantity in &found.quantities {
         match quantity.integer {
-            Some(_) => {
+            Some(_) if quantity.is_given => {
                 let _ = writeln!(text, "{} = {}", quantity.quantity, quantity.bits);
+            }
+            Some(_) => {
+                let _ = writeln!(text, "# {}: as many as the scene has room for", quantity.quantity);
             }
             None => word = quantity.bits,
         }
@@ -233,6 +238,16 @@ fn cells(figures: &ChoiceFigures) -> Vec<String> {
     ]
 }
 
+/// Difference of the formats that were found from a uniform word.
+fn beside(found: &FormatsResult) -> &'static str {
+    let is_given = |name: &str| found.quantities.iter().any(|one| one.quantity == name && one.is_given);
+    match (is_given(Overrides::NAMES[0]), is_given(Overrides::NAMES[4])) {
+        (true, _) => "with positions that are as fine in each scene",
+        (_, true) => "with the positions of that word, since others would move more",
+        _ => "that word itself, since other formats would move more",
+    }
+}
+
 fn text(found: &FormatsResult) -> String {
     let mut text = format!(
         "{}: profile {}, layout {}, {} x {} pixels, {} shifts, {} guard bits; {} pictures drawn, {} known\n\n",
@@ -254,7 +269,8 @@ fn text(found: &FormatsResult) -> String {
         None => ["-".to_owned(), "-".to_owned()],
     };
     for one in &found.quantities {
-        let mut cells = vec![one.quantity.to_owned(), number(one.integer), number(one.estimate), one.bits.to_string()];
+        let bits = if one.is_given { one.bits.to_string() } else { "by scene".to_owned() };
+        let mut cells = vec![one.quantity.to_owned(), number(one.integer), number(one.estimate), bits];
         cells.extend(step(&one.fewer).into_iter().chain(step(&one.more)));
         rows.push(cells);
     }
@@ -267,7 +283,13 @@ fn text(found: &FormatsResult) -> String {
         rows.push([vec![name], cells(&one.figures)].concat());
     }
     text += &table(rows);
-    text += "\nA pixel, mean of the scenes; errors are the worst of them. In words the scene chooses the formats.\n\n";
+    text += "\nA pixel, mean of the scenes; errors are the worst of them. In words the scene chooses the formats.\n";
+    let formats::UniformShare { octets, nj: [least, most] } = found.share;
+    let _ = writeln!(
+        text,
+        "Found: {octets:.2} of the octets and {least:.2} to {most:.2} of the nJ of the shortest word, {}.\n",
+        beside(found)
+    );
     let mut rows = vec![row(["in memory", "node", "reference", "triangle", "material", "light", "pixel"])];
     for scene in &found.fields {
         let bits = scene.bits.0.iter().map(|(_, bits)| bits.to_string());

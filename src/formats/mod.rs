@@ -52,8 +52,10 @@ pub struct QuantityBits {
     pub integer: Option<i32>,
     /// First estimate of the fraction bits, from ranges and the demand; null for the word.
     pub estimate: Option<i32>,
-    /// Fewest fraction bits with the guard, of the word all bits.
+    /// Fewest fraction bits with the guard, of the word all bits; those of the scene that has fewest where the scenes choose.
     pub bits: i32,
+    /// True where the format is one for all scenes; false where each scene has what the word leaves it.
+    pub is_given: bool,
     /// Figures with one bit fewer; null where there is none.
     pub fewer: Option<ChoiceFigures>,
     /// Figures with one bit more; null where there is none.
@@ -95,6 +97,15 @@ pub struct UniformWord {
     pub figures: ChoiceFigures,
 }
 
+/// Cost of the formats that were found, by that of the shortest uniform word that keeps the demand, in the same layout.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct UniformShare {
+    /// Octets that the bus moved, 1 for as many.
+    pub octets: f64,
+    /// Nanojoules: the least and the most of published tables, each by that of the word.
+    pub nj: [f64; 2],
+}
+
 /// The fields that memory takes in a scene.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct SceneFields {
@@ -122,12 +133,14 @@ pub struct FormatsResult {
     pub layout: &'static str,
     /// Places of the samples that were searched with.
     pub shifts: Vec<[f64; 2]>,
-    /// Bits that were added to the fewest that kept the demand, of quantities and of the uniform word.
+    /// Bits that were added to the fewest that kept the demand, of quantities (half as many of weights and colours) and of the uniform word.
     pub guard: u32,
     /// Quantities with their fewest bits, the word last.
     pub quantities: Vec<QuantityBits>,
     /// Figures of the formats that were found.
     pub found: ChoiceFigures,
+    /// Their part of the octets and nanojoules of the shortest uniform word.
+    pub share: UniformShare,
     /// Bits of the fields in memory, by scene.
     pub fields: Vec<SceneFields>,
     /// Words in which the scenes choose all formats, longest first; then the shortest that keeps the demand in the layout `wide`.
@@ -147,7 +160,7 @@ pub struct FormatsResult {
 pub struct SearchEffort {
     /// Pictures of each scene, at as many of [`SEARCHED_SHIFTS`].
     pub shifts: usize,
-    /// Bits that are added to the fewest that keep the demand, for what the search does not see.
+    /// Bits that are added to the fewest that keep the demand, for what the search does not see; half as many to weights and colours.
     pub guard: u32,
 }
 
@@ -176,11 +189,9 @@ pub fn find(
     };
     let mut trials = FormatTrials::new(job, demand, trial_scenes(seen, shifts)?, progress);
     let Some(searched) = search::search(&mut trials, demand, guard as i32)? else { return Ok(None) };
-    let search::FormatSearch { quantities, found } = searched;
+    let search::FormatSearch { quantities, found, uniform: best } = searched;
     // What stands beside: words that leave all formats to the scenes.
-    let best = search::uniform_word(&mut trials, found.word, guard as i32)?;
-    let mut words: Vec<u32> = best.into_iter().flat_map(|best| [best.saturating_sub(1), best]).collect();
-    words.extend([12, 16, 20, 24, 28, 32]);
+    let mut words = vec![best.saturating_sub(1), best, 12, 16, 20, 24, 28, 32];
     words.retain(|word| (WORDS.0..=WORDS.1).contains(word));
     words.sort_unstable_by(|a, b| b.cmp(a));
     words.dedup();
@@ -190,20 +201,33 @@ pub fn find(
     let layout = job.layout().name();
     let uniform = words.into_iter().map(|word| {
         let figures = measure(FormatChoice::uniform(word))?;
-        Ok(UniformWord { word, layout, is_best: best == Some(word), figures })
+        Ok(UniformWord { word, layout, is_best: best == word, figures })
     });
     let mut uniform = uniform.collect::<Result<Vec<_>, Failure>>()?;
+    let best_figures = measure(FormatChoice::uniform(best))?;
+    let share = UniformShare {
+        octets: figures.octets / best_figures.octets,
+        nj: [figures.pixel_nj.least / best_figures.pixel_nj.least, figures.pixel_nj.most / best_figures.pixel_nj.most],
+    };
     // What each bit buys: one fewer, and one more.
     let mut bits = Vec::new();
     for (at, quantity) in quantities.iter().enumerate() {
-        let step = |more: i32| found.with(at, quantity.fewest + more);
+        let is_given = found.bits[at].is_some();
+        // A quantity that is left to the scenes has no bit to take away or to add.
+        let mut step = |more: i32| -> Result<Option<ChoiceFigures>, Failure> {
+            if !is_given {
+                return Ok(None);
+            }
+            Ok(fitting(measure(found.with(at, quantity.fewest + more))?))
+        };
         bits.push(QuantityBits {
             quantity: Overrides::NAMES[at],
             integer: Some(quantity.integer),
             estimate: Some(quantity.estimate),
             bits: quantity.fewest,
-            fewer: fitting(measure(step(-1))?),
-            more: fitting(measure(step(1))?),
+            is_given,
+            fewer: step(-1)?,
+            more: step(1)?,
         });
     }
     let word = |word: u32| (WORDS.0..=WORDS.1).contains(&word).then_some(FormatChoice { word, ..found });
@@ -212,19 +236,20 @@ pub fn find(
         integer: None,
         estimate: None,
         bits: found.word as i32,
+        is_given: true,
         fewer: word(found.word - 1).map(&mut measure).transpose()?.and_then(fitting),
         more: word(found.word + 1).map(&mut measure).transpose()?.and_then(fitting),
     });
     let fields = fields(job, seen, &found);
     let (mut drawn, mut reused) = (trials.drawn, trials.reused);
     // Without packed structures a shorter word moves as many octets as a longer one.
-    if let Some(word) = best.filter(|_| job.layout() == Layout::Packed) {
+    if job.layout() == Layout::Packed {
         let wide = Job { layout: Some(Layout::Wide), ..job.clone() };
         let mut trials = FormatTrials::new(&wide, demand, trial_scenes(seen, shifts)?, progress);
-        let figures = ChoiceFigures::of(trials.measure(FormatChoice::uniform(word))?);
+        let figures = ChoiceFigures::of(trials.measure(FormatChoice::uniform(best))?);
         drawn += trials.drawn;
         reused += trials.reused;
-        uniform.push(UniformWord { word, layout: Layout::Wide.name(), is_best: true, figures });
+        uniform.push(UniformWord { word: best, layout: Layout::Wide.name(), is_best: true, figures });
     }
     // What the search did not see.
     let mut checked = |scenes: &NamedScenes| -> Result<Vec<TrialFigures>, Failure> {
@@ -247,6 +272,7 @@ pub fn find(
         guard,
         quantities: bits,
         found: figures,
+        share,
         fields,
         uniform,
         seen,

@@ -1,5 +1,6 @@
-//! The search for the fewest bits: of each quantity in turn, in the order of what a bit costs, then of the word.
+//! The search for the fewest bits: of a word in which scenes choose their formats, then of each quantity in turn, in the order of what a bit costs.
 
+use super::ChoiceFigures;
 use super::choice::{DemandedError, FormatChoice, integer_bits};
 use super::trial::FormatTrials;
 use crate::failure::Failure;
@@ -7,9 +8,19 @@ use crate::failure::Failure;
 /// Least and most bits of a word.
 pub const WORDS: (u32, u32) = (8, 32);
 
+/// Longest word in which positions that are given have steps that fit the scene, as those have that a scene chooses in words below 32 bits.
+const LONGEST_FITTED: u32 = 31;
+
+/// Number of positions in [`FormatChoice::bits`].
+const POSITION: usize = 0;
+
 /// Numbers of the quantities in the order of what their bits cost, as [`FormatChoice::bits`] has them: positions fill memory and so the bus;
 /// distances follow them; the others cost bits of registers.
-pub const ORDER: [usize; 6] = [0, 3, 1, 4, 5, 2];
+pub const ORDER: [usize; 6] = [POSITION, 3, 1, 4, 5, 2];
+
+/// Numbers of weights and colours. Their rounding makes each pixel a little different and none another one, so that what was not seen differs little
+/// from what was; half the guard is enough, which is 6 dB for the usual 2 bits.
+const SMOOTH: [usize; 2] = [4, 5];
 
 /// Longer formats that have to keep the demand beside one that does. A picture may be lucky: rays pass edges by less than the format tells apart, and
 /// with one bit more a pixel flips.
@@ -24,7 +35,8 @@ pub struct QuantitySearch {
     pub start: i32,
     /// First estimate of the fraction bits, from the demand alone.
     pub estimate: i32,
-    /// Fewest fraction bits that keep the demand, and the guard, beside the quantities before it and the others at their start.
+    /// Fewest fraction bits that keep the demand, and the guard, beside the quantities before it and the others at their start; the start where the
+    /// choice leaves the quantity to the scenes.
     pub fewest: i32,
 }
 
@@ -33,61 +45,113 @@ pub struct QuantitySearch {
 pub struct FormatSearch {
     /// Quantities, in the order of [`FormatChoice::bits`].
     pub quantities: [QuantitySearch; 6],
-    /// The choice with the fewest bits.
+    /// The choice that moves the fewest octets.
     pub found: FormatChoice,
+    /// The shortest word in which the scenes choose their formats and keep the demand, and the guard.
+    pub uniform: u32,
 }
 
-/// The shortest word in which the scenes choose their formats and keep the demand, and the guard; `None` where the longest does not.
+/// The fewest bits of everything; `None` where the longest word does not keep the demand. `guard` bits are added to what keeps it,
+/// half as many to [`SMOOTH`] quantities.
 ///
-/// # Errors
-/// See [`FormatTrials::keeps`].
-pub fn uniform_word(trials: &mut FormatTrials, guess: u32, guard: i32) -> Result<Option<u32>, Failure> {
-    let (least, most) = WORDS;
-    let mut keeps = |word: i32| trials.keeps(FormatChoice::uniform(word as u32));
-    let word = safest(least as i32, most as i32, guess as i32, &mut keeps)?;
-    Ok(word.map(|word| (word + guard).min(most as i32) as u32))
-}
-
-/// The fewest bits of everything, starting from the longest word; `None` where that does not keep the demand. `guard` bits are added to what keeps it.
+/// Two choices are made, and the one that moves fewer octets is the answer. In the first all quantities are given, each as short as it may be and one for
+/// all scenes: scenes with small boxes then have narrow positions. In the second each scene has the positions that the shortest uniform word gives it,
+/// and the other quantities are given. So the answer moves no more than that word, unless each is refused; then the word itself is the answer.
 ///
 /// # Errors
 /// See [`FormatTrials::keeps`].
 pub fn search(trials: &mut FormatTrials, demand: DemandedError, guard: i32) -> Result<Option<FormatSearch>, Failure> {
-    let longest = FormatChoice::uniform(WORDS.1);
-    let formats = trials.formats(&longest);
-    if formats.is_empty() || !trials.keeps(longest)? {
-        return Ok(None);
+    let (least, most) = WORDS;
+    let guess = first_word(demand);
+    let mut keeps = |word: i32| trials.keeps(FormatChoice::uniform(word as u32));
+    let Some(kept) = safest(least as i32, most as i32, guess, &mut keeps)? else { return Ok(None) };
+    let uniform = (kept + guard).min(most as i32) as u32;
+    let is_fitted = kept < most as i32 && trials.keeps(FormatChoice::uniform(LONGEST_FITTED))?;
+    let long = FormatChoice::uniform(if is_fitted { LONGEST_FITTED } else { most });
+    let mut given = Shortening::new(trials, demand, long);
+    let position = trials.formats(&FormatChoice::uniform(kept as u32)).iter().map(|formats| formats.position).min();
+    let mut guesses = given.quantities.map(|quantity| Some(quantity.estimate));
+    guesses[POSITION] = position.or(guesses[POSITION]);
+    given.shorten(trials, guard, guesses)?;
+    given.word(trials)?;
+    let plain = Shortening::new(trials, demand, FormatChoice::uniform(uniform));
+    let mut chosen = plain.clone();
+    let mut guesses = std::array::from_fn(|at| Some(given.quantities[at].fewest - guard_of(at, guard)));
+    guesses[POSITION] = None;
+    chosen.shorten(trials, guard, guesses)?;
+    // With a large guard none may keep the demand, which figures then say.
+    let mut ranked = Vec::new();
+    for one in [plain, given, chosen] {
+        let figures = ChoiceFigures::of(trials.measure(one.choice)?);
+        ranked.push((!figures.is_kept, figures.octets, one));
     }
-    // Ranges: what stands before the point, of the scene that needs most; a format is one for all scenes, so it has the fraction bits of the
-    // scene that has fewest.
-    let quantity = |at: usize| {
-        let integer = formats.iter().map(|one| integer_bits(one, at)).max().unwrap_or(2);
-        let start = formats.iter().map(|one| one.entries()[at].1).min().unwrap_or(0);
-        let estimate = estimate(at, start, integer, demand);
-        QuantitySearch { integer, start, estimate, fewest: start }
-    };
-    let mut quantities = std::array::from_fn(quantity);
-    let mut choice = FormatChoice { word: WORDS.1, bits: std::array::from_fn(|at| Some(quantities[at].start)) };
-    // One quantity after the other, from its estimate on.
-    for at in ORDER {
-        let QuantitySearch { start, estimate, integer, .. } = quantities[at];
-        let least = if at == 0 || at == 3 { start - WORDS.1 as i32 + integer.max(2) } else { 0 };
-        let mut keeps = |bits: i32| trials.keeps(choice.with(at, bits));
-        if let Some(found) = safest(least, start, estimate, &mut keeps)? {
-            // What no picture depends on needs no guard.
-            let found = if found == least { found } else { (found + guard).min(start) };
-            quantities[at].fewest = found;
-            choice = choice.with(at, found);
+    let best = ranked.into_iter().min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    Ok(best.map(|(_, _, Shortening { quantities, choice })| FormatSearch { quantities, found: choice, uniform }))
+}
+
+/// A choice whose quantities become shorter one after the other.
+#[derive(Clone, Debug)]
+struct Shortening {
+    quantities: [QuantitySearch; 6],
+    choice: FormatChoice,
+}
+
+impl Shortening {
+    /// The choice to start from, in which scenes choose their formats.
+    fn new(trials: &FormatTrials, demand: DemandedError, choice: FormatChoice) -> Shortening {
+        let formats = trials.formats(&choice);
+        // Ranges: what stands before the point, of the scene that needs most; a format is one for all scenes, so it has the fraction bits of the
+        // scene that has fewest.
+        let quantity = |at: usize| {
+            let integer = formats.iter().map(|one| integer_bits(one, at)).max().unwrap_or(2);
+            let start = formats.iter().map(|one| one.entries()[at].1).min().unwrap_or(0);
+            let estimate = estimate(at, (start, choice.word as i32), integer, demand);
+            QuantitySearch { integer, start, estimate, fewest: start }
+        };
+        Shortening { quantities: std::array::from_fn(quantity), choice }
+    }
+
+    /// Gives each quantity its fewest bits, in their order, each from its guess on; one without a guess stays as the scenes choose it.
+    fn shorten(&mut self, trials: &mut FormatTrials, guard: i32, guesses: [Option<i32>; 6]) -> Result<(), Failure> {
+        for at in ORDER {
+            let QuantitySearch { start, integer, .. } = self.quantities[at];
+            let Some(guess) = guesses[at] else { continue };
+            let is_place = at == POSITION || at == 3;
+            let least = if is_place { start - self.choice.word as i32 + integer.max(2) } else { 0 };
+            let choice = self.choice;
+            let mut keeps = |bits: i32| trials.keeps(choice.with(at, bits));
+            if let Some(found) = safest(least, start, guess, &mut keeps)? {
+                // What no picture depends on needs no guard.
+                let found = if found == least { found } else { (found + guard_of(at, guard)).min(start) };
+                self.quantities[at].fewest = found;
+                self.choice = choice.with(at, found);
+            }
         }
+        Ok(())
     }
-    // The word: as wide as the widest quantity, or wider where intermediates ask for it.
-    let widest = (0..6).map(|at| quantities[at].integer + quantities[at].fewest).max().unwrap_or(8);
-    let widest = widest.clamp(WORDS.0 as i32, WORDS.1 as i32);
-    let mut keeps = |word: i32| trials.keeps(FormatChoice { word: word as u32, ..choice });
-    if let Some(word) = safest(WORDS.0 as i32, WORDS.1 as i32, widest, &mut keeps)? {
-        choice.word = word as u32;
+
+    /// Makes the word as wide as the widest quantity, or wider where intermediates ask for it.
+    fn word(&mut self, trials: &mut FormatTrials) -> Result<(), Failure> {
+        let (least, most) = (WORDS.0 as i32, self.choice.word as i32);
+        let widest = self.quantities.iter().map(|quantity| quantity.integer + quantity.fewest).max().unwrap_or(least);
+        let choice = self.choice;
+        let mut keeps = |word: i32| trials.keeps(FormatChoice { word: word as u32, ..choice });
+        if let Some(word) = safest(least, most, widest, &mut keeps)? {
+            self.choice.word = word as u32;
+        }
+        Ok(())
     }
-    Ok(Some(FormatSearch { quantities, found: choice }))
+}
+
+/// Bits that are added to the fewest of a quantity.
+fn guard_of(quantity: usize, guard: i32) -> i32 {
+    if SMOOTH.contains(&quantity) { (guard + 1) / 2 } else { guard }
+}
+
+/// Word to begin with: half a step of a position flips pixels, so that twice the bits of the demanded error are asked for, a sign, and what
+/// lies between a pixel and the box.
+fn first_word(demand: DemandedError) -> i32 {
+    (2.0 * -(demand.rmse() * 12f64.sqrt()).log2()) as i32 + 6
 }
 
 /// Fraction bits with which the rounding of one quantity alone comes to about the demanded error.
@@ -96,13 +160,13 @@ pub fn search(trials: &mut FormatTrials, demand: DemandedError, guard: i32) -> R
 /// nearly as they are. Directions are multiplied by a few normals and ways; half a dozen roundings add two bits. Positions and distances move
 /// what is seen: a step moves an edge by a share of a pixel, which flips pixels of that share of all edges, so that the square of the error, and
 /// not the error, goes with the step.
-fn estimate(quantity: usize, start: i32, integer: i32, demand: DemandedError) -> i32 {
+fn estimate(quantity: usize, (start, word): (i32, i32), integer: i32, demand: DemandedError) -> i32 {
     let bits = -(demand.rmse() * 12f64.sqrt()).log2();
     let bits = match quantity {
         0 | 3 => {
             // Relative to the range that the quantity fills.
-            let range = start + integer - WORDS.1 as i32;
-            return ((2.0 * bits) as i32 + range).clamp(start - WORDS.1 as i32 + 2, start);
+            let range = start + integer - word;
+            return ((2.0 * bits) as i32 + range).clamp(start - word + 2, start);
         }
         1 => bits + 2.0,
         2 => 0.0,
@@ -201,10 +265,10 @@ mod tests {
     #[test]
     fn a_tighter_demand_takes_more_bits() {
         for quantity in [0, 1, 3, 4, 5] {
-            let bits = [40.0, 60.0, 80.0].map(|psnr| estimate(quantity, 27, 5, DemandedError::Psnr(psnr)));
+            let bits = [40.0, 60.0, 80.0].map(|psnr| estimate(quantity, (27, 32), 5, DemandedError::Psnr(psnr)));
             assert!(bits.windows(2).all(|pair| pair[0] < pair[1]), "{quantity}: {bits:?}");
         }
         // 60 dB are 0.001: steps of 2^-8.2 have that error.
-        assert_eq!(estimate(5, 29, 3, DemandedError::Psnr(60.0)), 9);
+        assert_eq!(estimate(5, (29, 32), 3, DemandedError::Psnr(60.0)), 9);
     }
 }

@@ -4,22 +4,15 @@ use serde_json::Value;
 
 use super::session::Session;
 
-fn bits(found: &Value, quantity: &str) -> i64 {
-    let rows = found["quantities"].as_array().expect("a list");
-    let row = rows.iter().find(|row| row["quantity"] == quantity).unwrap_or_else(|| panic!("no row of {quantity}"));
-    row["bits"].as_i64().expect("a number")
-}
-
 #[test]
 fn formats_keep_the_demand_and_are_read_back() {
     let session = Session::new();
     let found = session.json("formats triangle slabs --size 12x9 --psnr 50 --shifts 1 --check triangle -o short.toml");
     assert_eq!(found["found"]["is_kept"], true);
     assert_eq!(found["layout"], "packed");
-    // The word is the shortest.
-    let word = found["quantities"].as_array().expect("a list").last().expect("the word comes last");
+    let quantities = found["quantities"].as_array().expect("a list");
+    let word = quantities.last().expect("the word comes last");
     assert_eq!(word["quantity"], "word");
-    assert!(word["fewer"].is_null() || word["fewer"]["is_kept"] == false, "{word}");
     let uniform = found["uniform"].as_array().expect("a list");
     let best = uniform.iter().find(|row| row["is_best"] == true).expect("32 bits are enough");
     assert_eq!((&best["is_kept"], &found["guard"]), (&true.into(), &2.into()));
@@ -27,10 +20,27 @@ fn formats_keep_the_demand_and_are_read_back() {
     let wide = uniform.iter().find(|row| row["layout"] == "wide").expect("it comes last");
     assert_eq!((&wide["word"], &wide["worst_psnr_db"]), (&best["word"], &best["worst_psnr_db"]));
     assert!(wide["octets"].as_f64() > found["found"]["octets"].as_f64());
-    for scene in ["triangle", "slabs"] {
+    // No more than the best word takes, and the share says so.
+    let [taken, best] = [&found["found"], best].map(|one| one["octets"].as_f64().expect("a number"));
+    assert!(
+        taken <= best && found["share"]["octets"].as_f64() == Some(taken / best),
+        "{taken} {best} {}",
+        found["share"]
+    );
+    for (at, scene) in ["triangle", "slabs"].into_iter().enumerate() {
         let drawn = session.json(&format!("render {scene} --size 12x9 --shift 0.137,0.071 --settings short.toml"));
-        for quantity in ["word", "pos", "dir", "bary", "t", "weight", "colour"] {
-            assert_eq!(drawn["formats"][quantity].as_i64(), Some(bits(&found, quantity)), "{scene}, {quantity}");
+        for quantity in quantities.iter().filter(|quantity| quantity["is_given"] == true) {
+            let name = quantity["quantity"].as_str().expect("a name");
+            assert_eq!(drawn["formats"][name], quantity["bits"], "{scene}, {name}");
+        }
+        // The very picture that the search drew.
+        let searched = &found["found"]["scenes"][at];
+        let close = |a: &Value, b: f64| (a.as_f64().expect("a number") - b).abs() < 1e-9 * b.abs();
+        let moved = drawn["bus"]["moved"].as_f64().expect("a number") / 108.0;
+        assert!(close(&searched["octets"], moved), "{searched} {moved}");
+        match drawn["error"]["psnr_db"].as_f64() {
+            Some(psnr) => assert!(close(&searched["error"]["psnr_db"], psnr), "{searched} {psnr}"),
+            None => assert!(searched["error"]["psnr_db"].is_null(), "{searched}"),
         }
         assert_eq!(drawn["settings"]["layout"], "packed");
         assert!(drawn["error"]["psnr_db"].as_f64().is_none_or(|psnr| psnr >= 50.0), "{}", drawn["error"]);

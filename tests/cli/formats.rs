@@ -1,5 +1,7 @@
 //! Formats that are found keep the demand, and are read back by other commands.
 
+use lancer::formats::SEARCHED_SHIFTS;
+use lancer::numeral::short;
 use serde_json::Value;
 
 use super::session::Session;
@@ -45,6 +47,47 @@ fn formats_keep_the_demand_and_are_read_back() {
         assert_eq!(drawn["settings"]["layout"], "packed");
         assert!(drawn["error"]["psnr_db"].as_f64().is_none_or(|psnr| psnr >= 50.0), "{}", drawn["error"]);
     }
+}
+
+/// Octets a pixel, PSNR, and nanojoules a pixel in the mean of what tables say, of a scene over the shifts of a search.
+fn over_shifts(session: &Session, scene: &str, formats: &str) -> (f64, f64, f64) {
+    let (mut octets, mut square, mut nanojoules) = (0.0, 0.0, 0.0);
+    let shifts = &SEARCHED_SHIFTS[..4];
+    for [x, y] in shifts {
+        let drawn = session.json(&format!("render {scene} --size 32x24 --shift={x},{y} --energy {formats}"));
+        let number = |value: &Value| value.as_f64().expect("a number");
+        octets += number(&drawn["bus"]["moved"]);
+        square += number(&drawn["error"]["rmse"]).powi(2);
+        let range = &drawn["energy"]["frame_nj"];
+        nanojoules += (number(&range["least"]) + number(&range["most"])) / 2.0;
+    }
+    let pictures = shifts.len() as f64;
+    (octets / pictures / 768.0, -10.0 * (square / pictures).log10(), nanojoules / pictures / 768.0)
+}
+
+#[test]
+fn formats_of_five_scenes_move_a_tenth_less_than_the_best_word() {
+    let page =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/bits.md")).expect("the page is there");
+    let (_, settings) = page.split_once("```toml\n").expect("the formats");
+    let (settings, _) = settings.split_once("```").expect("their end");
+    let session = Session::new();
+    session.write("five.toml", settings);
+    let (mut found, mut uniform) = ([0.0; 2], [0.0; 2]);
+    for scene in ["cornell", "sphereflake", "slabs", "mirrors", "terrain"] {
+        let own = over_shifts(&session, scene, "--settings five.toml");
+        let word = over_shifts(&session, scene, "--profile ray --layout packed --word 26");
+        assert!(own.1 >= 60.0 && word.1 >= 60.0, "{scene}: {own:?} {word:?}");
+        let [octets, beside] = [own.0, word.0].map(|octets| short(octets.round() as u64));
+        let row = format!("| {scene} | {octets} | {beside} | {:.1} dB |\n", own.1);
+        assert!(page.contains(&row), "docs/bits.md lacks {row}");
+        found = [found[0] + own.0 / 5.0, found[1] + own.2 / 5.0];
+        uniform = [uniform[0] + word.0 / 5.0, uniform[1] + word.2 / 5.0];
+    }
+    let [octets, beside] = [found[0], uniform[0]].map(|octets| short(octets.round() as u64));
+    let row = format!("| mean | {octets} | {beside} | |\n");
+    assert!(page.contains(&row), "docs/bits.md lacks {row}");
+    assert!(found[0] <= 0.9 * uniform[0] && found[1] <= 0.9 * uniform[1], "{found:?} {uniform:?}");
 }
 
 #[test]

@@ -11,6 +11,7 @@ use messages::Report;
 use rayon::prelude::*;
 
 use super::TracedScene;
+use super::open::{FunctionStack, ItemPlace, OpenFunction, functions_around};
 use crate::load::Load;
 
 /// A function that was open for a time.
@@ -47,22 +48,6 @@ pub fn functions(scene: &TracedScene, trace: &Trace, config: &Config) -> Result<
     Ok(slices)
 }
 
-/// Place in a work item: clocks of computing up to it, and transfers that were asked for before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct ItemPlace {
-    busy: u64,
-    transfers: usize,
-}
-
-/// A function that is open, or was, in a lone run.
-#[derive(Clone, Debug)]
-struct OpenFunction {
-    name: String,
-    depth: usize,
-    start: ItemPlace,
-    end: ItemPlace,
-}
-
 /// A work item as a lone core runs it.
 #[derive(Clone, Debug, Default)]
 struct LoneItem {
@@ -85,7 +70,8 @@ fn of_item(trace: &Trace, load: &Load, config: &Config, item: &Item) -> Result<V
         message: Some(message),
         step_limit: config.step_limit,
     };
-    let run = run_alone(Stepper::new(lone)?, &load.build.cores);
+    let program = &load.build.cores;
+    let run = run_alone(Stepper::new(lone)?, program);
     let course = ItemCourse::new(trace, item, &run.transfers);
     // A program that asks which core it is, or reads what others write, may do something else alone.
     if run.instructions != item.instructions || course.busy() != run.busy {
@@ -93,7 +79,10 @@ fn of_item(trace: &Trace, load: &Load, config: &Config, item: &Item) -> Result<V
     }
     let slice = |function: OpenFunction| FunctionSlice {
         core: item.core,
-        name: function.name,
+        name: function
+            .function
+            .map_or("(no function)", |function| &program.regions[usize::from(function)].name)
+            .to_owned(),
         depth: function.depth,
         start: course.clock(function.start),
         end: course.clock(function.end),
@@ -104,24 +93,13 @@ fn of_item(trace: &Trace, load: &Load, config: &Config, item: &Item) -> Result<V
 /// Runs an item from its message on, and notes when functions begin and end.
 fn run_alone(mut stepper: Stepper, program: &Program) -> LoneItem {
     let mut run = LoneItem::default();
-    let mut open: Vec<OpenFunction> = Vec::new();
+    let mut functions = FunctionStack::default();
     // What comes before the message lies before the item.
     let mut before_message = Some(Clocks(0));
     loop {
         let pc = stepper.code.word(stepper.state().pc);
-        let depth = stepper.calls().len();
         if before_message.is_none() {
-            let place = run.place(&stepper);
-            let name = program.function(pc).unwrap_or("(no function)");
-            // Close what the last instruction left, then open what it came to.
-            let is_left = |open: &OpenFunction| open.depth > depth || open.depth == depth && open.name != name;
-            while open.last().is_some_and(is_left) {
-                let ended = open.pop().expect("looked at above");
-                run.functions.push(OpenFunction { end: place, ..ended });
-            }
-            if open.last().is_none_or(|function| function.depth < depth) {
-                open.push(OpenFunction { name: name.to_owned(), depth, start: place, end: place });
-            }
+            functions.go(&functions_around(program, pc), stepper.calls().len(), run.place(&stepper));
         }
         let busy = stepper.busy();
         let Some(executed) = stepper.step() else { break };
@@ -135,7 +113,7 @@ fn run_alone(mut stepper: Stepper, program: &Program) -> LoneItem {
         }
     }
     let place = run.place(&stepper);
-    run.functions.extend(open.into_iter().map(|function| OpenFunction { end: place, ..function }));
+    run.functions = functions.end(place);
     (run.busy, run.instructions) = (place.busy, stepper.steps());
     run
 }

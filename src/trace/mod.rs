@@ -3,6 +3,7 @@
 
 mod functions;
 pub mod instruction;
+mod open;
 pub mod output;
 mod perfetto;
 mod wave;

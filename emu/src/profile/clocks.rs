@@ -65,7 +65,8 @@ impl PlaceUse {
 pub struct RegionClocks {
     /// Work of its own instructions.
     pub exclusive: WorkClocks,
-    /// Work between entering and leaving it, all that was called included; of nested calls of itself only the outermost counts.
+    /// Work between entering and leaving it, all that was called included, and what it has jumped to in other functions; of nested calls of itself only
+    /// the outermost counts.
     pub inclusive: WorkClocks,
 }
 

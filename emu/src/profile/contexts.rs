@@ -4,18 +4,24 @@
 //! In a program where `pixel` calls `trace` and `trace` calls `root`, what `root` executes is counted in the context {pixel, trace}. The
 //! inclusive total of `trace` is the sum over all contexts with `trace` in them, and of its own words in the others. A function that calls
 //! itself is in the set once, so that of nested calls only the outermost counts.
+//!
+//! A jump from a function into another one, or running on into it, is a call with a return behind it: the context becomes that of a callee, but no
+//! call is opened. Where `root` jumps to `scale`, that executes in {pixel, trace, root}, and its return to `trace` ends both. Two functions that
+//! jump to each other add nothing to the set after the first round.
+
+mod fold;
 
 use std::collections::HashMap;
 
 use isa::Counts;
 
 use super::cells::ClockCells;
-use super::clocks::{CallPath, ClockProfile, WorkClocks};
+use super::clocks::CallPath;
+use super::crowd::Crowd;
 use super::passes::ContextPasses;
-use super::regions::RegionNesting;
-use super::{Profile, ProfileLevel, UnitCount};
+use super::regions::{FunctionChange, RegionNesting};
+use super::{ProfileLevel, UnitCount};
 use crate::code::Code;
-use crate::code::quantity::Clocks;
 use crate::semantics::Motion;
 
 /// Most calls that are open at once; what deeper calls cost counts for what is open already.
@@ -55,15 +61,6 @@ struct CallContext {
     passes: Vec<ContextPasses>,
     /// The context of calls from each innermost region, the one of those outside of all regions first; 0 where that is not known.
     callees: Vec<u32>,
-}
-
-/// Open regions where there is no room for a context.
-#[derive(Clone, Debug)]
-struct Crowd {
-    /// Number of the first call that has no context.
-    bottom: usize,
-    /// By region: how often it is open.
-    open: Vec<u32>,
 }
 
 /// Calls that are open, and what was executed by context.
@@ -216,10 +213,6 @@ impl Contexts {
         self.regions.around(slot).iter().for_each(|&region| self.entered[usize::from(region)] += 1);
     }
 
-    fn enter_between(&mut self, from: u32, to: u32) {
-        self.regions.entered(from, to).iter().for_each(|&region| self.entered[usize::from(region)] += 1);
-    }
-
     /// A run begins at a slot.
     pub fn begin(&mut self, slot: u32) {
         self.end();
@@ -256,7 +249,7 @@ impl Contexts {
         self.crowded.resize(self.regions.count(), (Counts::ZERO, 0));
         let own = if self.deeper == 0 { self.regions.around(pc) } else { &[] };
         for (region, sum) in self.crowded.iter_mut().enumerate() {
-            if crowd.open[region] != 0 || own.contains(&(region as u16)) {
+            if crowd.is_open(region as u16) || own.contains(&(region as u16)) {
                 sum.0 += cost;
                 sum.1 += clocks;
             }
@@ -283,9 +276,40 @@ impl Contexts {
             Motion::Call => self.call(from, to),
             Motion::Return => self.go_back(from, to),
             Motion::Jump if self.regions.innermost(from) != self.regions.innermost(to) && self.deeper == 0 => {
-                self.enter_between(from, to);
+                self.jump(from, to);
             }
             Motion::Jump => {}
+        }
+    }
+
+    /// A jump, or running on, from one region to another one.
+    fn jump(&mut self, from: u32, to: u32) {
+        match self.regions.change(from, to) {
+            Some(FunctionChange::TailCall) => {
+                if let Some(callee) = self.callee(from) {
+                    self.current = callee;
+                } else {
+                    let (calls, around) = (self.top, self.regions.around(from).to_vec());
+                    self.crowd(calls - 1).enter_tail(calls, &around);
+                    self.current = CROWDED;
+                }
+            }
+            Some(FunctionChange::Outside) => self.leave_functions(),
+            None => {}
+        }
+        self.regions.entered(from, to).iter().for_each(|&region| self.entered[usize::from(region)] += 1);
+    }
+
+    /// Goes back to the context in which the current call began, from that of functions to which it has jumped.
+    fn leave_functions(&mut self) {
+        let call = self.calls[self.top - 1];
+        let from = self.regions.innermost(((call >> 32) as u32).wrapping_sub(1));
+        let from = from.map_or(0, |region| usize::from(region) + 1);
+        let begun = if self.top == 1 { ROOT } else { self.known_callee(call as u32, from) };
+        match &mut self.crowd {
+            // It began where there was no room already.
+            Some(crowd) if begun == CROWDED => crowd.leave_tails(self.top - 1),
+            crowd => (*crowd, self.current) = (None, begun),
         }
     }
 
@@ -312,15 +336,21 @@ impl Contexts {
         }
     }
 
-    /// Counts what is open from here on, where there is no room for the context of a call from a slot.
-    fn crowd_in(&mut self, from: u32) {
+    /// Open regions, counted from here on: there is no room for the context that follows the current one. `bottom` is the number of the call in
+    /// which that is so.
+    fn crowd(&mut self, bottom: usize) -> &mut Crowd {
         let (regions, contexts) = (&self.regions, &self.contexts);
-        let crowd = self.crowd.get_or_insert_with(|| {
+        self.crowd.get_or_insert_with(|| {
             let open = &contexts[self.current as usize].open;
             let open = (0..regions.count() as u16).map(|region| u32::from(has_bit(open, region)));
-            Crowd { bottom: self.top, open: open.collect() }
-        });
-        regions.around(from).iter().for_each(|&region| crowd.open[usize::from(region)] += 1);
+            Crowd::new(bottom, open.collect())
+        })
+    }
+
+    /// Counts what is open around a call for whose context there is no room.
+    fn crowd_in(&mut self, from: u32) {
+        let around = self.regions.around(from).to_vec();
+        self.crowd(self.top).enter(&around);
     }
 
     /// A return ends the newest call that returns to its target, and every call inside that one; where there is none, it is a jump.
@@ -336,9 +366,10 @@ impl Contexts {
         match (self.top.saturating_sub(LOOKED_AT).max(1)..self.top).rev().find(returns_to) {
             Some(at) => {
                 self.close(at);
-                self.enter_between(to.wrapping_sub(1), to);
+                // What is called last in a function returns into the next one.
+                self.jump(to.wrapping_sub(1), to);
             }
-            None => self.enter_between(from, to),
+            None => self.jump(from, to),
         }
     }
 
@@ -347,60 +378,14 @@ impl Contexts {
         match &mut self.crowd {
             Some(crowd) if first > crowd.bottom => {
                 for call in &self.calls[first..self.top] {
-                    let caller = ((call >> 32) as u32).wrapping_sub(1);
-                    let around = self.regions.around(caller).iter();
-                    around.for_each(|&region| crowd.open[usize::from(region)] -= 1);
+                    crowd.leave(self.regions.around(((call >> 32) as u32).wrapping_sub(1)));
                 }
+                crowd.leave_tails(first);
             }
             crowd => *crowd = None,
         }
         self.top = first;
         self.current = self.calls[first] as u32;
-    }
-
-    /// Puts calls and inclusive totals into a profile.
-    pub fn fold(&self, code: &Code, profile: &mut Profile) {
-        for (region, (found, &calls)) in (0..).zip(profile.regions.iter_mut().zip(&self.entered)) {
-            found.calls = calls;
-            found.inclusive = self.crowded.get(region).map_or(Counts::ZERO, |crowded| crowded.0);
-        }
-        for context in &self.contexts {
-            let mut of_callers = Counts::ZERO;
-            for (exit, passes) in context.passes.iter().enumerate().filter(|(_, passes)| passes.count != 0) {
-                let (cost, each) = self.costs[exit];
-                let counts = cost.times(passes.count) + each.times(passes.units);
-                of_callers += counts;
-                let own = if context.path.is_deep { &[][..] } else { self.regions.around(code.passes()[exit].word) };
-                for &region in own.iter().filter(|&&region| !has_bit(&context.open, region)) {
-                    profile.regions[usize::from(region)].inclusive += counts;
-                }
-            }
-            for region in (0..self.regions.count() as u16).filter(|&region| has_bit(&context.open, region)) {
-                profile.regions[usize::from(region)].inclusive += of_callers;
-            }
-        }
-    }
-
-    /// Clocks of computing of each word in each context, where they are measured.
-    pub fn fold_clocks(&self, code: &Code) -> Option<ClockProfile> {
-        self.cells.as_ref()?;
-        let mut profile = ClockProfile::new(code);
-        let crowded = std::iter::once((&self.contexts[CROWDED as usize].path, &self.crowded_passes));
-        let others = self.contexts.iter().map(|context| (&context.path, &context.passes));
-        for (path, passes) in others.chain(crowded) {
-            for (exit, passes) in passes.iter().enumerate() {
-                let busy = passes.count * u64::from(self.clocks[exit]) + passes.unit_clocks;
-                profile.add_busy(path, code.passes()[exit].word, busy);
-            }
-        }
-        profile.add_crowded(&self.crowded_work());
-        Some(profile)
-    }
-
-    /// By region: inclusive work in crowded contexts, as far as it was computing.
-    pub fn crowded_work(&self) -> Vec<WorkClocks> {
-        let work = |&(_, clocks): &(Counts, u64)| WorkClocks { busy: Clocks(clocks), ..WorkClocks::default() };
-        self.crowded.iter().map(work).collect()
     }
 
     /// Number of the current context.
@@ -422,7 +407,7 @@ impl Contexts {
     pub fn crowded_around(&self, slot: u32) -> Vec<u16> {
         let Some(crowd) = &self.crowd else { return Vec::new() };
         let own = if self.deeper == 0 { self.regions.around(slot) } else { &[] };
-        let is_open = |region: &u16| crowd.open[usize::from(*region)] != 0 || own.contains(region);
+        let is_open = |region: &u16| crowd.is_open(*region) || own.contains(region);
         (0..self.regions.count() as u16).filter(is_open).collect()
     }
 

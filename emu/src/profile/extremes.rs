@@ -4,11 +4,12 @@
 use isa::{Class, Counts};
 
 use super::Extremes;
-use super::regions::RegionNesting;
+use super::regions::{FunctionChange, RegionNesting};
 use crate::code::Code;
 use crate::semantics::Motion;
 
-/// Most regions and calls that are open at once; what deeper calls cost counts for what is open already.
+/// Most regions and calls that are open at once; what deeper calls cost counts for what is open already, and a jump into another function ends the one
+/// that it leaves.
 const DEEPEST: usize = 1 << 16;
 
 /// Operations by class, as generated code adds them up before they are told.
@@ -31,6 +32,11 @@ enum What {
         /// Number of the first thing open in the caller.
         base: u32,
     },
+    /// A jump into another function: the regions above it belong to that, and end when the call around them does.
+    Tail {
+        /// Number of the first thing open in the function that has jumped.
+        base: u32,
+    },
     /// A region or function, by its number.
     Region(u16),
 }
@@ -46,7 +52,7 @@ pub struct CallMeter {
     returns_to: Vec<u32>,
     /// Calls deeper than [`DEEPEST`].
     deeper: u64,
-    /// Number of the first thing open in the current call.
+    /// Number of the first thing open in the current call, or behind its last jump into another function.
     base: usize,
     /// Running totals, of which only differences matter.
     total: Counts,
@@ -85,6 +91,7 @@ impl CallMeter {
                 self.returns_to[back as usize] -= 1;
                 self.base = base as usize;
             }
+            What::Tail { base } => self.base = base as usize,
         }
     }
 
@@ -118,8 +125,27 @@ impl CallMeter {
         }
     }
 
+    /// A jump, or running on, from one region to another one.
+    fn jump(&mut self, pc: u32, target: u32) {
+        match self.regions.change(pc, target) {
+            Some(FunctionChange::TailCall) if self.open.len() < DEEPEST => {
+                let (what, entered) = (What::Tail { base: self.base as u32 }, Counts::ZERO);
+                self.open.push(Open { what, entered });
+                self.base = self.open.len();
+            }
+            // Everything ends that the call has entered.
+            Some(FunctionChange::Outside) => {
+                while !matches!(self.open.last(), None | Some(Open { what: What::Call { .. }, .. })) {
+                    self.close_top();
+                }
+            }
+            _ => {}
+        }
+        self.move_to(target);
+    }
+
     /// A return ends the newest call that returns to its target, and every call inside that one.
-    fn go_back(&mut self, target: u32) {
+    fn go_back(&mut self, pc: u32, target: u32) {
         if self.deeper != 0 {
             self.deeper -= 1;
             return;
@@ -131,7 +157,8 @@ impl CallMeter {
             }
             self.close_top();
         }
-        self.move_to(target);
+        // What is called last in a function returns into the next one.
+        self.jump(if is_known { target.wrapping_sub(1) } else { pc }, target);
     }
 
     /// A run begins at a slot.
@@ -180,9 +207,9 @@ impl CallMeter {
     pub fn go(&mut self, pc: u32, next: u32, motion: Motion) {
         match motion {
             Motion::Call => self.call(pc.wrapping_add(1), next),
-            Motion::Return => self.go_back(next),
+            Motion::Return => self.go_back(pc, next),
             Motion::Jump if self.deeper == 0 && self.regions.innermost(pc) != self.regions.innermost(next) => {
-                self.move_to(next);
+                self.jump(pc, next);
             }
             Motion::Jump => {}
         }

@@ -3,6 +3,7 @@
 mod cells;
 mod clocks;
 mod contexts;
+mod crowd;
 mod extremes;
 mod log;
 mod passes;
@@ -20,7 +21,7 @@ pub(crate) use extremes::{CallMeter, Near};
 pub use log::{ClockKeys, ClockLog, LogPart, TransferMeter};
 pub use profiler::Profiler;
 #[cfg(feature = "native")]
-pub(crate) use regions::RegionNesting;
+pub(crate) use regions::{FunctionChange, RegionNesting};
 pub use sites::{SiteTable, SiteUse, TransferSite};
 
 use crate::code::octets::Buffer;
@@ -125,8 +126,8 @@ pub struct RegionProfile {
     pub instructions: u64,
     /// Their operations.
     pub exclusive: Counts,
-    /// Operations between entering and leaving it, all that was called included; of nested calls of itself only the
-    /// outermost counts.
+    /// Operations between entering and leaving it, all that was called included, and what it has jumped to in other functions; of nested calls
+    /// of itself only the outermost counts.
     pub inclusive: Counts,
     /// Least and most of one call; `None` where there was none, or nobody asked.
     pub extremes: Option<Extremes>,

@@ -9,6 +9,17 @@ pub struct RegionNesting {
     innermost: Vec<Option<u16>>,
     /// Regions from the outermost to a region itself.
     chains: Vec<Vec<u16>>,
+    /// The outermost function around a region or of that region.
+    functions: Vec<Option<u16>>,
+}
+
+/// Way in which control leaves the body of a function without a call or a return.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FunctionChange {
+    /// Into the body of another function, which returns where the first one would have: a call with a return behind it.
+    TailCall,
+    /// To where there is no function.
+    Outside,
 }
 
 impl RegionNesting {
@@ -27,9 +38,13 @@ impl RegionNesting {
             chain.reverse();
             chain
         };
+        let chains: Vec<Vec<u16>> = (0..regions.len()).map(chain).collect();
+        let function =
+            |chain: &Vec<u16>| chain.iter().copied().find(|&region| regions[usize::from(region)].is_function);
         RegionNesting {
             innermost: (0..code.slots().len() as u32).map(innermost).collect(),
-            chains: (0..regions.len()).map(chain).collect(),
+            functions: chains.iter().map(function).collect(),
+            chains,
         }
     }
 
@@ -56,13 +71,32 @@ impl RegionNesting {
         innermost.and_then(|region| self.chains.get(usize::from(region))).map_or(&[], Vec::as_slice)
     }
 
-    /// Regions that are entered where control goes from one slot to another one of the same call.
+    /// The outermost function around a slot. Functions within it are pieces of it, as regions are.
+    fn function(&self, slot: u32) -> Option<u16> {
+        self.innermost(slot).and_then(|region| self.functions[usize::from(region)])
+    }
+
+    /// Change of the function where control goes from one slot to another one by a jump or by running on; `None` where it stays in a function, or
+    /// comes from where there is none.
+    pub fn change(&self, from: u32, to: u32) -> Option<FunctionChange> {
+        match (self.function(from)?, self.function(to)) {
+            (left, Some(reached)) if left == reached => None,
+            (_, Some(_)) => Some(FunctionChange::TailCall),
+            (_, None) => Some(FunctionChange::Outside),
+        }
+    }
+
+    /// Regions that are entered where control goes from one slot to another one of the same call: those that are not around both, and all of them where it
+    /// leaves a function.
     pub fn entered(&self, from: u32, to: u32) -> &[u16] {
         if self.innermost(from) == self.innermost(to) {
             return &[];
         }
         let (left, reached) = (self.around(from), self.around(to));
-        let kept = left.iter().zip(reached).take_while(|(left, reached)| left == reached).count();
+        let kept = match self.change(from, to) {
+            None => left.iter().zip(reached).take_while(|(left, reached)| left == reached).count(),
+            Some(_) => 0,
+        };
         &reached[kept..]
     }
 }

@@ -16,6 +16,7 @@ mod replay;
 mod saturation;
 mod shadow;
 mod stepper;
+mod tails;
 mod totals;
 mod traps;
 

@@ -3,22 +3,22 @@
 use emu::code::Code;
 use emu::engine::{CoreId, State, interpreter};
 use emu::octets::Buffer;
-use emu::profile::{Observer, Profile, ProfileLevel, UnitCount};
+use emu::profile::{Extremes, Observer, Profile, ProfileLevel, UnitCount};
 use emu::semantics::{Link, Message, Motion};
 use emu::tally::Tally;
 use emu::trap::Stop;
 use isa::number::Nearest32;
-use isa::{Counts, Isa, Op, Program};
+use isa::{Class, Counts, Isa, Op, Program};
 
 use super::builder::{Label, program};
 use super::profile::run;
 
-/// An open call.
+/// An open call, or a jump from one function into another one.
 struct Call {
-    /// Word to which the callee returns.
-    back: u32,
-    /// Regions that are open in the callee.
-    regions: Vec<u16>,
+    /// Word to which the callee returns; none for a jump.
+    back: Option<u32>,
+    /// Regions that are open in the callee, with what was executed since.
+    regions: Vec<(u16, Counts)>,
 }
 
 /// Calls, and the operations between entering and leaving, by region.
@@ -26,22 +26,72 @@ struct Call {
 struct Naive {
     costs: Vec<(Counts, Counts)>,
     around: Vec<Vec<u16>>,
+    /// By region: it is a function.
+    is_function: Vec<bool>,
     open: Vec<Call>,
     calls: Vec<u64>,
     inclusive: Vec<Counts>,
+    extremes: Vec<Option<Extremes>>,
 }
 
 impl Naive {
-    fn enter(&mut self, kept: usize, pc: u32) {
-        let regions = self.around[pc as usize].clone();
-        regions[kept..].iter().for_each(|&region| self.calls[usize::from(region)] += 1);
-        self.open.last_mut().expect("one is open").regions = regions;
+    /// Leaves what is open in the newest call behind the first regions.
+    fn leave(&mut self, kept: usize) {
+        for (region, cost) in self.open.last_mut().expect("one is open").regions.split_off(kept) {
+            let elementary = cost.elementary();
+            let found = self.extremes[usize::from(region)].get_or_insert(Extremes {
+                least: cost,
+                most: cost,
+                least_elementary: elementary,
+                most_elementary: elementary,
+            });
+            for &class in Class::ALL {
+                found.least[class] = found.least[class].min(cost[class]);
+                found.most[class] = found.most[class].max(cost[class]);
+            }
+            found.least_elementary = found.least_elementary.min(elementary);
+            found.most_elementary = found.most_elementary.max(elementary);
+        }
+    }
+
+    /// Ends the newest calls.
+    fn truncate(&mut self, calls: usize) {
+        while self.open.len() > calls {
+            self.leave(0);
+            self.open.pop();
+        }
     }
 
     fn move_to(&mut self, pc: u32) {
-        let open = &self.open.last().expect("one is open").regions;
-        let kept = open.iter().zip(&self.around[pc as usize]).take_while(|(open, wanted)| open == wanted).count();
-        self.enter(kept, pc);
+        let newest = self.open.last().expect("one is open");
+        let around = self.around[pc as usize].clone();
+        let is_same = |(open, wanted): &(&(u16, Counts), &u16)| open.0 == **wanted;
+        let kept = newest.regions.iter().zip(&around).take_while(is_same).count();
+        self.leave(kept);
+        around[kept..].iter().for_each(|&region| self.calls[usize::from(region)] += 1);
+        let entered = around[kept..].iter().map(|&region| (region, Counts::ZERO));
+        self.open.last_mut().expect("one is open").regions.extend(entered);
+    }
+
+    /// The outermost function around a word.
+    fn function(&self, pc: u32) -> Option<u16> {
+        self.around[pc as usize].iter().copied().find(|&region| self.is_function[usize::from(region)])
+    }
+
+    /// On to another word without a call or a return: into another function as a call without a way back.
+    fn jump(&mut self, from: u32, to: u32) {
+        match (self.function(from), self.function(to)) {
+            (Some(left), Some(reached)) if left != reached => {
+                self.open.push(Call { back: None, regions: Vec::new() });
+            }
+            (Some(_), None) => {
+                let call = self.open.iter().rposition(|call| call.back.is_some()).expect("the first one is none");
+                self.truncate(call + 1);
+                self.leave(0);
+            }
+            _ => {}
+        }
+        self.move_to(to);
     }
 }
 
@@ -62,42 +112,53 @@ impl Observer for Naive {
         Naive {
             costs: (0..code.passes().len()).map(|pass| code.pass_cost(pass)).collect(),
             around: (0..code.slots().len() as u32).map(around).collect(),
+            is_function: regions.iter().map(|region| region.is_function).collect(),
             open: Vec::new(),
             calls: vec![0; regions.len()],
             inclusive: vec![Counts::ZERO; regions.len()],
+            extremes: vec![None; regions.len()],
         }
     }
 
     fn begin(&mut self, pc: u32) {
-        self.open = vec![Call { back: u32::MAX, regions: Vec::new() }];
+        self.open = vec![Call { back: Some(u32::MAX), regions: Vec::new() }];
         self.move_to(pc);
     }
 
     fn step(&mut self, pc: u32, exit: usize, units: UnitCount, next: u32, motion: Motion) {
         let cost = self.costs[exit].0 + self.costs[exit].1.times(units.units.into());
-        for region in 0..self.calls.len() {
-            if self.open.iter().any(|call| call.regions.contains(&(region as u16))) {
-                self.inclusive[region] += cost;
-            }
+        let mut is_open = vec![false; self.calls.len()];
+        for (region, sum) in self.open.iter_mut().flat_map(|call| &mut call.regions) {
+            *sum += cost;
+            is_open[usize::from(*region)] = true;
         }
+        let open = self.inclusive.iter_mut().zip(is_open).filter(|(_, is_open)| *is_open);
+        open.for_each(|(inclusive, _)| *inclusive += cost);
         match motion {
-            Motion::Jump => {}
-            Motion::Call => self.open.push(Call { back: pc + 1, regions: Vec::new() }),
-            Motion::Return => {
-                if let Some(newest) = self.open.iter().rposition(|call| call.back == next) {
-                    self.open.truncate(newest);
-                }
+            Motion::Jump => self.jump(pc, next),
+            Motion::Call => {
+                self.open.push(Call { back: Some(pc + 1), regions: Vec::new() });
+                self.move_to(next);
             }
+            Motion::Return => match self.open.iter().rposition(|call| call.back == Some(next)) {
+                Some(newest) => {
+                    self.truncate(newest);
+                    self.jump(next - 1, next);
+                }
+                None => self.jump(pc, next),
+            },
         }
-        self.move_to(next);
     }
 
-    fn end(&mut self) {}
+    fn end(&mut self) {
+        self.truncate(0);
+    }
 
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile> {
         let mut profile = Profile::exclusive(code, tally);
         for (region, found) in profile.regions.iter_mut().enumerate() {
             (found.calls, found.inclusive) = (self.calls[region], self.inclusive[region]);
+            found.extremes = self.extremes[region];
         }
         Some(profile)
     }
@@ -144,7 +205,7 @@ impl Link for Silent {
     }
 }
 
-/// The profile of a program by the model, without extremes.
+/// The profile of a program by the model.
 pub fn profile(program: &Program) -> Profile {
     let isa = Isa::base();
     let code = Code::new(program, &isa, emu::machine::Config::default().timing());
@@ -153,28 +214,34 @@ pub fn profile(program: &Program) -> Profile {
     let core = CoreId { core: 0, cores: 1, step_limit: 10_000_000 };
     naive.begin(state.pc);
     interpreter::run(&code, core, &mut state, &Nearest32, &mut Silent, &mut tally, &mut naive);
+    naive.end();
     naive.into_profile(&code, &tally).expect("it has one")
 }
 
 /// The model and all engines find the same profile.
 pub fn check(program: &Program) {
-    let (mut found, _) = run(program);
-    found.regions.iter_mut().for_each(|region| region.extremes = None);
+    let (found, _) = run(program);
     assert_eq!(found, profile(program));
 }
 
-#[test]
-fn each_set_of_open_functions_has_totals_of_its_own_however_many_there_are() {
+/// Functions of which each number calls those whose bits it has, one from the other: 8192 sets. Each ends with a call and a return, or with a jump.
+fn sets_of_functions(has_jumps: bool) -> Program {
     const FUNCTIONS: i64 = 13;
-    // Each number calls, one in the other, the functions whose bits it has: 8192 sets.
-    check(&program(|p| {
+    program(|p| {
         let labels: Vec<Label> = (0..FUNCTIONS).map(|_| p.label()).collect();
+        // Where jumps lead on, all return by the link of the first.
+        let link = |number: i64| if has_jumps { 31 } else { 18 + number };
         let turn = |p: &mut super::builder::ProgramBuilder, from: i64| {
             for callee in from..FUNCTIONS {
                 let skip = p.label();
                 p.emit(Op::srli, &[2, 1, callee]).emit(Op::andi, &[2, 2, 1]);
                 p.branch(Op::beq, &[2, 0], skip);
-                p.branch(Op::call, &[18 + callee], labels[callee as usize]).emit(Op::ret, &[17 + from]);
+                match has_jumps {
+                    true => p.branch(Op::jump, &[], labels[callee as usize]),
+                    false => {
+                        p.branch(Op::call, &[link(callee)], labels[callee as usize]).emit(Op::ret, &[link(from - 1)])
+                    }
+                };
                 p.place(skip);
             }
         };
@@ -185,7 +252,7 @@ fn each_set_of_open_functions_has_totals_of_its_own_however_many_there_are() {
             let skip = p.label();
             p.emit(Op::srli, &[2, 1, callee]).emit(Op::andi, &[2, 2, 1]);
             p.branch(Op::beq, &[2, 0], skip);
-            p.branch(Op::call, &[18 + callee], labels[callee as usize]).branch(Op::jump, &[], done);
+            p.branch(Op::call, &[link(callee)], labels[callee as usize]).branch(Op::jump, &[], done);
             p.place(skip);
         }
         p.place(done).emit(Op::isubi, &[1, 1, 1]);
@@ -195,8 +262,14 @@ fn each_set_of_open_functions_has_totals_of_its_own_however_many_there_are() {
             p.function(&format!("function {number}"), |p| {
                 p.place(labels[number as usize]);
                 turn(p, number + 1);
-                p.emit(Op::ret, &[18 + number]);
+                p.emit(Op::ret, &[link(number)]);
             });
         }
-    }));
+    })
+}
+
+#[test]
+fn each_set_of_open_functions_has_totals_of_its_own_however_many_there_are() {
+    check(&sets_of_functions(false));
+    check(&sets_of_functions(true));
 }

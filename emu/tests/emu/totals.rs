@@ -21,6 +21,34 @@ enum Piece {
     Loop(i32, Vec<Piece>),
 }
 
+/// End of a function.
+#[derive(Clone, Copy, Debug)]
+enum Ending {
+    Return,
+    /// A jump to one of the functions behind this one, by its distance; a return when there is none.
+    Jump(usize),
+    /// Running on into the next function; a return when there is none.
+    RunOn,
+}
+
+/// A function's body, and how it ends.
+type Function = (Vec<Piece>, Ending);
+
+/// The function into which a function goes on at its end.
+fn next(functions: &[Function], function: usize) -> Option<usize> {
+    let distance = match functions[function].1 {
+        Ending::Return => return None,
+        Ending::Jump(distance) => distance,
+        Ending::RunOn => 1,
+    };
+    Some(function + distance).filter(|&next| next < functions.len())
+}
+
+fn functions() -> impl Strategy<Value = Vec<Function>> {
+    let ending = prop_oneof![Just(Ending::Return), (1usize..3).prop_map(Ending::Jump), Just(Ending::RunOn)];
+    prop::collection::vec((pieces(), ending), 1..4)
+}
+
 fn pieces() -> impl Strategy<Value = Vec<Piece>> {
     let leaf = prop_oneof![(0u64..5).prop_map(Piece::Adds), (1usize..4).prop_map(Piece::Call)];
     let piece = leaf.prop_recursive(3, 12, 4, |inner| {
@@ -73,28 +101,37 @@ fn write(
     }
 }
 
-fn written(functions: &[Vec<Piece>]) -> Program {
+fn written(functions: &[Function]) -> Program {
     program(|builder| {
         let labels: Vec<Label> = functions.iter().map(|_| builder.label()).collect();
         builder.branch(Op::call, &[20], labels[0]).emit(Op::iadd, &[1, 1, 1]).emit(Op::halt, &[]);
         let mut regions = 0;
-        for (number, body) in functions.iter().enumerate() {
+        for (number, (body, ending)) in functions.iter().enumerate() {
             builder.function(&format!("function {number}"), |builder| {
                 builder.place(labels[number]);
                 write(builder, body, number, &labels, 0, &mut regions);
-                builder.emit(Op::ret, &[20 + number as i64]);
+                let link = 20 + number as i64;
+                match next(functions, number) {
+                    None => builder.emit(Op::ret, &[link]),
+                    // The next one returns where this one would.
+                    Some(next) => {
+                        builder.emit(Op::mov, &[20 + next as i64, link]);
+                        if let Ending::Jump(_) = ending { builder.branch(Op::jump, &[], labels[next]) } else { builder }
+                    }
+                };
             });
         }
     })
 }
 
-/// Cost that a call of a function adds, by the model: its own pieces and all that they call.
-fn adds(functions: &[Vec<Piece>], function: usize) -> u64 {
-    let Some(body) = functions.get(function) else { return 0 };
-    body.iter().map(|piece| adds_of(functions, function, piece)).sum()
+/// Cost that a call of a function adds, by the model: its own pieces and all that they call, and the function into which it goes on.
+fn adds(functions: &[Function], function: usize) -> u64 {
+    let Some((body, _)) = functions.get(function) else { return 0 };
+    let own: u64 = body.iter().map(|piece| adds_of(functions, function, piece)).sum();
+    own + next(functions, function).map_or(0, |next| adds(functions, next))
 }
 
-fn adds_of(functions: &[Vec<Piece>], function: usize, piece: &Piece) -> u64 {
+fn adds_of(functions: &[Function], function: usize, piece: &Piece) -> u64 {
     let all = |inner: &[Piece]| inner.iter().map(|piece| adds_of(functions, function, piece)).sum::<u64>();
     match piece {
         Piece::Adds(count) => *count,
@@ -108,7 +145,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(0x70_7a15), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn totals_are_the_sum_over_regions(functions in prop::collection::vec(pieces(), 1..4)) {
+    fn totals_are_the_sum_over_regions(functions in functions()) {
         let program = written(&functions);
         let (profile, counts) = run(&program);
         naive::check(&program);

@@ -69,8 +69,8 @@ impl Blocks {
                 _ => {}
             }
         }
-        // Who measures each call is told of borders at the ends of blocks.
-        let is_border = |place: &u32| profiling.is_some_and(|profiling| profiling.is_border(place - 1, *place));
+        // Who measures each call is told of borders at the ends of blocks, and another calling context begins there where functions are left.
+        let is_border = |place: &u32| profiling.is_some_and(|profiling| profiling.ends_block(place - 1, *place));
         for place in (1..end).filter(is_border) {
             blocks.is_join[place as usize] = true;
         }

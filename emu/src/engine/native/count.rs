@@ -37,7 +37,8 @@ impl Native<'_> {
     ///
     /// Execution counts are reconstructed by flow conservation: through a place go all that came from the place before and all that began there,
     /// less those that stopped in front of it. Of ten that begin a loop's body at place 4, whose last row at 7 is a branch that was taken six
-    /// times, four come to place 8. Where functions are measured, this holds in each calling context by itself, and a call goes on in another one.
+    /// times, four come to place 8. Where functions are measured, this holds in each calling context by itself, and a call goes on in another one. So
+    /// does what leaves a function by a jump or by running on, but that was counted where it began.
     pub(super) fn fold_counters(
         &mut self,
         tally: &mut Tally,
@@ -49,6 +50,7 @@ impl Native<'_> {
         let steps = &plan.steps()[..plan.end() as usize];
         let profiling = code.profiling.as_ref();
         let contexts = profiler.is_some().into()..counters.frame.count();
+        let changes = |from, to| profiling.is_some_and(|profiling| profiling.change(from, to).is_some());
         // Let what was taken begin runs where it leads. Behind instructions with a meaning in Rust a run was begun wherever they led.
         for context in contexts.clone() {
             let branches = (0..)
@@ -58,6 +60,9 @@ impl Native<'_> {
                 let node = counters.frame.node(context);
                 let taken = node.exits[step.exit as usize + usize::from(step.exits) - 1];
                 let is_call = blocks::op(plan, step) == Some(Op::call);
+                if !is_call && changes(place, step.target) {
+                    continue;
+                }
                 let mut to = context;
                 if let (Some(profiler), Some(profiling)) = (&mut profiler, profiling)
                     && taken != 0
@@ -89,7 +94,8 @@ impl Native<'_> {
                     *first = count.wrapping_sub(others.iter().sum());
                     through = if plan.falls_through(place) && plan.is_run_end(place) { *first } else { count };
                 }
-                count = if plan.is_run_end(place) && !plan.falls_through(place) { 0 } else { through };
+                let ends = plan.is_run_end(place) && !plan.falls_through(place);
+                count = if ends || changes(place, place + 1) { 0 } else { through };
                 if let (Some(profiler), Some(profiling)) = (&mut profiler, profiling)
                     && count != 0
                     && place + 1 < plan.end()

@@ -2,7 +2,7 @@
 
 use super::classes::Classes;
 use crate::engine::plan::{Plan, Step};
-use crate::profile::{ProfileLevel, RegionNesting};
+use crate::profile::{FunctionChange, ProfileLevel, RegionNesting};
 
 /// Functions and regions of a plan.
 #[derive(Clone, Debug)]
@@ -43,6 +43,16 @@ impl Profiling {
         self.regions.innermost(self.slots[place as usize]).map_or(0, |region| usize::from(region) + 1)
     }
 
+    /// Slot of a place, of a hop the one of what stands before it.
+    pub fn slot(&self, place: u32) -> u32 {
+        self.slots[place as usize]
+    }
+
+    /// Change of the function where control goes from one place to another one without a call or a return.
+    pub fn change(&self, from: u32, to: u32) -> Option<FunctionChange> {
+        self.regions.change(self.slot(from), self.slot(to))
+    }
+
     /// Regions around a place.
     pub fn around(&self, place: u32) -> &[u16] {
         self.regions.around(self.slots[place as usize])
@@ -57,5 +67,10 @@ impl Profiling {
     pub fn is_border(&self, from: u32, to: u32) -> bool {
         let region = |place: u32| self.regions.innermost(self.slots[place as usize]);
         (self.classes.is_some() || self.has_clocks) && region(from) != region(to)
+    }
+
+    /// Something has to be done where control goes from one place to another one.
+    pub fn ends_block(&self, from: u32, to: u32) -> bool {
+        self.is_border(from, to) || self.change(from, to).is_some()
     }
 }

@@ -183,11 +183,11 @@ impl ControlRoom for Lower<'_, '_> {
         }
         for (_, place, way) in ways {
             self.b.switch_to_block(way);
+            self.tell_motion_to(place, Motion::Return);
             match self.source.profiling {
                 Some(_) => self.close_call(place),
                 None => self.begin(place - 1, place),
             }
-            self.tell_motion_to(place, Motion::Return);
             let block = self.entries[place as usize].expect("what stands behind a call is a join");
             self.watch(place, block);
         }

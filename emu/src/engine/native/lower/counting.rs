@@ -51,8 +51,16 @@ impl Lower<'_, '_> {
         self.pass_classes(exit);
     }
 
-    /// A run is begun at a place to which no exit leads whose target is known; control comes from another place of the same call.
+    /// A run is begun at a place to which no exit leads whose target is known; control comes from another place of the same call. Where that is one of
+    /// another function, the way there begins the run: see [`Lower::change_function`].
     pub fn begin(&mut self, from: u32, place: u32) {
+        if self.source.profiling.is_none_or(|profiling| profiling.change(from, place).is_none()) {
+            self.count_begun(from, place);
+        }
+    }
+
+    /// Counts a run that begins at a place, and the regions that are entered there from another one.
+    pub fn count_begun(&mut self, from: u32, place: u32) {
         self.bump(self.source.layout.begun(place));
         if let Some(profiling) = self.source.profiling {
             for &region in profiling.entered(from, place) {
@@ -113,6 +121,7 @@ impl Lower<'_, '_> {
     /// On to a place at which a block begins.
     pub fn go(&mut self, from: u32, to: u32) {
         self.tell_border(from, to);
+        self.change_function(from, to);
         self.go_silently(from, to);
     }
 

@@ -16,6 +16,7 @@ use crate::engine::native::classes::{Classes, LANES, Lanes, lanes};
 use crate::engine::native::context::{
     CALLS, CALLS_END, CELLS, CLASSES, CURRENT, CounterLayout, NODES, OWN_CELLS, SINCE,
 };
+use crate::profile::FunctionChange;
 use crate::semantics::Motion;
 
 /// Address of the current calling context's node.
@@ -93,7 +94,13 @@ impl<'a> Lower<'a, '_> {
 
     /// The current slot in the low half, another one in the high half.
     fn ways(&mut self, to: Value) -> Value {
-        let from = self.source.steps[self.place as usize].slot;
+        self.ways_from(self.place, to)
+    }
+
+    /// The slot of a place in the low half, another one in the high half.
+    fn ways_from(&mut self, from: u32, to: Value) -> Value {
+        let steps = self.source.steps;
+        let from = self.source.profiling.map_or(steps[from as usize].slot, |profiling| profiling.slot(from));
         let to = self.b.ins().uextend(I64, to);
         let to = self.b.ins().ishl_imm_s(to, 32);
         self.b.ins().bor_imm_s(to, i64::from(from))
@@ -201,23 +208,65 @@ impl<'a> Lower<'a, '_> {
         let end = self.b.ins().load(I64, aligned(), self.context, CALLS_END);
         let is_full = self.b.ins().icmp(IntCC::Equal, calls, end);
         self.unless(is_full);
+        let (place, rest) = (self.place, self.rest());
+        Some(self.context_behind(step.slot, caller, |lower| lower.leave(Status::Bailout, place, rest)))
+    }
+
+    /// The calling context of what a slot calls, or jumps to in another function; `leave` says how to leave where it has none.
+    fn context_behind(&mut self, slot: u32, caller: usize, leave: impl FnOnce(&mut Self)) -> Value {
         let (base, offset) = self.counter(self.source.layout.callee(caller));
         let known = self.b.ins().load(I32, aligned(), base, offset);
         let (seek, found, stop, on) = (self.cold_block(), self.cold_block(), self.cold_block(), self.b.create_block());
         let number = self.b.append_block_param(on, I32);
         self.b.ins().brif(known, on, &[known.into()], seek, &[]);
         self.b.switch_to_block(seek);
-        let slot = self.c64(step.slot.into());
+        let slot = self.c64(slot.into());
         let sought = self.call_host(calls::callee as Callee as usize, slot, caller as i64);
         self.b.ins().brif(sought, found, &[], stop, &[]);
         self.b.switch_to_block(stop);
-        self.leave(Status::Bailout, self.place, self.rest());
+        leave(self);
         self.b.switch_to_block(found);
         self.reload_node();
         let sought = self.b.ins().ireduce(I32, sought);
         self.b.ins().jump(on, &[sought.into()]);
         self.b.switch_to_block(on);
-        Some(number)
+        number
+    }
+
+    /// Goes over to the calling context of a place outside of the function where control comes from, and begins a run there.
+    pub fn change_function(&mut self, from: u32, to: u32) {
+        let Some(profiling) = self.source.profiling else { return };
+        match profiling.change(from, to) {
+            None => {}
+            Some(FunctionChange::TailCall) => {
+                let follow = |lower: &mut Self| {
+                    lower.follow_to(from, to, Motion::Jump);
+                    lower.go_to_slot(to);
+                };
+                let callee = self.context_behind(profiling.slot(from), profiling.caller(from), follow);
+                self.switch_to_context(callee);
+                self.count_begun(from, to);
+            }
+            Some(FunctionChange::Outside) => {
+                self.follow_to(from, to, Motion::Jump);
+                self.reload_node();
+                self.bump(self.source.layout.begun(to));
+            }
+        }
+    }
+
+    /// Lets the profiler find the calling context behind a jump or a return to a place.
+    fn follow_to(&mut self, from: u32, to: u32, motion: Motion) {
+        self.store_sums(0);
+        let slot = self.slot(to);
+        let ways = self.ways_from(from, slot);
+        self.call_host(calls::follow as Follow as usize, ways, motion as i64);
+    }
+
+    /// Leaves to where a place is entered anew, by generated code or by the interpreter.
+    fn go_to_slot(&mut self, place: u32) {
+        let (status, slot) = (self.c32(Status::Elsewhere as i32), self.slot(place));
+        self.leave_with(status, slot, 0);
     }
 
     /// Opens a call from the current row to a calling context that [`Lower::find_callee`] has found.
@@ -252,13 +301,18 @@ impl<'a> Lower<'a, '_> {
         let caller = self.b.ins().load(I32, aligned(), calls, 0);
         self.switch_to_context(caller);
         self.begin(place - 1, place);
+        self.change_function(place - 1, place);
         self.b.ins().jump(on, &[]);
 
         self.b.switch_to_block(other);
-        self.store_sums(0);
-        let slot = self.slot(place);
-        let ways = self.ways(slot);
-        self.call_host(calls::follow as Follow as usize, ways, Motion::Return as i64);
+        self.follow_to(self.place, place, Motion::Return);
+        // A return that no call belongs to is a jump, and that may lead to where there is no room for a context.
+        let (plain, stop) = (self.b.create_block(), self.cold_block());
+        let current = self.b.ins().load(I32, aligned(), self.context, CURRENT);
+        self.b.ins().brif(current, plain, &[], stop, &[]);
+        self.b.switch_to_block(stop);
+        self.go_to_slot(place);
+        self.b.switch_to_block(plain);
         self.reload_node();
         self.bump(self.source.layout.begun(place));
         self.b.ins().jump(on, &[]);

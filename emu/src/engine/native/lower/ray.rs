@@ -97,7 +97,7 @@ impl Lower<'_, '_> {
 /// The branch at a place is taken where `e` is `known`; `None` for anything else than a branch that compares it with 0.
 fn decides(lower: &Lower, place: u32, e: S, known: i32) -> Option<bool> {
     let step = lower.source.steps.get(place as usize)?;
-    let is_border = lower.source.profiling.is_some_and(|profiling| profiling.is_border(lower.place, place));
+    let is_border = lower.source.profiling.is_some_and(|profiling| profiling.ends_block(lower.place, place));
     let is_plain = !lower.source.blocks.is_watched[place as usize] && !step.is_uneven && !is_border;
     if !is_plain || !crate::engine::native::blocks::compares_with_zero(lower.source.plan, step, e.0) {
         return None;

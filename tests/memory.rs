@@ -5,12 +5,14 @@ use std::fs;
 use std::path::Path;
 use std::sync::Mutex;
 
+use emu::machine::{Config, RunOptions};
 use isa::Isa;
 use kernels::KernelSet;
 use lancer::drawing::{self, Comparison};
 use lancer::files;
 use lancer::files::program::ProgramFile;
 use lancer::job::Job;
+use lancer::load::Load;
 use messages::Source;
 use peak_alloc::PeakAlloc;
 use scenes::generate;
@@ -199,4 +201,33 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     assert!(image > 8 << 20, "what does not grow with the scene must not matter: {image} octets");
     let ratio = octets as f64 / image as f64;
     assert!(ratio < MOST, "{ratio:.2} times the memory image of {image} octets");
+}
+
+/// Octets that the caches and buffers of many cores may take, of which one core does the work: its buffer of 512 KiB, two more for the program's data,
+/// what the core's cache holds, and 8 octets for 512 lines of every other one.
+const UNTOUCHED: usize = 4 << 20;
+
+/// Octets of the two buffers that a host thread has which runs work items ahead.
+const AHEAD: usize = 1 << 20;
+
+#[test]
+fn caches_and_buffers_that_nobody_touches_take_nothing() {
+    let _alone = ALONE.lock();
+    let options = generate::GenerateOptions { size: (1, 1), ..generate::GenerateOptions::default() };
+    let job = Job::new(generate::scene("triangle", &options).expect("the triangle has any size"));
+    let (load, _) = Load::picture(&job).unwrap_or_else(|failure| panic!("{failure:?}"));
+    let small = Config { cores: 256, ..job.machine };
+    let mut large = Config { buffer_octets: 1 << 19, ..small.clone() };
+    (large.cache.octets, large.cache.line_octets) = (1 << 19, 1);
+    // All cores together may have 128 MiB of each.
+    large.check().expect("these are the largest ones");
+    for name in ["stepped", "replayed"] {
+        let [small, large] = [&small, &large].map(|machine| {
+            let setup = load.setup(machine, RunOptions::default());
+            let run = if name == "stepped" { emu::step } else { emu::run };
+            peak(|| run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))).0
+        });
+        let most = small + UNTOUCHED + rayon::current_num_threads() * AHEAD;
+        assert!(large < most, "{name}: {large} octets, with small ones {small}");
+    }
 }

@@ -76,8 +76,18 @@ impl Buffer {
         self.written |= pieces;
     }
 
-    /// Makes it equal again to the one that it was cloned from, which nobody has written to: only what was written is copied.
+    /// A buffer that is allocated when it is reset to one of that many octets.
+    pub(crate) fn unallocated() -> Buffer {
+        Buffer::new(&[], 0)
+    }
+
+    /// Makes it equal again to the one that it was cloned from, which nobody has written to: only what was written is copied. One that was not
+    /// allocated yet becomes a copy.
     pub fn reset_to(&mut self, initial: &Buffer) {
+        if self.octets.len() != initial.octets.len() {
+            *self = initial.clone();
+            return;
+        }
         let mut written = std::mem::take(&mut self.written);
         while written != 0 {
             let start = (written.trailing_zeros() as usize) << self.piece;

@@ -36,20 +36,26 @@ pub struct Cache {
     line: u32,
     /// Binary logarithm of the octets of a line, where it is whole.
     line_shift: Option<u32>,
-    /// The line that each place holds.
-    lines: Vec<Option<u32>>,
+    /// Number of places.
+    places: usize,
+    /// The line that each place holds, in pages that are there from their first line on: a cache that nobody reads costs nothing.
+    pages: Vec<Option<Box<[Option<u32>; PAGE]>>>,
     used: CacheUse,
 }
+
+/// Places of a page.
+const PAGE: usize = 512;
 
 impl Cache {
     /// An empty cache for the ranges of the kind that the configuration names; `None` for a machine without caches.
     pub fn new(config: &CacheConfig, kinds: &[(Range<u32>, String)]) -> Option<Cache> {
         let count = config.octets / config.line_octets.max(1);
         let cached = kinds.iter().filter(|(_, kind)| *kind == config.kind).map(|(range, _)| range.clone()).collect();
-        let lines = vec![None; count as usize];
+        let places = count as usize;
         let line = config.line_octets;
         let line_shift = line.is_power_of_two().then(|| line.trailing_zeros());
-        (count != 0).then(|| Cache { cached, line, line_shift, lines, used: CacheUse::default() })
+        let pages = vec![None; places.div_ceil(PAGE)];
+        (count != 0).then(|| Cache { cached, line, line_shift, places, pages, used: CacheUse::default() })
     }
 
     /// The lines that octets lie in; `None` where they are not cached. Lines of 16 octets: octets 120 to 135 lie in lines 7 and 8.
@@ -71,14 +77,17 @@ impl Cache {
     /// The place of a line.
     #[inline]
     fn place(&self, line: u32) -> usize {
-        let places = self.lines.len();
+        let places = self.places;
         if places.is_power_of_two() { line as usize & (places - 1) } else { line as usize % places }
     }
 
     /// True where a read takes no time, since the cache holds all its lines. Nothing is counted.
     #[inline]
     pub fn holds(&self, address: u32, octets: Octets) -> bool {
-        let is_there = |line: u32| self.lines[self.place(line)] == Some(line);
+        let is_there = |line: u32| {
+            let place = self.place(line);
+            self.pages[place / PAGE].as_ref().is_some_and(|page| page[place % PAGE] == Some(line))
+        };
         self.lines_of(address, octets).is_some_and(|mut lines| lines.all(is_there))
     }
 
@@ -96,7 +105,8 @@ impl Cache {
         let mut missing = 0;
         for line in lines {
             let place = self.place(line);
-            if self.lines[place].replace(line) != Some(line) {
+            let page = self.pages[place / PAGE].get_or_insert_with(|| Box::new([None; PAGE]));
+            if page[place % PAGE].replace(line) != Some(line) {
                 missing += u64::from(self.line);
             }
         }

@@ -1,5 +1,7 @@
 //! One program on one core with a memory of its own: no main processor, no other cores, a bus without rivals.
 
+use std::sync::Arc;
+
 use isa::{Isa, Program};
 use messages::{Diagnostic, Report};
 
@@ -11,7 +13,7 @@ use super::port::Shared;
 use super::processor::Processor;
 use super::request::Request;
 use super::worker::{Executor, Worker, WorkerCounts};
-use crate::code::octets::Memory;
+use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Clocks;
 use crate::code::registers::Registers;
 use crate::code::tally::Tally;
@@ -116,9 +118,10 @@ fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic:
     let buffer_octets = one_core.config.buffer_octets;
     let demand = Demand::new(&code, wish, arithmetic.computes(), buffer_octets);
     let runner = choose(&Demand { profile: one_core.profile, ..demand });
-    let mut worker: Executor<T, O> = Executor::new(&code, core, buffer_octets, runner, arithmetic, one_core.profile);
+    let initial = Arc::new(Buffer::new(&one_core.program.buffer, buffer_octets));
+    let mut worker: Executor<T, O> = Executor::new(&code, core, initial, runner, arithmetic, one_core.profile);
+    worker.restart();
     worker.state.registers = one_core.registers.clone();
-    worker.observer.begin(worker.state.pc);
     let mut processor = Processor::new(&code, core, worker);
     let mut shared = Shared::new(memory, 1);
     let (kinds, mut is_permitted) = (Kinds::new(&[]), false);

@@ -2,6 +2,7 @@
 //! itself; whatever concerns others happens in clock order, at equal clocks in a fixed one.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::arbiter::NEVER;
 use super::bus::{Bus, BusMasters};
@@ -17,7 +18,7 @@ use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, HandOver, Worker};
 use super::{RunFailure, Setup};
 use crate::code::Code;
-use crate::code::octets::Memory;
+use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Fault;
 use crate::engine::{CoreId, Demand, EngineRunner, Pause, choose};
@@ -35,13 +36,11 @@ pub fn run<T: Watch, O: Observer>(
     progress: &mut dyn FnMut(u64),
 ) -> Result<RunOutcome, RunFailure> {
     let timing = setup.config.timing();
-    let core_code = Code::new(setup.core, setup.isa, timing);
-    let main_code = Code::new(setup.main, setup.isa, timing);
+    let [core_code, main_code] = [setup.core, setup.main].map(|program| Code::new(program, setup.isa, timing));
     let runner = runner_of::<T, O>(setup, &core_code, arithmetic, setup.config.buffer_octets);
+    let initial = Arc::new(Buffer::new(&setup.core.buffer, setup.config.buffer_octets));
     let core = |core: CoreId| {
-        let buffer_octets = setup.config.buffer_octets;
-        let runner = runner.clone();
-        Executor::<T, O>::new(&core_code, core, buffer_octets, runner, arithmetic, setup.level::<O>())
+        Executor::<T, O>::new(&core_code, core, initial.clone(), runner.clone(), arithmetic, setup.level::<O>())
     };
     let main = main_worker(setup, &main_code, arithmetic);
     Ok(Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()?.frame)
@@ -66,7 +65,8 @@ pub(crate) fn main_worker<'a, T: Watch, O: Observer>(
 ) -> Executor<'a, T, O> {
     let buffer_octets = setup.config.main.buffer_octets;
     let runner = runner_of::<T, O>(setup, code, arithmetic, buffer_octets);
-    Executor::new(code, setup.main_id(), buffer_octets, runner, arithmetic, setup.level::<O>())
+    let initial = Arc::new(Buffer::new(&setup.main.buffer, buffer_octets));
+    Executor::new(code, setup.main_id(), initial, runner, arithmetic, setup.level::<O>())
 }
 
 /// All processors, what they share, and what they have done so far.
@@ -108,8 +108,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         main: W,
         progress: &'a mut dyn FnMut(u64),
     ) -> Machine<'a, W> {
-        let config = setup.config;
-        let cores = config.cores;
+        let (config, cores) = (setup.config, setup.config.cores);
         let mut processors = Vec::with_capacity(cores as usize + 1);
         for number in 0..cores {
             let id = CoreId { core: number, cores, step_limit: config.step_limit };
@@ -163,9 +162,11 @@ impl<'a, W: Worker> Machine<'a, W> {
 
     /// Starts every processor at clock 0.
     fn begin(&mut self) {
+        let mut scratch = None;
         for number in 0..self.processors.len() {
-            let receives = self.processors[number].worker.receives_first(&mut self.shared);
-            self.processors[number].begins_by_receiving = receives && number != self.main();
+            let (is_core, worker) = (number != self.main(), &self.processors[number].worker);
+            let receives = is_core && worker.receives_first(&mut self.shared, &mut scratch);
+            self.processors[number].begins_by_receiving = receives;
             self.start(number);
         }
     }

@@ -1,6 +1,7 @@
 //! Work of a processor: who does it, and what the machine has to know of that. [`Executor`] executes the processor's program.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::bus::{Lengths, NextTransfer};
 use super::cache::Cache;
@@ -87,8 +88,9 @@ pub trait Worker {
     /// Progress of the work item.
     fn progress(&self) -> Progress;
 
-    /// True where the first thing that a work item does outside itself is a receive.
-    fn receives_first(&self, shared: &mut Shared) -> bool;
+    /// True where the first thing that a work item does outside itself is a receive; finding out takes a state, which workers of the same program
+    /// hand on to each other.
+    fn receives_first(&self, shared: &mut Shared, scratch: &mut Option<State>) -> bool;
 
     /// True where its octets are known from elsewhere, so that the machine does not add up what it asks for.
     fn is_accounted(&self) -> bool;
@@ -155,7 +157,7 @@ pub struct Executor<'a, T, O> {
     core: CoreId,
     runner: EngineRunner<'a>,
     arithmetic: &'a T,
-    initial: Buffer,
+    initial: Arc<Buffer>,
     tally: Tally,
     /// Meter of its transfers, where clocks of functions are measured.
     meter: Option<Box<TransferMeter>>,
@@ -166,16 +168,15 @@ pub struct Executor<'a, T, O> {
 }
 
 impl<'a, T: Watch, O: Observer> Executor<'a, T, O> {
-    /// A worker before its first item.
+    /// A worker before its first item, whose buffer is then as at first; it has none of its own before that.
     pub fn new(
         code: &'a Code<'a>,
         core: CoreId,
-        buffer_octets: u32,
+        initial: Arc<Buffer>,
         runner: EngineRunner<'a>,
         arithmetic: &'a T,
         level: ProfileLevel,
     ) -> Executor<'a, T, O> {
-        let initial = Buffer::new(&code.program.buffer, buffer_octets);
         Executor {
             code,
             core,
@@ -183,7 +184,7 @@ impl<'a, T: Watch, O: Observer> Executor<'a, T, O> {
             arithmetic,
             tally: Tally::new(code),
             meter: (level == ProfileLevel::Clocks).then(Box::default),
-            state: State::new(code, initial.clone()),
+            state: State::new(code, Buffer::unallocated()),
             initial,
             observer: O::new(code, level),
         }
@@ -235,11 +236,12 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
     }
 
     /// The program runs for that, and is not counted.
-    fn receives_first(&self, shared: &mut Shared) -> bool {
-        let mut state = State::new(self.code, self.initial.clone());
+    fn receives_first(&self, shared: &mut Shared, scratch: &mut Option<State>) -> bool {
+        let state = scratch.get_or_insert_with(|| State::new(self.code, Buffer::unallocated()));
+        state.begin(self.code, &self.initial);
         let mut port = CorePort::new(shared, self.core.core, None);
         let (mut tally, nobody) = (Tally::new(self.code), &mut Unobserved);
-        let pause = interpreter::run(self.code, self.core, &mut state, self.arithmetic, &mut port, &mut tally, nobody);
+        let pause = interpreter::run(self.code, self.core, state, self.arithmetic, &mut port, &mut tally, nobody);
         pause == Pause::Wait && port.request == Some(Request::Receive)
     }
 

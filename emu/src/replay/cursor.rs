@@ -11,7 +11,7 @@ use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::code::trap::Fault;
-use crate::engine::{CoreId, Pause};
+use crate::engine::{CoreId, Pause, State};
 use crate::machine::cache::Cache;
 use crate::machine::kinds::Kinds;
 use crate::machine::port::Shared;
@@ -165,7 +165,7 @@ impl Worker for ItemCursor<'_> {
         self.progress
     }
 
-    fn receives_first(&self, _: &mut Shared) -> bool {
+    fn receives_first(&self, _: &mut Shared, _: &mut Option<State>) -> bool {
         // What was recorded begins with a message.
         true
     }
@@ -286,8 +286,8 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
         each!(self, worker => worker.progress())
     }
 
-    fn receives_first(&self, shared: &mut Shared) -> bool {
-        each!(self, worker => worker.receives_first(shared))
+    fn receives_first(&self, shared: &mut Shared, scratch: &mut Option<State>) -> bool {
+        each!(self, worker => worker.receives_first(shared, scratch))
     }
 
     fn is_accounted(&self) -> bool {

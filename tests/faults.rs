@@ -232,7 +232,7 @@ const FAULTS: &[Fault] = &[
         files: &[("a.s", b".rept 1000\n.rept 1000\n.rept 1000\nnop\n.endr\n.endr\n.endr\n")],
         command: "assemble a.s",
         exit: 1,
-        says: &["E025", "make more than 4194304 octets of text"],
+        says: &["E025", "make more than 2097152 octets of text"],
         ..QUIET
     },
     Fault {

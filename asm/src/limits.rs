@@ -39,9 +39,9 @@ pub const LINE_OCTETS: usize = 1 << 20;
 /// Octets of all lines together.
 pub const TEXT_OCTETS: usize = 32 << 20;
 /// Octets that expansions make: those that arguments add to lines, and all of calls and repetitions inside others.
-pub const EXPANDED_OCTETS: usize = 4 << 20;
+pub const EXPANDED_OCTETS: usize = 2 << 20;
 /// Octets that a line inside of two expansions counts besides those of its text.
-pub const EXPANDED_LINE: usize = 16;
+pub const EXPANDED_LINE: usize = 32;
 /// Tokens of a line with arguments that count by their octets alone.
 pub const EXPANDED_TOKENS: usize = 64;
 /// Octets that each token beyond those counts: a long expression takes its time by its operators.

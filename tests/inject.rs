@@ -1,11 +1,13 @@
 //! Faults on purpose: the frame that is put together again equals one that is run as a whole, and campaigns do not depend on who runs them.
 
 use emu::inject::{
-    BitFlip, FaultKind, GoldenFrame, HangLimit, InjectedEnd, InjectedFlip, Protection, REGISTER_WORDS, RegisterWord,
-    SeenFlip, inject_at,
+    BitFlip, FaultKind, FlipPattern, FlipRequest, FlipShape, GoldenFrame, HangLimit, InjectedEnd, InjectedFlip,
+    Protection, REGISTER_WORDS, RETRY_CLOCKS, RegisterWord, SeenFlip, inject, inject_at,
 };
-use emu::machine::{Config, RunFailure, RunOptions, Setup};
+use emu::machine::arbiter::ArbiterKind;
+use emu::machine::{Config, GrantFault, GrantFaultKind, RunFailure, RunOptions, Setup};
 use emu::octets::Memory;
+use emu::quantity::Clocks;
 use emu::stepper::{Lone, LoneEnd, Stepper};
 use emu::trap::Fault;
 use lancer::job::Job;
@@ -181,6 +183,72 @@ fn a_flip_that_lasts_does_what_it_does_in_a_whole_run() {
     }
 }
 
+/// End of a frame with a fault of grants on a machine that executes every instruction and asks its arbiter burst by burst.
+fn stepped(setup: &Setup, golden: &GoldenFrame, memory: Memory, clocks: Clocks, fault: GrantFault) -> InjectedEnd {
+    let options = RunOptions { grant_fault: Some(fault), has_course: true, ..RunOptions::default() };
+    let mut finished = 0;
+    match emu::step(&Setup { options, ..setup.clone() }, memory, &mut |items| finished = items) {
+        Ok(outcome) => InjectedEnd::Frame {
+            counts_differ: outcome.clocks != clocks,
+            memory: (outcome.memory != *golden.memory()).then_some(outcome.memory),
+        },
+        Err(RunFailure::Trap(trap)) => match trap.kind {
+            Fault::Deadlock => {
+                let steps = (0..finished as u32).filter_map(|item| golden.ticks(item)).sum();
+                InjectedEnd::Hang { limit: HangLimit::MachineWait, steps }
+            }
+            fault => InjectedEnd::Trap { fault, core: trap.core, pc: trap.pc },
+        },
+        Err(failure) => panic!("the machine can be used: {failure}"),
+    }
+}
+
+#[test]
+fn faults_of_grants_do_what_they_do_on_a_machine_that_is_asked_burst_by_burst() {
+    let small = Small::new();
+    let shape = FlipShape { bits: 1, pattern: FlipPattern::Adjacent };
+    let kinds = [
+        (FaultKind::LostGrant, Protection::Unprotected),
+        (FaultKind::LostGrant, Protection::Retry),
+        (FaultKind::StuckArbiter, Protection::Unprotected),
+        (FaultKind::StoppedCore, Protection::Unprotected),
+    ];
+    let mut seen = [0; 3];
+    for arbiter in ArbiterKind::ALL {
+        for (cores, overlap, cached) in [(1, false, 0), (2, true, 0), (3, false, 1_024), (20, false, 0)] {
+            let mut machine = small.machine.clone();
+            machine.cores = cores;
+            (machine.bus.arbiter, machine.bus.overlap, machine.cache.octets) = (arbiter, overlap, cached);
+            let setup = Setup { config: &machine, ..small.setup() };
+            let golden = GoldenFrame::new(&setup, &small.load.memory).unwrap();
+            let clocks = emu::step(&setup, small.load.memory.clone(), &mut |_| {}).unwrap().clocks;
+            assert_eq!(golden.clocks().unwrap(), clocks);
+            let request = |number: u64| {
+                let (target, protection) = kinds[number as usize % kinds.len()];
+                FlipRequest { target, shape, seed: 1_000 * number + u64::from(cores), protection }
+            };
+            let requests: Vec<FlipRequest> = (0..4 * 12).map(request).collect();
+            for (request, injected) in requests.iter().zip(inject(&golden, &requests)) {
+                let kind = match (request.target, request.protection) {
+                    (FaultKind::StuckArbiter, _) => GrantFaultKind::Stuck,
+                    (FaultKind::StoppedCore, _) => GrantFaultKind::Stopped,
+                    (_, Protection::Retry) => GrantFaultKind::Lost { retry: Clocks(RETRY_CLOCKS) },
+                    _ => GrantFaultKind::Lost { retry: Clocks(0) },
+                };
+                let fault = GrantFault { kind, at: Clocks(injected.flip.moment), master: injected.flip.word };
+                let wanted = stepped(&setup, &golden, small.load.memory.clone(), clocks, fault);
+                assert_eq!(injected.end, wanted, "{} on {cores} cores: {fault:?}", arbiter.name());
+                seen[match wanted {
+                    InjectedEnd::Frame { counts_differ: false, .. } => 0,
+                    InjectedEnd::Frame { .. } => 1,
+                    _ => 2,
+                }] += 1;
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 20), "unharmed, later, hanging: {seen:?}");
+}
+
 #[test]
 fn a_lone_core_halts_where_nothing_flips() {
     let small = Small::new();
@@ -190,6 +258,8 @@ fn a_lone_core_halts_where_nothing_flips() {
     assert!(*golden.memory() == whole.memory, "the frame without a fault is that of the machine");
     assert_eq!(golden.totals().items, whole.item_count);
     assert_eq!(golden.totals().steps, whole.tally.instructions());
+    let refused = GoldenFrame::up_to(&setup, &small.load.memory, 5).err().expect("a picture has more transfers");
+    assert!(refused.to_string().contains("more than 5 transfers"), "{refused}");
     let none = BitFlip { target: FaultKind::Registers, item: 3, moment: 5, word: 0, mask: 0 };
     let end = &inject_at(&golden, &[none])[0].end;
     assert_eq!(*end, InjectedEnd::Frame { counts_differ: false, memory: None });
@@ -283,6 +353,20 @@ fn sums_add_up_and_protections_do_what_was_foretold() {
     let residue = plain_pair["protections"].as_array().unwrap().iter().find(|one| one["protection"] == "residue");
     assert_eq!(residue.unwrap()["passed"], harmful(&protected), "two bits of results");
     assert_eq!(Protection::Secded.sees(1, 1), SeenFlip::Corrected);
+    // Of three bits the code leaves other ones wrong, so that it is foretold between what bounds the harm lies.
+    let three = "inject cornell --size 4x3 --injections 300 --kind program,memory --bits 3";
+    let [unprotected, coded] =
+        ["", " --protect program=ecc,memory=ecc"].map(|more| session.json(&format!("{three}{more}")));
+    for name in ["program", "memory"] {
+        let effects = kind(&unprotected, name)["protections"].clone();
+        let ecc = effects.as_array().unwrap().iter().find(|one| one["protection"] == "ecc").unwrap().clone();
+        let [passed, unknown] = ["passed", "unknown"].map(|key| ecc[key].as_u64().unwrap());
+        let found = harmful(&kind(&coded, name));
+        assert!(passed.saturating_sub(unknown) <= found && found <= passed + unknown, "{name}: {found}, {ecc}");
+        let share = found as f64 / 300.0;
+        let [low, high] = ["low", "high"].map(|key| ecc["left"][key].as_f64().unwrap());
+        assert!(unknown > 0 && low <= share && share <= high, "{name}: {share}, {ecc}");
+    }
     // A request that is made again is granted, so that only clocks are lost.
     let retried = kind(&session.json(&format!("{base} --kind lost_grant --protect lost_grant=retry")), "lost_grant");
     assert_eq!((harmful(&retried), count(&retried, "wrong_counts") > 200), (0, true), "{retried}");

@@ -16,7 +16,9 @@ pub mod unprotected;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 
-use emu::inject::{FaultKind, FlipRequest, FlipShape, GoldenFrame, InjectedEnd, InjectedFlip, Protection, inject};
+use emu::inject::{
+    FaultKind, FlipRequest, FlipShape, GoldenFrame, InjectedEnd, InjectedFlip, MOST_TRANSFERS, Protection, inject,
+};
 use emu::machine::{RunOptions, Setup};
 use emu::octets::Memory;
 use messages::Diagnostic;
@@ -137,12 +139,15 @@ pub struct FaultFrame<'a> {
 }
 
 impl<'a> FaultFrame<'a> {
-    /// Runs the frame without a fault.
+    /// Runs the frame without a fault, for faults of these kinds.
     ///
     /// # Errors
-    /// See [`GoldenFrame::new`].
-    pub fn new(load: &'a FaultLoad, setup: &'a Setup<'a>) -> Result<FaultFrame<'a>, Failure> {
-        let golden = GoldenFrame::new(setup, &load.load.memory)?;
+    /// See [`GoldenFrame::up_to`].
+    pub fn new(load: &'a FaultLoad, setup: &'a Setup<'a>, kinds: &[FaultKind]) -> Result<FaultFrame<'a>, Failure> {
+        // Only faults of grants need all work items recorded at once.
+        let is_recorded = kinds.iter().any(|kind| kind.is_of_clocks());
+        let most_transfers = if is_recorded { MOST_TRANSFERS } else { u64::MAX };
+        let golden = GoldenFrame::up_to(setup, &load.load.memory, most_transfers)?;
         let pixels = load.image.region(MemoryKind::Frame);
         let colours = octets(golden.memory(), &pixels);
         Ok(FaultFrame { golden, load, pixels, colours })

@@ -89,6 +89,9 @@ pub struct GoldenFrame<'a> {
     pub(super) grants: OnceLock<Result<GrantRuns, RunFailure>>,
 }
 
+/// Transfers of a frame that faults of grants are put into, at most: 512 MiB of recordings, at 16 octets each.
+pub const MOST_TRANSFERS: u64 = 1 << 25;
+
 /// Limits at which a faulty program counts as hanging, in steps of the guest: instructions, and steps of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GuestLimits {
@@ -121,13 +124,21 @@ impl<'a> GoldenFrame<'a> {
     /// # Errors
     /// A machine that cannot be used, a trap, and programs whose work items are not independent of each other.
     pub fn new(setup: &'a Setup<'a>, image: &Memory) -> Result<GoldenFrame<'a>, RunFailure> {
+        GoldenFrame::up_to(setup, image, u64::MAX)
+    }
+
+    /// Runs a frame without a fault, whose work items have at most so many transfers, messages among them; see [`MOST_TRANSFERS`].
+    ///
+    /// # Errors
+    /// As [`GoldenFrame::new`], and more transfers.
+    pub fn up_to(setup: &'a Setup<'a>, image: &Memory, most_transfers: u64) -> Result<GoldenFrame<'a>, RunFailure> {
         check(setup)?;
         let code = Code::new(setup.core, setup.isa, setup.config.timing());
         if extension::keeps_state(&code) {
             return Err(dependent("an instruction keeps its state from one work item to the next"));
         }
         let main_code = Code::new(setup.main, setup.isa, setup.config.timing());
-        on_arithmetic(setup, GoldenTask { setup, code, main_code, image: image.clone() })
+        on_arithmetic(setup, GoldenTask { setup, code, main_code, image: image.clone(), most_transfers })
     }
 
     /// Sums of the frame.
@@ -216,27 +227,37 @@ fn dependent(why: &str) -> RunFailure {
     Report::from(message.hint(why)).into()
 }
 
+/// A frame whose work items take too much memory when all of them are recorded.
+fn too_long(most_transfers: u64) -> RunFailure {
+    let message =
+        format!("the frame has more than {most_transfers} transfers, which faults of the bus's grants need recorded");
+    let hint = "draw fewer pixels, such as `--size 160x120`, or name the kinds that flip bits: `--kind registers`";
+    Report::from(Diagnostic::error(message).hint(hint)).into()
+}
+
 struct GoldenTask<'a> {
     setup: &'a Setup<'a>,
     code: Code<'a>,
     main_code: Code<'a>,
     image: Memory,
+    most_transfers: u64,
 }
 
 impl<'a> Task for GoldenTask<'a> {
     type Result = Result<GoldenFrame<'a>, RunFailure>;
 
     fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
-        let GoldenTask { setup, code, main_code, image } = self;
+        let GoldenTask { setup, code, main_code, image, most_transfers } = self;
         let config = setup.config;
         let mut runner = ItemRunner::new(&code, arithmetic, config.buffer_octets, config.cores);
         let (mut items, mut failure): (Vec<GoldenItem>, Option<RunFailure>) = (Vec::new(), None);
-        let mut memory = image.clone();
+        let (mut memory, mut transfers) = (image.clone(), 0);
         let mut item = |_: usize, core: u32, message: Message, _: &mut Memory| {
             let (mut tally, mut reads) = (Tally::new(&code), Vec::new());
             let (limit, reads_mut) = (config.step_limit, Some(&mut reads));
             let task = ItemTask { limit, reads: reads_mut, ..ItemTask::new(core, message, &image) };
             let run = runner.run(&code, &mut tally, task);
+            transfers += run.traffic.transfers;
             let is_apart = run.writes.is_empty() && run.sent.iter().all(|(to, _)| *to == config.cores);
             match run.end {
                 Pause::Fault(fault) => failure = Some(Trap::new(fault, core, run.pc, &code).into()),
@@ -244,6 +265,7 @@ impl<'a> Task for GoldenTask<'a> {
                 Pause::Halt if !is_apart => {
                     failure = Some(dependent("a work item writes to global memory, or sends to another core"));
                 }
+                Pause::Halt if transfers > most_transfers => failure = Some(too_long(most_transfers)),
                 Pause::Halt => {
                     let answers = run.sent.iter().map(|&(_, answer)| (answer, core)).collect();
                     let mut words = vec![0; code.words().div_ceil(64) as usize];

@@ -13,7 +13,7 @@ use super::protection::{Protection, RETRY_CLOCKS};
 use crate::code::quantity::Clocks;
 use crate::code::trap::{Fault, Trap};
 use crate::machine::{GrantFault, GrantFaultKind, RunFailure, RunOptions, RunOutcome, Setup};
-use crate::replay::Recorded;
+use crate::replay::{Recorded, Replays};
 use crate::run;
 use crate::semantics::Watch;
 
@@ -31,7 +31,7 @@ impl GoldenFrame<'_> {
         let begun = || {
             let recorded = Recorded::new(&plain(self.setup, None), &self.image).ok();
             let runs = GrantRuns { recorded, clocks: Clocks(0) };
-            let clocks = runs.run(self, None).0?.clocks;
+            let clocks = runs.run(self, None, runs.replays(self).as_ref()).0?.clocks;
             Ok(GrantRuns { clocks, ..runs })
         };
         self.grants.get_or_init(begun).as_ref()
@@ -63,14 +63,22 @@ fn plain<'a>(setup: &Setup<'a>, grant_fault: Option<GrantFault>) -> Setup<'a> {
 }
 
 impl GrantRuns {
+    /// Replays of the work items, for machines with a fault each.
+    fn replays<'r>(&'r self, golden: &'r GoldenFrame) -> Option<Replays<'r>> {
+        self.recorded.as_ref().map(|recorded| recorded.replays(&plain(golden.setup, None)))
+    }
+
     /// Runs the machine, and yields the number of work items that were finished beside its outcome.
-    fn run(&self, golden: &GoldenFrame, fault: Option<GrantFault>) -> (Result<RunOutcome, RunFailure>, u64) {
+    fn run(
+        &self,
+        golden: &GoldenFrame,
+        fault: Option<GrantFault>,
+        replays: Option<&Replays>,
+    ) -> (Result<RunOutcome, RunFailure>, u64) {
         let setup = plain(golden.setup, fault);
         let mut finished = 0;
-        let replayed = self
-            .recorded
-            .as_ref()
-            .map(|recorded| recorded.replay_with(&setup, golden.image.clone(), &mut |items| finished = items));
+        let replayed =
+            replays.map(|replays| replays.replay_on(&setup, golden.image.clone(), &mut |items| finished = items));
         let outcome = match replayed {
             Some(Ok(Ok(outcome))) => Ok(outcome),
             Some(Err(failure)) => Err(failure),
@@ -121,7 +129,10 @@ impl<T: Watch> Injector<'_, T> {
             Err(failure) => return stopped(failure, 0),
         };
         let fault = GrantFault { kind, at: Clocks(flip.moment), master: flip.word };
-        match runs.run(golden, Some(fault)) {
+        if self.replays.is_none() {
+            self.replays = runs.replays(golden);
+        }
+        match runs.run(golden, Some(fault), self.replays.as_ref()) {
             (Ok(outcome), _) => {
                 let memory = (outcome.memory != golden.memory).then_some(outcome.memory);
                 InjectedEnd::Frame { counts_differ: outcome.clocks != runs.clocks, memory }

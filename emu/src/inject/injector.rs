@@ -19,6 +19,7 @@ use crate::code::trap::Fault;
 use crate::engine::Task;
 use crate::machine::on_arithmetic;
 use crate::profile::Observer;
+use crate::replay::Replays;
 use crate::semantics::Watch;
 
 /// Flip that is wanted.
@@ -130,13 +131,15 @@ pub(super) struct Injector<'g, T> {
     pub(super) tally: Tally,
     /// Work items run for the flip of now.
     pub(super) items: u64,
+    /// Replays of the whole machine, made where a fault of grants asks for them first: all share what is made of the programs.
+    pub(super) replays: Option<Replays<'g>>,
 }
 
 impl<'g, T: Watch> Injector<'g, T> {
     fn new(golden: &'g GoldenFrame<'g>, arithmetic: &'g T) -> Injector<'g, T> {
         let config = golden.setup.config;
         let runner = ItemRunner::new(&golden.code, arithmetic, config.buffer_octets, config.cores);
-        Injector { golden, arithmetic, runner, tally: Tally::new(&golden.code), items: 0 }
+        Injector { golden, arithmetic, runner, tally: Tally::new(&golden.code), items: 0, replays: None }
     }
 
     fn inject(&mut self, request: &FlipRequest) -> InjectedFlip {

@@ -17,7 +17,7 @@ mod protection;
 
 pub use flip::{BitFlip, FaultKind, FlipPattern, FlipShape, REGISTER_WORDS, RegisterWord};
 pub use frame::HangLimit;
-pub use golden::{GoldenFrame, GoldenTotals, GuestLimits};
+pub use golden::{GoldenFrame, GoldenTotals, GuestLimits, MOST_TRANSFERS};
 pub use injector::{FlipRequest, InjectedEnd, InjectedFlip, inject, inject_at};
 pub use item::FlipHit;
 pub use link::{BusWord, ItemTraffic};

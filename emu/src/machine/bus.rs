@@ -5,6 +5,7 @@ mod slots;
 use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Tdma, Verdict};
 use super::config::BusConfig;
 use super::grant_fault::{FaultyArbiter, GrantFault};
+use super::muted::MutedMasters;
 use super::waits::Waits;
 use crate::code::quantity::{Clocks, Octets};
 
@@ -170,10 +171,12 @@ pub struct Bus {
     pub lengths: Lengths,
     arbiter: Box<dyn Arbiter>,
     pub(crate) free_at: Clocks,
-    not_before: Clocks,
+    pub(super) not_before: Clocks,
     pub(crate) requests: BusRequests,
     used: BusUse,
     waits: Vec<Waits>,
+    /// Fault of grants, where the bus serves its masters by itself.
+    pub(super) muted: Option<MutedMasters>,
     /// The masters twice round the circle, and more: from each one on, the ranks of all.
     circle: Vec<u64>,
 }
@@ -189,11 +192,19 @@ impl Bus {
             requests: BusRequests::new(masters),
             used: BusUse::default(),
             waits: vec![Waits::default(); masters as usize],
+            muted: None,
             circle: (0..u64::from(masters)).cycle().take(4 * masters as usize).collect(),
         }
     }
 
-    /// The bus with a fault of its grants, where there is one.
+    /// The bus with a fault of its grants, where there is one; it serves its masters by itself.
+    #[must_use]
+    pub fn with_muted(mut self, fault: Option<GrantFault>) -> Bus {
+        self.muted = fault.map(MutedMasters::new);
+        self
+    }
+
+    /// The bus with a fault of its grants, where there is one; it is asked burst by burst.
     #[must_use]
     pub fn with_fault(mut self, fault: Option<GrantFault>) -> Bus {
         if let Some(fault) = fault {
@@ -206,6 +217,9 @@ impl Bus {
     #[inline]
     pub fn request(&mut self, master: u32, arrival: Clocks, octets: Octets) {
         debug_assert_eq!(self.requests.arrival(master), NEVER, "one transfer a master");
+        if self.muted.is_some_and(|muted| muted.is_unheard(master)) {
+            return;
+        }
         self.not_before = self.not_before.min(arrival);
         self.requests.ask(master, arrival, self.lengths.burst(octets));
     }
@@ -216,20 +230,29 @@ impl Bus {
         self.requests.first_at(self.free_at.max(self.not_before))
     }
 
-    /// Lets the arbiter decide at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
+    /// Asks the arbiter for a master at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
     #[inline]
-    pub fn decide(&mut self, clock: Clocks) -> Option<Grant> {
-        let master = match self.arbiter.choose(clock, &self.requests) {
-            Verdict::Grant(master) => master,
+    pub(super) fn ask(&mut self, clock: Clocks) -> Option<u32> {
+        if self.muted.is_some_and(|muted| muted.is_stuck()) {
+            return self.requests.asking(clock).next();
+        }
+        match self.arbiter.choose(clock, &self.requests) {
+            Verdict::Grant(master) => Some(master),
             Verdict::Later(later) => {
                 // Ask again when the arbiter says so, or as soon as a master comes that it has not seen.
                 let others = (0..self.requests.masters()).map(|master| self.requests.arrival(master));
                 let next = others.filter(|&arrival| arrival > clock).min().map_or(later, |arrival| arrival.min(later));
                 // At least a clock on, so that an arbiter which errs cannot hold the machine at one clock.
                 self.not_before = next.max(clock + Clocks(1));
-                return None;
+                None
             }
-        };
+        }
+    }
+
+    /// Lets the arbiter decide at a clock that [`Bus::next_decision`] gave; `None` when it leaves the bus idle for now.
+    #[inline]
+    pub fn decide(&mut self, clock: Clocks) -> Option<Grant> {
+        let master = self.ask(clock)?;
         let waited = clock - self.requests.arrival(master);
         let Burst { octets, rest, length } = self.requests.bursts[master as usize];
         let (end, is_last) = (clock + length, rest == Octets(0));
@@ -251,10 +274,23 @@ impl Bus {
     pub fn serve<M: NextTransfer>(&mut self, masters: &mut BusMasters<M>, until: Clocks) -> Option<Grant> {
         // A burst that no slot has room for waits for ever, turn by turn.
         let has_room = |slots: &Tdma| slots.holds(self.lengths.burst(self.lengths.longest_burst).length);
-        if let Some(slots) = self.arbiter.slots().filter(has_room) {
+        if let Some(slots) = self.arbiter.slots().filter(has_room).filter(|_| self.muted.is_none()) {
             return self.serve_slots(slots, masters, until);
         }
         let masters = &mut masters.all;
+        while let Some(change) = self.muted.map(|muted| muted.change()).filter(|&change| change < until) {
+            if let Some(grant) = self.serve_heard(masters, change) {
+                return Some(grant);
+            }
+            if !self.mute(until) {
+                return None;
+            }
+        }
+        self.serve_heard(masters, until)
+    }
+
+    /// Service of all masters that are heard, where nobody goes ahead of the bus.
+    fn serve_heard(&mut self, masters: &mut [impl NextTransfer], until: Clocks) -> Option<Grant> {
         // Clocks share their number with six bits of rank, and half of what is left is room for what this adds.
         let is_ranked =
             self.arbiter.ranking().is_some() && self.free_at < Clocks(1 << 57) && self.requests.are_before(1 << 57);

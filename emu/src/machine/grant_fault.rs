@@ -1,5 +1,5 @@
 //! Faults of the bus's grants, as an arbiter around the machine's own: from a clock on a grant is lost, the arbiter is stuck, or a master that
-//! has stopped is never heard of again.
+//! has stopped is never heard of again. A bus that serves its masters by itself has [`super::muted`] instead.
 
 use super::arbiter::{Arbiter, BusRequests, NEVER, Verdict};
 use crate::code::quantity::Clocks;
@@ -28,6 +28,19 @@ pub struct GrantFault {
     pub at: Clocks,
     /// The master that an arbiter is stuck at, or that has stopped.
     pub master: u32,
+}
+
+#[cfg(test)]
+impl GrantFault {
+    /// Fault of the kind of a number, for tests that draw one.
+    pub(crate) fn numbered(kind: u8, at: u64, master: u32, retry: u64) -> GrantFault {
+        let kind = match kind {
+            0 => GrantFaultKind::Lost { retry: Clocks(retry) },
+            1 => GrantFaultKind::Stuck,
+            _ => GrantFaultKind::Stopped,
+        };
+        GrantFault { kind, at: Clocks(at), master }
+    }
 }
 
 /// A request whose grant was lost.
@@ -100,7 +113,7 @@ impl Arbiter for FaultyArbiter {
         }
         match kind {
             GrantFaultKind::Lost { retry } => self.lose(retry, clock, requests),
-            GrantFaultKind::Stuck if requests.arrival(master) <= clock => Verdict::Grant(master),
+            GrantFaultKind::Stuck if requests.asking(clock).any(|asking| asking == master) => Verdict::Grant(master),
             GrantFaultKind::Stuck => Verdict::Later(NEVER),
             GrantFaultKind::Stopped => self.without(master, NEVER, clock, requests),
         }

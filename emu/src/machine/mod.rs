@@ -10,6 +10,7 @@ pub(crate) mod finish;
 mod grant_fault;
 pub(crate) mod kinds;
 pub mod mailbox;
+mod muted;
 pub mod one_core;
 pub mod outcome;
 pub(crate) mod port;

@@ -117,6 +117,9 @@ impl<'a, W: Worker> Machine<'a, W> {
             processors.push(processor);
         }
         let window = setup.options.window;
+        let (fault, serves_itself) = (setup.options.grant_fault, window.is_none() && !setup.options.has_course);
+        // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
+        let bus = Bus::new(&config.bus, cores + u32::from(config.main.traffic));
         // The main processor comes last: at equal clocks and acts a core goes first.
         processors.push(Processor::new(main_code, setup.main_id(), main));
         for processor in &mut processors {
@@ -126,8 +129,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             setup,
             processors,
             shared: Shared::new(memory, cores + 1),
-            // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
-            bus: Bus::new(&config.bus, cores + u32::from(config.main.traffic)).with_fault(setup.options.grant_fault),
+            bus: if serves_itself { bus.with_muted(fault) } else { bus.with_fault(fault) },
             bus_watch: window.map(|window| BusWatch::new(window, cores as usize + 1)),
             course: setup.options.has_course.then(BusCourse::default),
             kinds: Kinds::new(&setup.kinds),
@@ -138,7 +140,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            masters: (window.is_none() && !setup.options.has_course).then(|| BusMasters::new(cores + 1)),
+            masters: serves_itself.then(|| BusMasters::new(cores + 1)),
             written: 0..0,
             progress,
         }

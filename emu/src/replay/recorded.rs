@@ -89,7 +89,12 @@ impl Replays<'_> {
         self.replay_on(&Setup { config, ..self.setup.clone() }, memory, &mut |_| {})
     }
 
-    fn replay_on(
+    /// A replay on one machine that computes as the one of the recordings, with options of its own; `progress` is told the number of work items
+    /// finished, each time one is.
+    ///
+    /// # Errors
+    /// As [`Recorded::replay`].
+    pub(crate) fn replay_on(
         &self,
         setup: &Setup,
         memory: Memory,

@@ -47,7 +47,7 @@ pub struct InjectArguments {
     #[command(flatten)]
     job: JobArguments,
     /// Structure to inject into, or part of the machine that goes wrong; may be repeated [default: all].
-    #[arg(long = "kind", value_name = "KIND", value_parser = kind(), help_heading = "Faults")]
+    #[arg(long = "kind", value_name = "KIND,..", value_delimiter = ',', value_parser = kind(), help_heading = "Faults")]
     kinds: Vec<FaultKind>,
     /// Injections into each structure.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), default_value = "1000", help_heading = "Faults")]
@@ -63,7 +63,7 @@ pub struct InjectArguments {
     seed: u64,
     /// Protection of a structure, such as memory=ecc; may be repeated. Words have parity or ecc, results duplicated or residue, lost grants retry,
     /// they and other faults of the machine a watchdog.
-    #[arg(long = "protect", value_name = "KIND=PROTECTION", value_parser = protection, help_heading = "Faults")]
+    #[arg(long = "protect", value_name = "KIND=PROTECTION,..", value_delimiter = ',', value_parser = protection, help_heading = "Faults")]
     protections: Vec<(FaultKind, Protection)>,
     /// Runs the injection of this number alone, of the one kind that is named, and shows it.
     #[arg(long, value_name = "N", conflicts_with_all = ["parts", "shard", "heat", "rows"], help_heading = "Faults")]
@@ -205,7 +205,7 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
     terminal.show(&job.warnings);
     let load = FaultLoad::new(&job)?;
     let setup = load.setup(&job);
-    let frame = FaultFrame::new(&load, &setup)?;
+    let frame = FaultFrame::new(&load, &setup, &campaign.kinds)?;
     if !arguments.merge {
         frame.check(&campaign)?;
     }

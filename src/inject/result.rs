@@ -179,7 +179,9 @@ pub struct ProtectionEffect {
     pub detected: u64,
     /// Harmful injections that it does not see, or makes worse.
     pub passed: u64,
-    /// Vulnerability that is left, where it sees a flip as soon as that happens.
+    /// Injections, harmful or not, of which it leaves other bits wrong than flipped: what comes of those only a run with it tells.
+    pub unknown: u64,
+    /// Vulnerability that is left, where it sees a flip as soon as that happens; its interval goes from no harm of the unknown ones to harm of all.
     pub left: ShareInterval,
     /// Cost of it.
     pub cost: ProtectionCost,
@@ -274,23 +276,31 @@ impl KindVulnerability {
             }
         }
         let effects = costs.iter().filter(|((other, _), _)| *other == kind).map(|(&(_, protection), cost)| {
-            let (mut corrected, mut detected) = (0, 0);
-            for row in &harmful {
+            let (mut corrected, mut detected, mut passed, mut unknown, mut unknown_passed) = (0, 0, 0, 0, 0);
+            for row in rows {
+                let is_harmful = row.class.is_harmful();
                 let seen = match protection {
                     // Where nothing happens any more a watchdog sees it, and a request that is made again is granted.
                     Protection::Watchdog if row.class == InjectionClass::Hang => SeenFlip::Detected,
                     Protection::Retry if row.class == InjectionClass::Hang => SeenFlip::Corrected,
                     protection => protection.sees(row.mask(), row.change),
                 };
+                let is_other = matches!(seen, SeenFlip::Passed(mask) if mask != row.mask());
+                unknown += u64::from(is_other);
                 match seen {
+                    _ if !is_harmful => {}
                     SeenFlip::Corrected => corrected += 1,
                     SeenFlip::Detected => detected += 1,
-                    SeenFlip::Passed(_) => {}
+                    SeenFlip::Passed(_) => {
+                        passed += 1;
+                        unknown_passed += u64::from(is_other);
+                    }
                 }
             }
-            let passed = harmful.len() as u64 - corrected - detected;
-            let left = ShareInterval::of(passed, injections);
-            ProtectionEffect { protection: protection.name(), corrected, detected, passed, left, cost: cost.clone() }
+            let sure = passed - unknown_passed;
+            let left = ShareInterval::between(sure, passed, sure + unknown, injections);
+            let (protection, cost) = (protection.name(), cost.clone());
+            ProtectionEffect { protection, corrected, detected, passed, unknown, left, cost }
         });
         let counted = |(fault, count): (&str, u64)| FaultCount { fault: fault.to_owned(), count };
         KindVulnerability {
@@ -376,5 +386,35 @@ pub(super) mod tests {
         assert_eq!((kind.pixels.within_step, kind.pixels.beyond_step, kind.pixels.largest_difference), (1, 1, 0.5));
         assert_eq!((kind.traps.len(), kind.by_bit.len(), kind.by_function[0].harmful), (1, 3, 3));
         assert_eq!((kind.protections[0].detected, kind.protections[0].passed), (3, 0));
+    }
+
+    #[test]
+    fn a_code_that_leaves_other_bits_wrong_says_what_it_does_not_know() {
+        use InjectionClass::{Masked, WrongPixel};
+        let with_bits =
+            |number, class, bits: &[u32]| InjectionRow { bits: bits.to_vec(), ..row(number, class, 0, 0.5) };
+        // Two bits are always found; of three some look like a fourth.
+        let unseen = |bits: &&[u32; 3]| {
+            let mask = bits.iter().map(|bit| 1u32 << bit).sum();
+            matches!(Protection::Secded.sees(mask, 0), SeenFlip::Passed(other) if other != mask)
+        };
+        let threes: Vec<[u32; 3]> = (2..32).map(|bit| [0, 1, bit]).collect();
+        let three = threes.iter().find(unseen).expect("the code has seven bits");
+        let rows = [
+            with_bits(0, WrongPixel, &[0, 1]),
+            with_bits(1, WrongPixel, three),
+            with_bits(2, Masked, three),
+            with_bits(3, Masked, &[3]),
+        ];
+        let kind = KindVulnerability::new(
+            FaultKind::Registers,
+            Protection::Unprotected,
+            &rows.iter().collect::<Vec<_>>(),
+            &BTreeMap::from([((FaultKind::Registers, Protection::Secded), ProtectionCost::default())]),
+        );
+        let effect = &kind.protections[0];
+        assert_eq!((effect.corrected, effect.detected, effect.passed, effect.unknown), (0, 1, 1, 2));
+        let (none, both) = (ShareInterval::of(0, 4), ShareInterval::of(2, 4));
+        assert_eq!(effect.left, ShareInterval { share: 0.25, low: none.low, high: both.high });
     }
 }

@@ -34,6 +34,12 @@ impl ShareInterval {
         let high = if part == whole { 1.0 } else { middle + half };
         ShareInterval { share, low, high }
     }
+
+    /// Share of `part` in `whole`, where it may be anything from `fewest` to `most`.
+    pub fn between(fewest: u64, part: u64, most: u64, whole: u64) -> ShareInterval {
+        let (low, high) = (ShareInterval::of(fewest, whole).low, ShareInterval::of(most, whole).high);
+        ShareInterval { low, high, ..ShareInterval::of(part, whole) }
+    }
 }
 
 /// Counts of injections of a group.

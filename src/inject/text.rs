@@ -142,8 +142,19 @@ fn left_unprotected(result: &InjectResult) -> String {
 }
 
 fn protections(kinds: &[KindVulnerability]) -> String {
-    let head =
-        ["structure", "protection", "corrects", "finds", "passes", "left (95 %)", "clocks", "octets", "bits", "nJ"];
+    let head = [
+        "structure",
+        "protection",
+        "corrects",
+        "finds",
+        "passes",
+        "unknown",
+        "left (95 %)",
+        "clocks",
+        "octets",
+        "bits",
+        "nJ",
+    ];
     let mut rows = vec![row(head)];
     for kind in kinds {
         for effect in &kind.protections {
@@ -154,6 +165,7 @@ fn protections(kinds: &[KindVulnerability]) -> String {
                 grouped(effect.corrected),
                 grouped(effect.detected),
                 grouped(effect.passed),
+                grouped(effect.unknown),
                 interval(&effect.left),
                 cost.clocks_share.map_or_else(|| "-".to_owned(), |share| format!("+{}", percent(share))),
                 format!("+{}", grouped(cost.octets)),

@@ -7,10 +7,8 @@ use smallvec::SmallVec;
 
 use super::search::{Hit, Search, better};
 use super::short::{Boxes, LANES, ShortRay, TriangleBlock};
-use super::tie::TIE;
 use super::triangle::{PreparedTriangle, Shapes, ShearedRay};
 use crate::model::Vec3;
-use crate::vector::AXES;
 
 /// The hierarchy; node 0 is its root. Without triangles there is none.
 #[derive(Debug)]
@@ -170,9 +168,7 @@ impl<'a> Hierarchy<'a> {
         if self.nodes.is_empty() {
             return;
         }
-        // A component 0 gives an infinite reciprocal, and with it the comparisons that are right for such a ray.
-        let Some(start) = enters(self.all, ray.origin, ray.direction.map(|d| 1.0 / d), end) else { return };
-        let short = ShortRay::new(ray, start);
+        let Some(short) = ShortRay::entering(self.all, ray, end) else { return };
         let mut end = short.end(end);
         // Rarely more than a few wait; the depth of the tree bounds them, not this number.
         let mut waiting: SmallVec<[(u32, u8, f32); 32]> = SmallVec::new();
@@ -244,21 +240,6 @@ fn divided(entries: &mut [Entry], part: DividedPart) -> SmallVec<[DividedPart; L
         parts.insert_many(largest, halves);
     }
     parts
-}
-
-/// Distance at which the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
-/// what the test of a triangle calls its border, so that no hit is lost.
-fn enters((low, high): Box3, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
-    const SLACK: f64 = 4.0 * TIE;
-    let (mut near, mut far) = (0.0f64, end);
-    for k in AXES {
-        // An origin on the face of a box that it runs along gives 0 * infinity; min and max skip it.
-        let a = (f64::from(low[k]) - origin[k] - SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
-        let b = (f64::from(high[k]) - origin[k] + SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
-        near = near.max(a.min(b));
-        far = far.min(a.max(b));
-    }
-    (near <= far * (1.0 + SLACK)).then_some(near * (1.0 - SLACK))
 }
 
 /// Orders the triangles so that the first ones, as many as is returned, are the left part.

@@ -1,19 +1,23 @@
 //! Single precision where it is sure: rays and blocks of four triangles with which the quick search refuses triangles that a ray misses by far. What is
 //! not refused is decided in double precision by [`super::triangle`], so nothing here can change a picture.
 //!
-//! Everything lies in the scene's box, whose coordinates are at most 1, and a ray starts where it enters it. Let u = 2^-24 be the rounding of single
+//! Everything lies in the scene's box, whose coordinates are at most 1, and a ray starts in it or next to it. Let u = 2^-24 be the rounding of single
 //! precision, E the sum of the absolute components of a triangle's two edges. Möller and Trumbore's products (1997), `u = from . (d x second)`,
-//! `v = d . (from x first)` and the determinant, have components of `from` of at most 2, each off by 4 u, and components of `d x second` off by 4 u E; the
-//! three sums are then off by less than 66 u E, 66 u E and 42 u E, and the third edge's function, the determinant less both, by less than 144 u E. So
-//! [`MARGIN`], 256 u, times E bounds all of them. The test in double precision calls an edge function a tie up to some [`TIE`] times E and the size of the
-//! ray's origin, for which a second term stands. An edge function below the margin and another one above it have opposite signs, whichever sign the
-//! determinant has: a miss.
+//! `v = d . (from x first)` and the determinant, have components of `from` of little more than 2, each off by 4 u, and components of `d x second` off by 4 u E;
+//! the three sums are then off by less than 66 u E, 66 u E and 42 u E, and the third edge's function, the determinant less both, by less than 150 u E. So
+//! [`MARGIN`], 256 u, times E bounds all of them. An edge function below the margin and another one above it have opposite signs, whichever
+//! sign the determinant has: a miss.
+//!
+//! Where the ray's own origin is far, let T be the size of its terms in sheared space ([`ShearedRay::origin_terms`]): the test in double precision calls an
+//! edge function a tie up to [`TIE`] times E and some T, and the start is off by 2^-51 T across the ray, so both margins grow by a multiple of [`TIE`] times T.
+//! Along the ray the start is off by as much as double precision rounds the distance, by which distances alone are made longer.
 
 use wide::f32x4;
 
 use super::hierarchy::Box3;
 use super::tie::TIE;
 use super::triangle::{PreparedTriangle, ShearedRay};
+use crate::model::Vec3;
 use crate::vector::{AXES, largest};
 
 /// Triangles of a block, or boxes of a node.
@@ -41,33 +45,73 @@ pub struct ShortRay {
     beyond: [[f32x4; 3]; 2],
     /// Margin of edge functions, as part of the sum of the edges' components.
     margin: f32x4,
-    /// Distance of the start from the ray's own origin.
-    start: f64,
+    /// Distance of the start from the ray's own origin, as the sum of two numbers of which the second one is small.
+    start: [f64; 2],
+    /// Bound of the error of distances from that origin.
+    blur: f64,
 }
 
+/// Coordinates up to which a start counts as one next to the box.
+const NEXT: f64 = 2.0;
+
 impl ShortRay {
-    /// The ray from `start` on, where it enters a box whose coordinates are at most 1.
-    pub fn new(ray: &ShearedRay, start: f64) -> ShortRay {
-        let origin = AXES.map(|k| (ray.origin[k] + start * ray.direction[k]) as f32);
+    /// The ray from where it enters a box whose coordinates are at most 1; `None` when it misses it before `end`.
+    pub fn entering(all: Box3, ray: &ShearedRay, end: f64) -> Option<ShortRay> {
+        // A component 0 gives an infinite reciprocal, and with it the comparisons that are right for such a ray.
+        let reciprocal = ray.direction.map(|d| 1.0 / d);
+        let first = enters(all, ray.origin, reciprocal, end)?;
+        let along = |from: Vec3, way: f64| AXES.map(|k| from[k] + way * ray.direction[k]);
+        let mut start = along(ray.origin, first);
+        // A step from afar ends where rounding lets it, each further one as much nearer. Of an eye at 10^20: at 10^8, at 0.0001.
+        let mut rest = 0.0;
+        for _ in 0..32 {
+            if largest(start) <= NEXT {
+                break;
+            }
+            let Some(step) = enters(all, start, reciprocal, f64::INFINITY) else { break };
+            start = along(start, step);
+            rest += step;
+        }
+        let blur = if first > 0.0 { 4.0 * TIE * largest(ray.origin) } else { 0.0 };
+        let far = if largest(start) <= NEXT { TIE * (1.0 + ray.origin_terms()) } else { f64::INFINITY };
+        // Beyond the numbers of single precision nothing is refused: the margin is larger than any edge function, the place than any box.
+        let far = far.min(1e30) as f32;
+        let (place, margin) = (PLACE + 4.0 * far, MARGIN + 32.0 * far);
+        let origin = start.map(|x| x.clamp(-NEXT, NEXT) as f32);
         let direction = ray.direction.map(|d| d as f32);
         let reciprocal = direction.map(|d| if d.abs() > 1.0 / ALONG { 1.0 / d } else { ALONG.copysign(d) });
-        // What double precision does with far origins is as rough as they are far.
-        let far = (TIE * (1.0 + largest(ray.origin))) as f32;
-        let place = PLACE + 4.0 * far;
-        ShortRay {
+        Some(ShortRay {
             origin: origin.map(f32x4::splat),
             direction: direction.map(f32x4::splat),
             reciprocal: reciprocal.map(f32x4::splat),
             beyond: [place, -place].map(|place| origin.map(|x| f32x4::splat(x + place))),
-            margin: f32x4::splat(MARGIN + 32.0 * far),
-            start,
-        }
+            margin: f32x4::splat(margin),
+            start: [first, rest],
+            blur,
+        })
     }
 
     /// Distance in the box up to which boxes are opened for a distance from the ray's own origin.
     pub fn end(&self, t: f64) -> f32 {
-        ((t - self.start) as f32) * LONGER + PLACE
+        // Finite, also for a distance that is not, so that nothing is infinity less infinity.
+        let way = (t - self.start[0]) - self.start[1] + self.blur;
+        (way.clamp(-1e30, 1e30) as f32) * LONGER + PLACE
     }
+}
+
+/// Distance at which the ray enters the box, `None` when it misses it before `end`. The box is taken a little larger, by more than all roundings here and
+/// what the test of a triangle calls its border, so that no hit is lost.
+fn enters((low, high): Box3, origin: Vec3, reciprocal: Vec3, end: f64) -> Option<f64> {
+    const SLACK: f64 = 4.0 * TIE;
+    let (mut near, mut far) = (0.0f64, end);
+    for k in AXES {
+        // An origin on the face of a box that it runs along gives 0 * infinity; min and max skip it.
+        let a = (f64::from(low[k]) - origin[k] - SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
+        let b = (f64::from(high[k]) - origin[k] + SLACK * (1.0 + origin[k].abs())) * reciprocal[k];
+        near = near.max(a.min(b));
+        far = far.min(a.max(b));
+    }
+    (near <= far * (1.0 + SLACK)).then_some(near * (1.0 - SLACK))
 }
 
 /// Boxes of a node's children.

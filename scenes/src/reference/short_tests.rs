@@ -8,6 +8,7 @@ use super::short::{Boxes, LANES, ShortRay, TriangleBlock};
 use super::triangle::{Encounter, PreparedTriangle, ShearedRay};
 use super::*;
 use crate::generate;
+use crate::model::Camera;
 use crate::vector::{add, scale, unit};
 
 /// A triangle, and rays at it: each starts `away` from a point between its corners, or next to one of its edges.
@@ -27,7 +28,7 @@ fn points() -> impl Strategy<Value = Vec3> {
 
 fn shots() -> impl Strategy<Value = Shot> {
     let near = prop_oneof![Just(0.0), -1e-3..1e-3f64, -1e-6..1e-6f64, -1e-9..1e-9f64, -1e-13..1e-13f64];
-    let aim = (0.0..1.0f64, near, points().prop_filter_map("a direction", unit), -2.0..20.0f64);
+    let aim = (0.0..1.0f64, near, points().prop_filter_map("a direction", unit), -2.0..45.0f64);
     (points(), points(), points(), -20.0..0.0f64, prop::collection::vec(aim, 8)).prop_map(|(a, b, c, size, aims)| {
         // From the whole box down to a millionth of it.
         let near_a = |p: Vec3| add(a, scale(sub(p, a), size.exp2()));
@@ -35,17 +36,15 @@ fn shots() -> impl Strategy<Value = Shot> {
         let rays = aims.into_iter().map(|(along, aside, direction, away)| {
             let weights = [1.0 - along - aside, along, aside];
             let aim = (0..3).fold([0.0; 3], |sum, k| add(sum, scale(vertices[k], weights[k])));
-            // Up to a million times the box away.
+            // Up to 10^13 times the box away.
             (sub(aim, scale(direction, away.exp2())), direction)
         });
         Shot { vertices, rays: rays.collect() }
     })
 }
 
-fn short(ray: &ShearedRay) -> ShortRay {
-    // Where the ray comes nearest to the box's middle, or where it starts.
-    let start = -crate::vector::dot(ray.origin, ray.direction);
-    ShortRay::new(ray, (start - 2.0).max(0.0))
+fn short(ray: &ShearedRay) -> Option<ShortRay> {
+    ShortRay::entering(([-1.25; 3], [1.25; 3]), ray, f64::INFINITY)
 }
 
 /// The box in single precision, an ulp larger than it need be.
@@ -71,7 +70,7 @@ proptest! {
         for (origin, direction) in shot.rays {
             let ray = ShearedRay::new(origin, direction);
             let Some(hit) = all.nearest(&ray) else { continue };
-            let ray = short(&ray);
+            let ray = short(&ray).expect("what it hits lies in the box");
             prop_assert_eq!(block.candidates(&ray) >> lane & 1, 1, "{:?} {:?}", origin, direction);
             prop_assert_eq!(boxes.enter(&ray, ray.end(hit.t)).1 & ((2 << lane) - 1), (2 << lane) - 1, "{:?} {:?}", origin, direction);
         }
@@ -93,7 +92,8 @@ fn nearly_all_misses_are_refused() {
         let aim = triangle(number).vertices.iter().fold([0.0; 3], |sum, &v| add(sum, scale(v, 1.0 / 3.0)));
         for aside in [0.0, 0.01, 0.1, 1.0] {
             let ray = ShearedRay::new([aim[0] + aside, aim[1] + aside / 3.0, 1.5], [0.0, 0.0, -1.0]);
-            let candidates = block.candidates(&short(&ray));
+            let Some(short) = short(&ray) else { continue };
+            let candidates = block.candidates(&short);
             assert_eq!(candidates >> 3, 0, "the fourth lane is empty");
             for lane in 0..3 {
                 let is_hit = matches!(triangle(number + lane).meet(&ray), Encounter::Hit(_));
@@ -104,4 +104,22 @@ fn nearly_all_misses_are_refused() {
         }
     }
     assert!(misses > 10_000 && left * 1000 < misses, "{left} of {misses}");
+}
+
+/// A landscape from straight above and from a corner, as far as coordinates go: the same picture as by trying all triangles.
+#[test]
+fn far_eyes_see_what_trying_all_triangles_shows() {
+    let options = generate::GenerateOptions { triangles: Some(500), ..Default::default() };
+    let scene = generate::scene("terrain", &options).unwrap();
+    for (towards, farthest) in [([0.0, 0.0, 1.0], 150), ([0.5, 0.75, 1.0], 12)] {
+        for power in [1, 3, 6, 9, 12, 40, 60, 150].into_iter().filter(|&power| power <= farthest) {
+            let distance = 10f64.powi(power);
+            let camera =
+                Camera::Perspective { eye: Some(scale(towards, distance)), look: None, field: 400.0 / distance };
+            let view = View { camera, ..View::new((12, 9)) };
+            let (tree, all) = (render(&scene, &view).unwrap(), render_exhaustively(&scene, &view).unwrap());
+            assert_eq!(tree, all, "10^{power}");
+            assert!(tree.rays.shadow > 20, "10^{power}: {:?}", tree.rays);
+        }
+    }
 }

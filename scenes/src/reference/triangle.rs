@@ -41,6 +41,12 @@ impl ShearedRay<'_> {
         self.direction[self.axes[2]].signum()
     }
 
+    /// Size of the terms that the origin has in sheared space: small also for a far origin, where the ray comes from it along an axis.
+    pub fn origin_terms(&self) -> f64 {
+        let [x, y, z] = self.axes.map(|axis| self.origin[axis].abs());
+        (x + self.shear[0].abs() * z).max(y + self.shear[1].abs() * z)
+    }
+
     /// The point in sheared space, and how large the terms were that its x and y are differences of.
     #[inline]
     fn sheared(&self, point: Vec3) -> (Vec3, [f64; 2]) {

@@ -243,8 +243,8 @@ fn beside(found: &FormatsResult) -> &'static str {
     let is_given = |name: &str| found.quantities.iter().any(|one| one.quantity == name && one.is_given);
     match (is_given(Overrides::NAMES[0]), is_given(Overrides::NAMES[4])) {
         (true, _) => "with positions that are as fine in each scene",
-        (_, true) => "with the positions of that word, since others would move more",
-        _ => "that word itself, since other formats would move more",
+        (_, true) => "with the positions of that word, since others would not move less",
+        _ => "that word itself, since other formats would not move less",
     }
 }
 

@@ -54,7 +54,7 @@ pub struct FormatSearch {
 /// The fewest bits of everything; `None` where the longest word does not keep the demand. `guard` bits are added to what keeps it,
 /// half as many to [`SMOOTH`] quantities.
 ///
-/// Two choices are made, and the one that moves fewer octets is the answer. In the first all quantities are given, each as short as it may be and one for
+/// Two choices are made, and the one that moves fewer octets is the answer, the second where they move as much. In the first all quantities are given, each as short as it may be and one for
 /// all scenes: scenes with small boxes then have narrow positions. In the second each scene has the positions that the shortest uniform word gives it,
 /// and the other quantities are given. So the answer moves no more than that word, unless each is refused; then the word itself is the answer.
 ///
@@ -65,7 +65,12 @@ pub fn search(trials: &mut FormatTrials, demand: DemandedError, guard: i32) -> R
     let guess = first_word(demand);
     let mut keeps = |word: i32| trials.keeps(FormatChoice::uniform(word as u32));
     let Some(kept) = safest(least as i32, most as i32, guess, &mut keeps)? else { return Ok(None) };
-    let uniform = (kept + guard).min(most as i32) as u32;
+    // A longer word than the one that keeps the demand by three others may still be an unlucky one.
+    let mut uniform = (kept + guard).min(most as i32);
+    while uniform < most as i32 && !keeps(uniform)? {
+        uniform += 1;
+    }
+    let uniform = if keeps(uniform)? { uniform as u32 } else { kept as u32 };
     let is_fitted = kept < most as i32 && trials.keeps(FormatChoice::uniform(LONGEST_FITTED))?;
     let long = FormatChoice::uniform(if is_fitted { LONGEST_FITTED } else { most });
     let mut given = Shortening::new(trials, demand, long);
@@ -79,9 +84,9 @@ pub fn search(trials: &mut FormatTrials, demand: DemandedError, guard: i32) -> R
     let mut guesses = std::array::from_fn(|at| Some(given.quantities[at].fewest - guard_of(at, guard)));
     guesses[POSITION] = None;
     chosen.shorten(trials, guard, guesses)?;
-    // With a large guard none may keep the demand, which figures then say.
+    // With a large guard none may keep the demand, which figures then say. Of choices that move as much, one with shorter quantities.
     let mut ranked = Vec::new();
-    for one in [plain, given, chosen] {
+    for one in [chosen, given, plain] {
         let figures = ChoiceFigures::of(trials.measure(one.choice)?);
         ranked.push((!figures.is_kept, figures.octets, one));
     }

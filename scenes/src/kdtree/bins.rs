@@ -72,7 +72,9 @@ impl PlaneSearch {
             let starting = equal(&mut lows, at);
             right -= equal(&mut highs, at);
             if at > node.low[axis] && at < node.high[axis] {
-                let cost = slice.cost(at, [left as i32, right as i32, equal(&mut flats, at) as i32]);
+                let length = f64::from(at) - slice.low;
+                let flat = equal(&mut flats, at);
+                let cost = slice.cost_at(length, [left as i32, right as i32]) + slice.smaller(length) * f64::from(flat);
                 if cost < lowest {
                     lowest = cost;
                     found = Some(slice.division(at));
@@ -158,7 +160,7 @@ impl<const N: usize> Bins<N> {
                 let before = (left, right);
                 left += self.lows[axis][bin - 1];
                 right -= self.highs[axis][bin - 1];
-                let cost = slice.cost_at(part * bin as f64, [left as i32, right as i32, 0]);
+                let cost = slice.cost_at(part * bin as f64, [left as i32, right as i32]);
                 if cost < lowest {
                     lowest = cost;
                     cheapest = Cheapest { axis, bin, left: before.0, right: before.1 };
@@ -172,7 +174,8 @@ impl<const N: usize> Bins<N> {
 /// Costs of the planes of a node across an axis. Half the surface of a child is linear in its length along the axis.
 struct ChildCosts {
     axis: usize,
-    low: i32,
+    /// Lower face of the node.
+    low: f64,
     /// Length of the node.
     side: f64,
     /// Surface per unit of length.
@@ -184,7 +187,7 @@ struct ChildCosts {
 impl ChildCosts {
     fn new(node: &Bounds, axis: usize) -> ChildCosts {
         let [a, b] = [(axis + 1) % 3, (axis + 2) % 3].map(|other| f64::from(node.side(other)));
-        ChildCosts { axis, low: node.low[axis], side: f64::from(node.side(axis)), slope: a + b, face: a * b }
+        ChildCosts { axis, low: node.low[axis].into(), side: f64::from(node.side(axis)), slope: a + b, face: a * b }
     }
 
     /// Cost above which a plane does not pay: a visit of the node costs as much as a triangle.
@@ -194,60 +197,86 @@ impl ChildCosts {
 
     /// Cost of a plane `length` units above the node's lower face, with so many triangles left and right of it and in it.
     #[inline]
-    fn cost_at(&self, length: f64, [left, right, flat]: [i32; 3]) -> f64 {
+    fn cost_at(&self, length: f64, [left, right]: [i32; 2]) -> f64 {
         let lower = self.slope * length + self.face;
         let upper = self.slope * (self.side - length) + self.face;
-        let smaller = if upper < lower { upper } else { lower };
-        lower * f64::from(left) + upper * f64::from(right) + smaller * f64::from(flat)
+        lower * f64::from(left) + upper * f64::from(right)
     }
 
-    fn cost(&self, at: i32, counts: [i32; 3]) -> f64 {
-        self.cost_at(f64::from(at) - f64::from(self.low), counts)
+    /// Surface of the smaller child of a plane.
+    #[inline]
+    fn smaller(&self, length: f64) -> f64 {
+        let lower = self.slope * length + self.face;
+        let upper = self.slope * (self.side - length) + self.face;
+        if upper < lower { upper } else { lower }
+    }
+
+    /// Costs of planes at which none of the triangles lies flat.
+    #[inline]
+    fn costs<const N: usize>(&self, lows: &[i32; N], highs: &[i32; N], planes: &[i32; TOGETHER]) -> [f64; TOGETHER] {
+        let [mut left, mut right] = [[0; TOGETHER]; 2];
+        for j in 0..N {
+            for k in 0..TOGETHER {
+                left[k] += i32::from(lows[j] < planes[k]);
+                right[k] += i32::from(highs[j] > planes[k]);
+            }
+        }
+        let mut costs = [0.0; TOGETHER];
+        for k in 0..TOGETHER {
+            costs[k] = self.cost_at(f64::from(planes[k]) - self.low, [left[k], right[k]]);
+        }
+        costs
+    }
+
+    /// Adds the costs of triangles that lie in planes.
+    fn add_flats(&self, lows: &[i32], highs: &[i32], planes: &[i32; TOGETHER], costs: &mut [f64; TOGETHER]) {
+        for (cost, &at) in costs.iter_mut().zip(planes) {
+            let flat = lows.iter().zip(highs).filter(|&(&low, &high)| low == at && high == at).count();
+            *cost += self.smaller(f64::from(at) - self.low) * flat as f64;
+        }
     }
 
     /// The plane, with the triangles in it on its smaller side.
     fn division(&self, at: i32) -> Division {
-        let length = f64::from(at) - f64::from(self.low);
+        let length = f64::from(at) - self.low;
         let flat = if self.side - length < length { Side::Right } else { Side::Left };
         Division { axis: self.axis, at, flat }
     }
 }
 
-/// The best plane of a node that holds at most `N` triangles: nothing is sorted, each bound is compared with each, `N` at a time.
+/// Planes whose costs are computed together.
+const TOGETHER: usize = 4;
+
+/// The best plane of a node that holds at most `N` triangles: nothing is sorted, each plane is compared with each bound, [`TOGETHER`] at a time.
 fn best_of_few<const N: usize>(node: &Bounds, packet: &[Part]) -> Option<Division> {
     let mut lowest = ChildCosts::new(node, 0).undivided(packet.len() as u32);
     let mut found = None;
     for axis in 0..3 {
-        let slice = ChildCosts::new(node, axis);
-        // Places that no triangle takes are on neither side of any plane, and their own planes in no node.
+        // Places that no triangle takes are on neither side of any plane.
         let (mut lows, mut highs) = ([i32::MAX; N], [i32::MIN; N]);
-        let mut has_flat = false;
         for (k, part) in packet.iter().enumerate().take(N) {
             (lows[k], highs[k]) = (part.bounds.low[axis], part.bounds.high[axis]);
-            has_flat |= lows[k] == highs[k];
         }
-        for planes in [&lows, &highs] {
-            let [mut left, mut right, mut flat] = [[0i32; N]; 3];
-            for j in 0..N {
-                for k in 0..N {
-                    left[k] += i32::from(lows[j] < planes[k]);
-                    right[k] += i32::from(highs[j] > planes[k]);
-                }
+        // Most bounds are in a face of the node, where no plane is. The others stand in front, lower bounds first.
+        let mut planes = [node.low[axis]; 16];
+        let mut count = 0;
+        for list in [&lows, &highs] {
+            for &at in &list[..packet.len()] {
+                planes[count % 16] = at;
+                count += usize::from(at > node.low[axis] && at < node.high[axis]);
             }
+        }
+        let has_flat = lows.iter().zip(&highs).any(|(low, high)| low == high);
+        let slice = ChildCosts::new(node, axis);
+        for planes in planes[..count].chunks(TOGETHER) {
+            let mut group = [node.low[axis]; TOGETHER];
+            group[..planes.len()].copy_from_slice(planes);
+            let mut costs = slice.costs(&lows, &highs, &group);
             if has_flat {
-                for (&low, _) in lows.iter().zip(&highs).filter(|(low, high)| low == high) {
-                    for k in 0..N {
-                        flat[k] += i32::from(low == planes[k]);
-                    }
-                }
-            }
-            // All costs before any is compared, which the compiler makes vectors of.
-            let mut costs = [0.0; N];
-            for k in 0..N {
-                costs[k] = slice.cost(planes[k], [left[k], right[k], flat[k]]);
+                slice.add_flats(&lows, &highs, &group, &mut costs);
             }
             for (&cost, &at) in costs.iter().zip(planes) {
-                if cost < lowest && at > node.low[axis] && at < node.high[axis] {
+                if cost < lowest {
                     lowest = cost;
                     found = Some(slice.division(at));
                 }

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use messages::{Diagnostic, Report};
-use serde_json::Value;
 
 use super::dataset::{Dataset, cell, kind_of};
+use super::key_set::KeySet;
 use super::part::{DamagedPart, StudyPart};
 use super::plan::StudyPlan;
 use super::row::{Cell, CellKind, PointFigures, PointLabels, PointRow};
@@ -16,9 +16,6 @@ const LISTED: usize = 20;
 
 /// Number of a part, and of a row in it.
 type RowPlace = (usize, usize);
-
-/// Keys that a point sets.
-type KeySet = serde_json::Map<String, Value>;
 
 /// Keys that have a column of their own name among the labels, or part of one.
 const LABELLED: [&str; 15] = [
@@ -132,7 +129,7 @@ fn listed(what: &str, points: &[String], hint: &str) -> Option<Diagnostic> {
 fn table(rows: Vec<PointRow>, sets: &[&KeySet]) -> Dataset {
     let is_labelled = |key: &str| LABELLED.contains(&key);
     let mut keys: Vec<&str> =
-        sets.iter().flat_map(|set| set.keys()).map(String::as_str).filter(|key| !is_labelled(key)).collect();
+        sets.iter().flat_map(|set| set.iter()).map(|(key, _)| key).filter(|key| !is_labelled(key)).collect();
     keys.sort_unstable();
     keys.dedup();
     let figures = PointFigures::columns().len();

@@ -10,6 +10,7 @@ pub mod frames;
 pub mod front;
 pub mod group;
 pub mod identity;
+pub mod key_set;
 mod latin;
 pub mod merge;
 #[cfg(feature = "full")]

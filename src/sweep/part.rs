@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use messages::{Diagnostic, Report};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use serde_json::Map;
 use sha2::{Digest, Sha256};
 
 use super::PART;
+use super::key_set::KeySet;
 use super::row::PointRow;
 use crate::files;
 use crate::result::hexadecimal;
@@ -141,7 +141,7 @@ pub fn parse(text: &str, path: &Path, has_sets: bool) -> Result<StudyPart, Strin
     }
     let row = |line: &str| {
         let row: PointRow = serde_json::from_str(line)?;
-        Ok(if has_sets { row } else { PointRow { set: Map::new(), ..row } })
+        Ok(if has_sets { row } else { PointRow { set: KeySet::default(), ..row } })
     };
     let rows = rest.lines().map(row).collect::<Result<Vec<PointRow>, serde_json::Error>>();
     let rows = rows.map_err(|error| format!("a row cannot be read: {error}"))?;

@@ -2,23 +2,27 @@
 //! line a point.
 
 use std::collections::{HashMap, HashSet};
-use std::io::Write;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use messages::{Diagnostic, Report};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::contents::Contents;
 use super::digest::{PointDigest, StudyDigests};
 use super::identity::PartDigest;
+use super::key_set::KeySet;
 use super::study::{Assignments, MOST_POINTS, Study, ordered};
 use super::{PLAN, identity};
 use crate::failure::Failure;
 use crate::files;
 use crate::settings::apply::change;
 use crate::settings::{Settings, VERSION};
+
+/// Lines of a plan that are written at once.
+const LINES: usize = 1024;
 
 /// Octets of the largest plan.
 const LARGEST: u64 = 4 << 30;
@@ -54,7 +58,7 @@ pub struct PlannedPoint {
     /// SHA-256 of what its recording depends on, in hexadecimal.
     pub recording: String,
     /// Keys that the point sets.
-    pub set: Map<String, Value>,
+    pub set: KeySet,
 }
 
 /// Points with what they share.
@@ -80,12 +84,23 @@ impl StudyPlan {
     pub fn new(study: &Study, contents: &Contents) -> Result<StudyPlan, Failure> {
         // Digest all points on all threads; only the digests are kept until the lines are written.
         let all = StudyDigests::new(study, contents);
-        let digests: Vec<Result<PointDigest, Failure>> =
-            (0..study.count()).into_par_iter().map(|number| all.of(number)).collect();
+        // The first point that cannot be is told; those behind it need not be tried, which all of a study may have in common.
+        let refused = AtomicU64::new(u64::MAX);
+        let of = |number: u64| {
+            let is_before = number < refused.load(Ordering::Relaxed);
+            is_before.then(|| {
+                let digest = all.of(number);
+                if digest.is_err() {
+                    refused.fetch_min(number, Ordering::Relaxed);
+                }
+                digest
+            })
+        };
+        let digests: Vec<Option<Result<PointDigest, Failure>>> = (0..study.count()).into_par_iter().map(of).collect();
         let mut seen = HashSet::with_capacity(digests.len());
         let mut recordings: HashMap<[u8; 32], u64> = HashMap::new();
         let (mut points, mut repeated, mut nanoseconds) = (Vec::new(), 0, 0.0);
-        for (number, digest) in digests.into_iter().enumerate() {
+        for (number, digest) in digests.into_iter().flatten().enumerate() {
             let (PartDigest { point, recording }, pixels) = digest?;
             if !seen.insert(point) {
                 repeated += 1;
@@ -115,18 +130,20 @@ impl StudyPlan {
         Ok(StudyPlan { head, points })
     }
 
-    /// Writes the plan, a line at a time.
-    ///
-    /// # Errors
-    /// What the writer says.
-    pub fn write(&self, out: &mut dyn Write) -> std::io::Result<()> {
-        serde_json::to_writer(&mut *out, &self.head)?;
-        out.write_all(b"\n")?;
-        for point in &self.points {
-            serde_json::to_writer(&mut *out, point)?;
-            out.write_all(b"\n")?;
+    /// The plan as octets, some lines at a time.
+    pub fn octets(&self) -> impl Iterator<Item = Vec<u8>> {
+        fn put(octets: &mut Vec<u8>, line: &impl Serialize) {
+            serde_json::to_writer(&mut *octets, line).expect("plans have string keys");
+            octets.push(b'\n');
         }
-        Ok(())
+        let mut head = Vec::new();
+        put(&mut head, &self.head);
+        let lines = self.points.chunks(LINES).map(|points| {
+            let mut octets = Vec::new();
+            points.iter().for_each(|point| put(&mut octets, point));
+            octets
+        });
+        std::iter::once(head).chain(lines)
     }
 
     /// Reads a plan.
@@ -174,7 +191,7 @@ impl StudyPlan {
     /// # Errors
     /// Contents that are not those of the plan.
     pub fn settings(&self, point: &PlannedPoint, contents: &Contents) -> Result<Settings, Failure> {
-        let assignments = ordered(point.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect());
+        let assignments = ordered(point.set.iter().map(|(key, value)| (key.to_owned(), value.clone())).collect());
         let settings = settings_of(&self.head.settings, &assignments, contents)?;
         if identity::shown(&identity::point(&settings)) != point.point {
             let short: String = point.point.chars().take(16).collect();
@@ -271,8 +288,7 @@ mod tests {
     #[test]
     fn a_plan_reads_back_as_itself() {
         let plan = plan(TEXT);
-        let mut octets = Vec::new();
-        plan.write(&mut octets).unwrap();
+        let octets = plan.octets().collect::<Vec<_>>().concat();
         let text = String::from_utf8(octets).unwrap();
         assert_eq!(StudyPlan::parse(&text, "plan.jsonl").unwrap(), plan);
         for (cut, message) in [(text.lines().count() - 1, "35 points of the 36"), (0, "it is empty")] {

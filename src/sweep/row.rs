@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::key_set::KeySet;
+
 /// Contents of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
@@ -185,7 +187,7 @@ pub struct PointRow {
     /// SHA-256 of all that the result depends on, in hexadecimal.
     pub point: String,
     /// Keys that the point sets.
-    pub set: serde_json::Map<String, serde_json::Value>,
+    pub set: KeySet,
     /// Scene, machine and numbers.
     pub labels: PointLabels,
     /// Figures; none for a point that cannot be drawn.

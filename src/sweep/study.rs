@@ -1,6 +1,7 @@
 //! A study file: settings that all points share, and what varies. Products, zips, lists and Latin hypercubes are factors, each a list of
 //! alternatives; the points are their product.
 
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use messages::{Diagnostic, Place, Report, Source, did_you_mean};
@@ -17,6 +18,9 @@ pub type Assignments = Vec<(String, Value)>;
 
 /// Most points of a study.
 pub const MOST_POINTS: u64 = 10_000_000;
+
+/// Numbers of a key that are all tried by themselves.
+const MOST_TRIALS: usize = 256;
 
 /// Tables of a study file.
 const TABLES: [&str; 6] = ["name", "settings", "product", "zip", "list", "latin"];
@@ -75,8 +79,8 @@ impl Study {
         if let Some(table) = root.get("latin") {
             factors.extend(file.latin(table));
         }
-        // Every value is tried by itself, so that a mistake is named once and not for each point.
-        for (key, value) in factors.iter().flatten().flatten() {
+        // Values are tried by themselves, so that a mistake is named once and not for each point.
+        for (key, value) in trials(&factors) {
             let mut one = file.base.clone();
             if let Err(report) = change(&mut one, key, value.clone()).and_then(|()| Settings::of_value(&one)) {
                 let blamed =
@@ -123,6 +127,33 @@ pub fn ordered(mut assignments: Assignments) -> Assignments {
     assignments.sort_by_key(|(key, _)| (key != "machine.from", key.matches('.').count()));
     assignments.sort_by_key(|(key, _)| !["machine", "machine.from", "scene"].contains(&key.as_str()));
     assignments
+}
+
+/// Values of each key that are tried by themselves: all of few, and of many numbers the smallest and the largest. What lies between those is
+/// tried in its points.
+fn trials(factors: &[Vec<Assignments>]) -> Vec<(&str, &Value)> {
+    let (mut keys, mut known): (Vec<(&str, Vec<&Value>)>, HashMap<&str, (usize, HashSet<String>)>) = Default::default();
+    for (key, value) in factors.iter().flatten().flatten() {
+        let (number, values) = known.entry(key).or_insert_with(|| {
+            keys.push((key, Vec::new()));
+            (keys.len() - 1, HashSet::new())
+        });
+        if values.insert(value.to_string()) {
+            keys[*number].1.push(value);
+        }
+    }
+    keys.into_iter().flat_map(|(key, values)| ends(values).into_iter().map(move |value| (key, value))).collect()
+}
+
+/// All of few values, and of many numbers the smallest and the largest.
+fn ends(values: Vec<&Value>) -> Vec<&Value> {
+    if values.len() <= MOST_TRIALS || !values.iter().all(|value| value.is_number()) {
+        return values;
+    }
+    let number = |value: &&Value| value.as_f64().unwrap_or_default();
+    let by_number = |one: &&Value, other: &&Value| number(one).total_cmp(&number(other));
+    let (least, most) = (values.iter().copied().min_by(by_number), values.iter().copied().max_by(by_number));
+    least.into_iter().chain(most).collect()
 }
 
 /// The tables of a list of tables, or of one table.
@@ -270,6 +301,19 @@ mod tests {
             assert!(shown.contains(part), "{part}\n{shown}");
         }
     }
+
+    #[test]
+    fn many_numbers_are_tried_at_their_ends() {
+        let text = |low: i64| {
+            format!(
+                "settings.scene = \"triangle\"\n[latin]\npoints = 5000\nkeys = {{ \"bus.setup_clocks\" = [{low}, 9000], word = [16, 24, 32] }}\n"
+            )
+        };
+        assert_eq!(trials(&study(&text(0)).unwrap().factors).len(), 2 + 3);
+        let shown = study(&text(-9)).expect_err("no clocks are below none");
+        assert_eq!(shown.matches("setup_clocks").count(), 1, "{shown}");
+    }
+
     #[test]
     fn a_list_in_the_place_of_a_group_is_refused() {
         for text in ["[[list]]\nscene = [1]\n", "[settings]\nkernels = [1]\n", "[product]\nscene = [[1]]\n"] {

@@ -38,11 +38,9 @@ pub(super) fn execute(arguments: &PlanArguments, terminal: &mut Terminal) -> Res
         files::check_spared([path], [&arguments.study]).map_err(Failure::usage)?;
     }
     let plan = planned(&study(&arguments.study)?, &Contents::default(), terminal)?;
-    let mut octets = Vec::new();
-    plan.write(&mut octets).expect("memory can be written");
     match output {
-        Some(path) => files::write(path, &octets)?,
-        None => terminal.print_octets(&octets)?,
+        Some(path) => files::write(path, &plan.octets().collect::<Vec<_>>().concat())?,
+        None => plan.octets().try_for_each(|octets| terminal.print_octets(&octets))?,
     }
     Ok(Exit::Done)
 }

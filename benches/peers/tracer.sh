@@ -27,7 +27,7 @@ g++ -std=c++17 -O3 -march=native -Wall -Wextra -o "$folder/tracer" benches/peers
 timed() { # list, command
     local list=$1 TIMEFORMAT='%3U %3S'
     shift
-    { time "$@" > "$folder/output"; } 2> "$folder/time"
+    { time "$@" > "$folder/output" 2> "$folder/errors"; } 2> "$folder/time"
     awk '{ printf "%d\n", ($1 + $2) * 1000 + 0.5 }' "$folder/time" >> "$folder/$list"
 }
 

@@ -138,7 +138,7 @@ fn table(rows: Vec<PointRow>, sets: &[&KeySet]) -> Dataset {
         let mut cells = Vec::with_capacity(2 + labels + keys.len() + figures);
         cells.push(Cell::Text(row.point));
         cells.extend(row.labels.cells());
-        cells.extend(keys.iter().map(|key| set.get(*key).map_or(Cell::Empty, cell)));
+        cells.extend(keys.iter().map(|key| set.get(key).map_or(Cell::Empty, cell)));
         match row.figures {
             Some(figures) => cells.extend(figures.cells()),
             None => cells.extend(std::iter::repeat_n(Cell::Empty, figures)),

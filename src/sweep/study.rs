@@ -132,7 +132,8 @@ pub fn ordered(mut assignments: Assignments) -> Assignments {
 /// Values of each key that are tried by themselves: all of few, and of many numbers the smallest and the largest. What lies between those is
 /// tried in its points.
 fn trials(factors: &[Vec<Assignments>]) -> Vec<(&str, &Value)> {
-    let (mut keys, mut known): (Vec<(&str, Vec<&Value>)>, HashMap<&str, (usize, HashSet<String>)>) = Default::default();
+    let mut keys: Vec<(&str, Vec<&Value>)> = Vec::new();
+    let mut known = HashMap::<&str, (usize, HashSet<String>)>::new();
     for (key, value) in factors.iter().flatten().flatten() {
         let (number, values) = known.entry(key).or_insert_with(|| {
             keys.push((key, Vec::new()));

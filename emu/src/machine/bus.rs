@@ -274,7 +274,8 @@ impl Bus {
     pub fn serve<M: NextTransfer>(&mut self, masters: &mut BusMasters<M>, until: Clocks) -> Option<Grant> {
         // A burst that no slot has room for waits for ever, turn by turn.
         let has_room = |slots: &Tdma| slots.holds(self.lengths.burst(self.lengths.longest_burst).length);
-        if let Some(slots) = self.arbiter.slots().filter(has_room).filter(|_| self.muted.is_none()) {
+        let may_go_ahead = self.muted.is_none() && masters.go_ahead();
+        if let Some(slots) = self.arbiter.slots().filter(has_room).filter(|_| may_go_ahead) {
             return self.serve_slots(slots, masters, until);
         }
         let masters = &mut masters.all;

@@ -231,6 +231,13 @@ pub struct CacheConfig {
     pub kind: String,
 }
 
+impl CacheConfig {
+    /// True where a copy of a cache costs no more than some transfers, so that masters may go ahead of the bus.
+    pub(super) fn has_few_lines(&self) -> bool {
+        self.octets / self.line_octets.max(1) <= 1024
+    }
+}
+
 impl Default for CacheConfig {
     fn default() -> CacheConfig {
         CacheConfig { octets: 0, line_octets: 64, kind: "nodes".to_owned() }

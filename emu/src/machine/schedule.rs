@@ -140,7 +140,7 @@ impl<'a, W: Worker> Machine<'a, W> {
             has_main_halted: false,
             meeting: 0,
             steps_without_main: 0,
-            masters: serves_itself.then(|| BusMasters::new(cores + 1)),
+            masters: serves_itself.then(|| BusMasters::new(cores + 1, config.cache.has_few_lines())),
             written: 0..0,
             progress,
         }

@@ -53,7 +53,8 @@ impl OwnSlots {
             into %= self.frame;
         }
         // Nobody could foresee which it is, so there is no branch.
-        let (fits, next) = (into + length.0 <= self.slot, self.begin + self.frame);
+        // A transfer of nothing begins within the slot as well: its end is where the next master's begins.
+        let (fits, next) = (into + length.0.max(1) <= self.slot, self.begin + self.frame);
         self.begin = if fits { self.begin } else { next };
         if fits { clock } else { Clocks(next) }
     }
@@ -94,7 +95,7 @@ mod tests {
     #[test]
     fn slots_go_on_from_clock_to_clock() {
         let mut slots = Tdma::new(3, Clocks(10)).slots_of(1);
-        for (clock, length, expected) in [(3, 4, 10), (14, 4, 14), (18, 4, 40), (44, 6, 44), (50, 0, 50), (51, 0, 70), (95, 4, 100)] {
+        for (clock, length, expected) in [(3, 4, 10), (14, 4, 14), (18, 4, 40), (44, 6, 44), (49, 0, 49), (50, 0, 70), (95, 4, 100)] {
             assert_eq!(slots.start(Clocks(clock), Clocks(length)), Clocks(expected), "{length} clocks at {clock}");
         }
     }

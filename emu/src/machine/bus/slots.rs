@@ -15,7 +15,7 @@ pub struct BusMasters<M> {
     lasts: Vec<Clocks>,
     /// Way of each, of no meaning for those that are not ahead.
     walks: Vec<SlotWalk>,
-    /// The masters as they were before they went ahead.
+    /// The masters as they were before they went ahead; none where none of them does.
     before: Vec<M>,
 }
 
@@ -33,16 +33,21 @@ struct SlotWalk {
 }
 
 impl<M: NextTransfer> BusMasters<M> {
-    /// Masters that go on to nothing.
-    pub fn new(masters: u32) -> BusMasters<M> {
+    /// Masters that go on to nothing. `go_ahead` says that they may go ahead of a bus with slots of time, for which each is copied.
+    pub fn new(masters: u32, go_ahead: bool) -> BusMasters<M> {
         let masters = masters as usize;
-        let none = || (0..masters).map(|_| M::default()).collect();
+        let none = |masters: usize| (0..masters).map(|_| M::default()).collect();
         BusMasters {
-            all: none(),
+            all: none(masters),
             lasts: vec![NEVER; masters],
             walks: vec![SlotWalk::default(); masters],
-            before: none(),
+            before: none(if go_ahead { masters } else { 0 }),
         }
+    }
+
+    /// True where they may go ahead of the bus.
+    pub fn go_ahead(&self) -> bool {
+        !self.before.is_empty()
     }
 
     /// True where one of them is ahead of the bus.

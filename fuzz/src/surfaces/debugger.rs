@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use emu::machine::Config;
 use emu::octets::Memory;
 use isa::{Isa, Program};
-use lancer::debug::{COMMANDS, DebugTarget, Door, Session, dap};
+use lancer::debug::{COMMANDS, DebugCommand, DebugTarget, Door, Session, dap};
 use messages::Source;
 
 use crate::project::{files, listings, literals, pieces};
@@ -118,7 +118,10 @@ fn command(input: &[u8], seen: &mut Seen) {
                 seen.text(&message);
             }
             Ok(answer) => {
-                seen.text(line.split_whitespace().next().unwrap_or_default());
+                // By the command's name, not by the word: what a line begins with can be anything.
+                let word = line.split_whitespace().next().unwrap_or_default();
+                let is_called = |command: &DebugCommand| command.name == word || command.also.contains(&word);
+                seen.text(COMMANDS.iter().find(|command| is_called(command)).map_or("", |command| command.name));
                 seen.count("lines", answer.text.lines().count());
                 if answer.ends {
                     return;

@@ -77,9 +77,7 @@ fn whole_part(rows: &[PointRow]) -> String {
 }
 
 fn plans() -> Vec<Vec<u8>> {
-    let mut octets = Vec::new();
-    PLANNED.0.write(&mut octets).expect("a plan can be written");
-    [octets].into_iter().chain(literals("src/sweep/plan.rs")).collect()
+    [PLANNED.0.octets().collect::<Vec<_>>().concat()].into_iter().chain(literals("src/sweep/plan.rs")).collect()
 }
 
 fn parts() -> Vec<Vec<u8>> {
@@ -137,8 +135,7 @@ fn read_plan(input: &[u8], seen: &mut Seen) {
                     Ok(_) => seen.text("settings"),
                 }
             }
-            let mut octets = Vec::new();
-            plan.write(&mut octets).expect("memory can be written");
+            let octets = plan.octets().collect::<Vec<_>>().concat();
             let again = StudyPlan::parse(&String::from_utf8_lossy(&octets), "b.jsonl");
             assert!(again.is_ok_and(|again| again == plan), "a plan is read as it was written");
             seen.plant(PlantedFault::Abort, plan.points.iter().any(|point| point.recording.len() < 8));

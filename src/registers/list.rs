@@ -35,8 +35,7 @@ fn split(text: &str) -> Result<Vec<String>, String> {
             continue;
         }
         // The number before the comma: its digits behind the last sign that is none.
-        let start = item.rfind(|c: char| !(c.is_ascii_alphanumeric() || "_.".contains(c))).map_or(0, |at| at + 1);
-        let before = &item[start..];
+        let before = item.rsplit(|c: char| !(c.is_ascii_alphanumeric() || "_.".contains(c))).next().unwrap_or_default();
         let plain = before.rsplit('_').next().unwrap_or(before);
         let is_grouped = (1..=3).contains(&plain.len())
             && plain.bytes().all(|digit| digit.is_ascii_digit())
@@ -88,6 +87,7 @@ mod tests {
             ("s1=1,0000", "write 1_0000"),
             ("s1=1,00", "write 1_00"),
             ("s5=1.5:pos,100", "`100` behind a comma names no register: write s1=100"),
+            ("s5=one\u{e9}, 655 x", "`655 x` behind a comma names no register"),
         ] {
             assert!(split(text).unwrap_err().contains(form), "{text}: {:?}", split(text));
         }

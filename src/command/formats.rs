@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use clap::Args;
 use kernels::KernelSet;
 use messages::Diagnostic;
-use scenes::cadrage::Overrides;
 use scenes::generate::{self, GenerateOptions, SCENES};
 use scenes::layout::Layout;
 use scenes::model::View;
@@ -240,8 +239,9 @@ fn cells(figures: &ChoiceFigures) -> Vec<String> {
 
 /// Difference of the formats that were found from a uniform word.
 fn beside(found: &FormatsResult) -> &'static str {
-    let is_given = |name: &str| found.quantities.iter().any(|one| one.quantity == name && one.is_given);
-    match (is_given(Overrides::NAMES[0]), is_given(Overrides::NAMES[4])) {
+    // Behind the positions come the other quantities, and last the word.
+    let [positions, others @ .., _] = &found.quantities[..] else { return "" };
+    match (positions.is_given, others.iter().any(|one| one.is_given)) {
         (true, _) => "with positions that are as fine in each scene",
         (_, true) => "with the positions of that word, since others would not move less",
         _ => "that word itself, since other formats would not move less",

@@ -247,8 +247,12 @@ impl ChildCosts {
 /// Planes whose costs are computed together.
 const TOGETHER: usize = 4;
 
+/// Most planes along an axis of a node that is searched without sorting: two a triangle.
+const FEW_PLANES: usize = 16;
+
 /// The best plane of a node that holds at most `N` triangles: nothing is sorted, each plane is compared with each bound, [`TOGETHER`] at a time.
 fn best_of_few<const N: usize>(node: &Bounds, packet: &[Part]) -> Option<Division> {
+    const { assert!(2 * N <= FEW_PLANES) };
     let mut lowest = ChildCosts::new(node, 0).undivided(packet.len() as u32);
     let mut found = None;
     for axis in 0..3 {
@@ -258,11 +262,11 @@ fn best_of_few<const N: usize>(node: &Bounds, packet: &[Part]) -> Option<Divisio
             (lows[k], highs[k]) = (part.bounds.low[axis], part.bounds.high[axis]);
         }
         // Most bounds are in a face of the node, where no plane is. The others stand in front, lower bounds first.
-        let mut planes = [node.low[axis]; 16];
+        let mut planes = [node.low[axis]; FEW_PLANES];
         let mut count = 0;
         for list in [&lows, &highs] {
             for &at in &list[..packet.len()] {
-                planes[count % 16] = at;
+                planes[count % FEW_PLANES] = at;
                 count += usize::from(at > node.low[axis] && at < node.high[axis]);
             }
         }

@@ -25,7 +25,7 @@ pub struct Hierarchy<'a> {
 enum Leaves {
     /// Copies, a block a leaf.
     Blocks(Vec<TriangleBlock>),
-    /// Numbers alone, of which blocks are made when they are wanted: takes a sixth of the memory and longer.
+    /// Numbers alone, of which blocks are made when they are wanted: takes a twelfth of the memory and longer.
     Numbers(Vec<u32>),
 }
 

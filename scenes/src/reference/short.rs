@@ -8,9 +8,9 @@
 //! [`MARGIN`], 256 u, times E bounds all of them. An edge function below the margin and another one above it have opposite signs, whichever
 //! sign the determinant has: a miss.
 //!
-//! Where the ray's own origin is far, let T be the size of its terms in sheared space ([`ShearedRay::origin_terms`]): the test in double precision calls an
-//! edge function a tie up to [`TIE`] times E and some T, and the start is off by 2^-51 T across the ray, so both margins grow by a multiple of [`TIE`] times T.
-//! Along the ray the start is off by as much as double precision rounds the distance, by which distances alone are made longer.
+//! Far origins make both margins larger. With T for the size of an origin's terms in sheared space ([`ShearedRay::origin_terms`]), the test in double precision
+//! calls an edge function a tie up to some multiple of [`TIE`] times E times T, and the start is off by 2^-51 T across the ray, so the margins grow by
+//! multiples of [`TIE`] times T. Along the ray the start is off by as much as double precision rounds the distance, by which distances alone are made longer.
 
 use wide::f32x4;
 

@@ -67,6 +67,12 @@ fn word(input: &[u8], at: usize) -> std::ops::Range<usize> {
     if start < end { start..end } else { at..(at + 1).min(input.len()) }
 }
 
+/// Place of the first digit from a place on, or else of the first of all; the place itself where there is none.
+fn number(input: &[u8], at: usize) -> usize {
+    let digit = |part: &[u8]| part.iter().position(u8::is_ascii_digit);
+    digit(&input[at..]).map(|behind| at + behind).or_else(|| digit(input)).unwrap_or(at)
+}
+
 /// The line around a place, with its end.
 fn line(input: &[u8], at: usize) -> std::ops::Range<usize> {
     let start = input[..at].iter().rposition(|octet| *octet == b'\n').map_or(0, |before| before + 1);
@@ -125,6 +131,8 @@ impl Mutator {
                     1 => (random.bits() >> (24 + random.below(40))).to_string(),
                     _ => choice(random, &NUMBERS).to_string(),
                 };
+                // Mostly in the place of a number: those are few among the words of a file.
+                let at = if random.below(4) > 0 { number(input, at) } else { at };
                 input.splice(word(input, at), text.into_bytes());
             }
             // Lines: one less, one twice, one from elsewhere, two in the other order.

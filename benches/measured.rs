@@ -66,8 +66,11 @@ const PARTS: &[Part] = &[
     Part {
         name: "trees",
         title: "Trees",
-        about: "Building kd trees of landscapes.",
-        commands: &["cargo bench --workspace --bench kdtree"],
+        about: "Building kd trees: the default one beside the report's, and landscapes by method.",
+        commands: &[
+            "cargo bench --workspace --bench kdtree -- default",
+            "cargo bench --workspace --bench kdtree -- kdtree",
+        ],
     },
     Part {
         name: "fuzzing",

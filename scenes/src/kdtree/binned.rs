@@ -1,6 +1,8 @@
 //! Building of a tree by bins: planes from [`super::bins`], parts cut once ([`super::cut`]), and a bound on the references, so that time and memory grow
 //! with the number of triangles whatever their shape. Where a plane lies is not decided here.
 
+use std::ops::Range;
+
 use super::bins::PlaneSearch;
 use super::built::{BuildNode, BuiltTree, Subtree};
 use super::cut::halves;
@@ -57,89 +59,132 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
     /// A node of which both sides may be worth a thread each.
     fn large(&self, mut packet: Vec<Part>, place: NodePlace) -> Vec<Subtree> {
         let mut subtree = Subtree::default();
-        let mut search = PlaneSearch::default();
+        let mut space = BuildSpace::default();
         let count = packet.len();
         if count < WORTH_A_THREAD {
-            self.small(&mut packet, 0, place, &mut search, &mut subtree);
+            space.parts = packet;
+            self.small(&mut space, 0..count, place, &mut subtree);
             subtree.nodes.shrink_to_fit();
             subtree.triangles.shrink_to_fit();
             return vec![subtree];
         }
-        let Some(division) = plane(&place, &packet, &mut search) else {
+        let Some(division) = plane(&place, &packet, &mut space.search) else {
             leaf(packet.iter(), &mut subtree);
             return vec![subtree];
         };
         // What goes to the left stays in its place in the list, closed up, so a node allocates for one side only.
         let mut above = Vec::with_capacity(count / 2 + count / 8);
         let mut kept = 0;
-        for at in 0..count {
-            let [left, right] = self.sides(packet[at], &division);
-            above.extend(right);
-            if let Some(part) = left {
-                packet[kept] = part;
-                kept += 1;
-            }
+        space.parts.resize(AT_ONCE, Part::NONE);
+        for start in (0..count).step_by(AT_ONCE) {
+            let some = &mut packet[start..count.min(start + AT_ONCE)];
+            let [stay, go] = self.divide(some, &mut space.parts, &mut space.cuts, &division, Side::Left);
+            above.extend_from_slice(&space.parts[..go]);
+            packet.copy_within(start..start + stay, kept);
+            kept += stay;
         }
         packet.truncate(kept);
         let Some([lower, upper]) = place.children(&division, count, [kept, above.len()]) else {
             united(&packet, &above, &mut subtree);
             return vec![subtree];
         };
+        drop(space);
         subtree.nodes.push(BuildNode::Inner { axis: division.axis as u8, at: division.at });
         let (left, right) = rayon::join(|| self.large(packet, lower), || self.large(above, upper));
         [vec![subtree], left, right].into_iter().flatten().collect()
     }
 
-    /// A node that one thread builds, at the end of a subtree. Its packet is the end of `stack` from `start` on, and taken off.
-    fn small(
-        &self,
-        stack: &mut Vec<Part>,
-        start: usize,
-        mut place: NodePlace,
-        search: &mut PlaneSearch,
-        subtree: &mut Subtree,
-    ) {
+    /// A node that one thread builds, at the end of a subtree. Its packet are the parts `packet`; what is behind them may be overwritten.
+    fn small(&self, space: &mut BuildSpace, packet: Range<usize>, mut place: NodePlace, subtree: &mut Subtree) {
+        let Range { start, mut end } = packet;
         loop {
-            let packet = &stack[start..];
-            let (count, end) = (packet.len(), stack.len());
-            let Some(division) = plane(&place, packet, search) else {
+            let count = end - start;
+            let packet = &space.parts[start..end];
+            let Some(division) = plane(&place, packet, &mut space.search) else {
                 leaf(packet.iter(), subtree);
-                break;
+                return;
             };
-            // The right side stays, closed up; the left one, which comes first in a walk, goes on top.
-            let mut kept = start;
-            for at in start..end {
-                let [left, right] = self.sides(stack[at], &division);
-                stack.extend(left);
-                if let Some(part) = right {
-                    stack[kept] = part;
-                    kept += 1;
-                }
+            if space.parts.len() < end + count {
+                space.parts.resize(end + count, Part::NONE);
             }
-            let Some([lower, upper]) = place.children(&division, count, [stack.len() - end, kept - start]) else {
-                united(&stack[end..], &stack[start..kept], subtree);
-                break;
+            // The right side stays, closed up; the left one, which comes first in a walk, goes behind it.
+            let (packet, behind) = space.parts[start..].split_at_mut(count);
+            let [stay, go] = self.divide(packet, behind, &mut space.cuts, &division, Side::Right);
+            let Some([lower, upper]) = place.children(&division, count, [go, stay]) else {
+                united(&behind[..go], &packet[..stay], subtree);
+                return;
             };
             subtree.nodes.push(BuildNode::Inner { axis: division.axis as u8, at: division.at });
-            self.small(stack, end, lower, search, subtree);
-            stack.truncate(kept);
-            place = upper;
+            self.small(space, end..end + go, lower, subtree);
+            (end, place) = (start + stay, upper);
         }
-        stack.truncate(start);
     }
 
-    /// Pieces of a part left and right of a plane.
-    #[inline]
-    fn sides(&self, part: Part, division: &Division) -> [Option<Part>; 2] {
-        let (low, high) = (part.bounds.low[division.axis], part.bounds.high[division.axis]);
-        if low < division.at && high > division.at {
-            let halves = halves(&self.triangles.vertices(part.index as usize), &part.bounds, division);
-            return halves.map(|half| half.map(|bounds| Part { bounds, ..part }));
+    /// Divides a packet: what is on the side `kept` stays, closed up, the rest goes to the front of `moved`, both in their order. Returns the numbers of both.
+    ///
+    /// Nobody can foresee on which side a part is, so there is no branch that asks: each part is written to both lists, of which only those grow that it
+    /// belongs to. Parts on both sides are cut when all have their places.
+    fn divide(
+        &self,
+        packet: &mut [Part],
+        moved: &mut [Part],
+        cuts: &mut Vec<[u32; 2]>,
+        division: &Division,
+        kept: Side,
+    ) -> [usize; 2] {
+        let Division { axis, at, flat } = *division;
+        let count = packet.len();
+        if cuts.len() < count {
+            cuts.resize(count, [0; 2]);
         }
-        let is_flat = low == division.at && high == division.at;
-        let is_left = if is_flat { division.flat == Side::Left } else { high <= division.at };
-        if is_left { [Some(part), None] } else { [None, Some(part)] }
+        let (moved, places) = (&mut moved[..count], &mut cuts[..count]);
+        let [mut stay, mut go, mut cut] = [0; 3];
+        for number in 0..count {
+            let part = packet[number];
+            let is_left = part.bounds.low[axis] < at;
+            let is_right = part.bounds.high[axis] > at;
+            let is_flat = !(is_left | is_right);
+            let in_left = is_left | (is_flat & (flat == Side::Left));
+            let in_right = is_right | (is_flat & (flat == Side::Right));
+            let [is_kept, is_moved] = if kept == Side::Left { [in_left, in_right] } else { [in_right, in_left] };
+            (packet[stay], moved[go], places[cut]) = (part, part, [stay as u32, go as u32]);
+            stay += usize::from(is_kept);
+            go += usize::from(is_moved);
+            cut += usize::from(is_left & is_right);
+        }
+        let mut is_any_gone = false;
+        for &[stays, goes] in &places[..cut] {
+            let (stays, goes) = (&mut packet[stays as usize], &mut moved[goes as usize]);
+            let [left, right] = halves(&self.triangles.vertices(stays.index as usize), &stays.bounds, division);
+            (stays.bounds, goes.bounds) = if kept == Side::Left { (left, right) } else { (right, left) };
+            is_any_gone |= left.is_empty() | right.is_empty();
+        }
+        if is_any_gone { [closed_up(&mut packet[..stay]), closed_up(&mut moved[..go])] } else { [stay, go] }
     }
+}
+
+/// Parts that [`BinnedBuilder::divide`] divides at once in a large node, so that what it writes stays near.
+const AT_ONCE: usize = 1024;
+
+/// Storage that serves one node after another.
+#[derive(Default)]
+struct BuildSpace {
+    /// Packets of the node in work and of those that wait for it, each with what is left of it at its start.
+    parts: Vec<Part>,
+    /// Places of the parts that a plane cuts, in both lists.
+    cuts: Vec<[u32; 2]>,
+    search: PlaneSearch,
+}
+
+/// Moves parts that are not empty to the front, in their order, and counts them.
+fn closed_up(parts: &mut [Part]) -> usize {
+    let mut kept = 0;
+    for number in 0..parts.len() {
+        let part = parts[number];
+        parts[kept] = part;
+        kept += usize::from(!part.bounds.is_empty());
+    }
+    kept
 }
 
 /// The plane that divides a node, if one may and does pay.

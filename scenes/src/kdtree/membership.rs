@@ -43,6 +43,11 @@ pub(super) struct Part {
     pub(super) bounds: Bounds,
 }
 
+impl Part {
+    /// A place of a list that holds no part yet.
+    pub(super) const NONE: Part = Part { index: 0, bounds: Bounds { low: [0; 3], high: [0; 3] } };
+}
+
 impl<T: Triangles + ?Sized> ByPart<'_, T> {
     /// The triangles as a node holds them that contains all of them.
     pub(super) fn whole(&self) -> Vec<Part> {

@@ -64,6 +64,11 @@ impl Bounds {
         }
     }
 
+    /// Nothing lies in the box: on some axis its lower corner is beyond the upper one.
+    fn is_empty(&self) -> bool {
+        self.low.iter().zip(&self.high).any(|(low, high)| low > high)
+    }
+
     /// The box with each face moved outwards by `unit` (stopping at the ends of 32 bits).
     pub fn enlarged(&self, unit: i32) -> Bounds {
         Bounds { low: self.low.map(|x| x.saturating_sub(unit)), high: self.high.map(|x| x.saturating_add(unit)) }

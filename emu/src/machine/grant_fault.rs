@@ -109,7 +109,11 @@ impl Arbiter for FaultyArbiter {
     fn choose(&mut self, clock: Clocks, requests: &BusRequests) -> Verdict {
         let GrantFault { kind, at, master } = self.fault;
         if clock < at {
-            return self.inner.choose(clock, requests);
+            // Who is put off beyond the fault meets it, whether another master comes until then or not.
+            return match self.inner.choose(clock, requests) {
+                Verdict::Later(later) => Verdict::Later(later.min(at)),
+                grant => grant,
+            };
         }
         match kind {
             GrantFaultKind::Lost { retry } => self.lose(retry, clock, requests),

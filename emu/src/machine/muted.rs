@@ -68,7 +68,11 @@ impl Bus {
                 Some(lost) => lost,
                 None => return false,
             },
-            (FaultPhase::Ahead, _) => FaultPhase::Lasting,
+            (FaultPhase::Ahead, _) => {
+                // An arbiter that has put off its masters may be stuck at one of them, who then gets the bus.
+                self.not_before = self.not_before.min(fault.at);
+                FaultPhase::Lasting
+            }
             (FaultPhase::Lost { master, arrival, burst, again }, _) => {
                 // It has been waiting since it asked first, but nobody heard it before now.
                 self.requests.ask(master, arrival, burst);

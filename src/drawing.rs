@@ -21,6 +21,7 @@ use scenes::reference::{Reference, SearchMethod};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};
 use crate::load::Load;
+use crate::protection::StoredWords;
 use crate::result::{self, Loss};
 
 /// Use of the double-precision reference.
@@ -237,6 +238,11 @@ pub(crate) fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32))
 }
 
 impl Drawing {
+    /// Words of the cores' program and octets of global memory.
+    pub fn stored_words(&self) -> StoredWords {
+        StoredWords { program: self.build.cores.words.len() as u64, memory_octets: self.frame.memory.size() as u64 }
+    }
+
     /// Pixels that had no ray of their own.
     pub fn interpolated(&self) -> u64 {
         (self.words.len() - self.frame.items.len()) as u64

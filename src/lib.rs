@@ -36,6 +36,7 @@ pub mod numeral;
 #[cfg(feature = "cli")]
 pub mod pixel;
 pub mod profiles;
+pub mod protection;
 #[cfg(feature = "cli")]
 pub mod registers;
 #[cfg(feature = "cli")]

@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use emu::inject::Protection;
 use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
+use emu::machine::config::ProtectionConfig;
 use emu::machine::config::formula::Dimension;
 use emu::machine::config::ledger::{AREA_ITEMS, ENERGY_ITEMS};
 use emu::machine::preset::PRESETS;
@@ -12,6 +14,7 @@ use messages::{Diagnostic, Report, did_you_mean};
 
 use crate::energy::{Pricing, Width};
 use crate::files;
+use crate::numeral::count;
 use crate::settings::MachineSettings;
 use crate::settings::apply::explained;
 
@@ -115,6 +118,10 @@ const COMMENTS: &[(&str, &str)] = &[
     ("main.buffer_octets", "octets of its local buffer (ours; the report has none)"),
     ("main.step_limit", "instructions that its whole program may take (ours)"),
     (
+        "[protection]",
+        "what structures are protected by, and by what; check bits of memory and bus go over the wires of the bus, and each burst takes that much longer (docs/inject.md)",
+    ),
+    (
         "[energy]",
         "figures of energy: \"tables\" (those of the published tables below), names of tables, \"none\", or a figure of your own with \
          its unit and its source, by the bits b of a number or the binary logarithm L of the bits of a memory: \
@@ -162,6 +169,19 @@ fn item_comment(key: &str) -> Option<String> {
     items.iter().find(|(item, _)| *item == name).map(|(_, text)| (*text).to_owned())
 }
 
+/// Comment on a structure of `[protection]`: what it is, and its protections with the check bits of a word.
+fn protection_comment(key: &str) -> Option<String> {
+    let name = key.strip_prefix("protection.")?;
+    let kind = ProtectionConfig::keys().find(|kind| kind.name() == name)?;
+    let shown = |protection: Protection| match protection.check_bits() {
+        0 => protection.name().to_owned(),
+        bits => format!("{} ({})", protection.name(), count(bits.into(), "bit a word", "bits a word")),
+    };
+    let [first @ .., last] = kind.protections() else { return None };
+    let others: String = first.iter().map(|&one| format!(", {}", shown(one))).collect();
+    Some(format!("{}: none{others} or {} (ours: none; the report has none)", kind.protected(), shown(*last)))
+}
+
 /// Comment behind an item of `[energy]` or `[area]`: its figures by each table for words of the machine's length.
 fn figures(config: &Config, dimension: Dimension, name: &str) -> String {
     let Some((item, _)) = ENERGY_ITEMS.iter().chain(&AREA_ITEMS).find(|(item, _)| *item == name) else {
@@ -197,7 +217,14 @@ fn resolved(config: &Config, key: &str) -> String {
         Some(("units", class)) => (config.units.0[class], timing.units[class]),
         _ => return String::new(),
     };
-    if law.is_grown() { format!(" # {number} for words of {word} bits") } else { String::new() }
+    // An operation that is executed twice takes more than its key says.
+    let is_doubled = law.at(word) < number && config.protection.executions() != 1;
+    match (law.is_grown(), is_doubled) {
+        (true, false) => format!(" # {number} for words of {word} bits"),
+        (true, true) => format!(" # {number} for words of {word} bits, executed twice"),
+        (false, true) => format!(" # {number}, executed twice"),
+        (false, false) => String::new(),
+    }
 }
 
 /// Description of a key of a machine file, or of a group of keys: its meaning, unit and range.
@@ -207,13 +234,14 @@ pub fn comment(key: &str) -> Option<String> {
     // Classes of operations mean the same in each section.
     let class =
         || key.split_once('.').and_then(|(_, name)| Class::from_name(name)).map(|class| class.doc().trim().to_owned());
-    found.map(|(_, text)| filled(text)).or_else(|| item_comment(key)).or_else(class)
+    let item = || item_comment(key).or_else(|| protection_comment(key));
+    found.map(|(_, text)| filled(text)).or_else(item).or_else(class)
 }
 
 /// A machine as a TOML file with every key and a comment on what it means; reading it gives the same machine.
 pub fn commented(name: &str, config: &Config) -> String {
     let comment = |key: &str| COMMENTS.iter().find(|(known, _)| *known == key).map(|(_, text)| filled(text));
-    let comment = |key: &str| item_comment(key).or_else(|| comment(key));
+    let comment = |key: &str| item_comment(key).or_else(|| protection_comment(key)).or_else(|| comment(key));
     let mut text = format!("# Machine `{name}`. Keys that a file leaves out have the values of `{DEFAULT}`.\n\n");
     // The keys come from the text itself, so that none of them can be missing here.
     let mut section = String::new();

@@ -6,6 +6,7 @@ use scenes::metrics::PictureError;
 
 use crate::drawing::Drawing;
 use crate::numeral::{count, grouped, percent, short};
+use crate::protection::{self, ProtectionUse};
 use crate::result::{ByClass, ByKind, OperationTimes, ProcessorResult, RegionCounts, Render};
 use crate::table::{row, table};
 
@@ -186,6 +187,7 @@ pub fn processors(result: &Render) -> String {
         grouped(bus.transfers),
         grouped(bus.longest_wait),
     );
+    text += &protections(result);
     text += &operation_times(&result.timing);
     text += &waits(&result.cores);
     // Caches and kinds of data, where the machine has them.
@@ -209,6 +211,19 @@ pub fn processors(result: &Render) -> String {
         }
     }
     text
+}
+
+/// One line on the protections of the machine; nothing where it has none.
+fn protections(result: &Render) -> String {
+    let ProtectionUse { octets, storage_bits } = result.protection;
+    match protection::named(&result.settings.machine.config) {
+        names if names.is_empty() => names,
+        names => format!(
+            "protected: {names}; {} octets of check bits over the bus, {} bits stored\n",
+            grouped(octets),
+            grouped(storage_bits),
+        ),
+    }
 }
 
 /// One line on the clocks and units that a machine's laws come to; nothing for a machine of numbers alone.

@@ -14,6 +14,7 @@ mod faults;
 mod inject;
 mod laws;
 mod profiles;
+mod protection;
 mod python;
 mod readme;
 mod report;

@@ -319,7 +319,8 @@ const UNITS: u64 = 3;
 
 /// Three units of one class and of all, and faster operations where they take more than a clock.
 fn operations(machine: &Config, demand: &PictureDemand, left: &mut Vec<(Change, String)>) -> Vec<Change> {
-    let timing = machine.timing();
+    // Keys have the clocks of one execution, whatever the protection of results.
+    let (timing, clocks_once) = (machine.timing(), machine.single_clocks());
     let timed = Class::ALL.iter().copied().filter(|&class| class.is_elementary() && timing.clocks[class] != 0);
     let few: Vec<Class> = timed.clone().filter(|&class| timing.units[class] < UNITS).collect();
     let unit_key = |class: Class| (format!("units.{}", class.name()), whole(UNITS));
@@ -342,7 +343,7 @@ fn operations(machine: &Config, demand: &PictureDemand, left: &mut Vec<(Change, 
         little.is_none()
     });
     for class in timed.filter(|&class| demand.little_computing(class).is_none()) {
-        let now = timing.clocks[class];
+        let now = clocks_once[class];
         let mut faster = vec![now / 2, 1];
         faster.dedup();
         for clocks in faster.into_iter().filter(|&clocks| (1..now).contains(&clocks)) {

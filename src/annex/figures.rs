@@ -33,7 +33,7 @@ pub struct Pixel {
 impl Pixel {
     /// Of operations and octets, on the report's bus.
     pub fn new(operations: f64, octets: u64) -> Pixel {
-        Pixel { operations, memory: Config::default().bus.length(Octets(octets)).0 as f64 }
+        Pixel { operations, memory: Config::default().bus.length(Octets(octets), 0).0 as f64 }
     }
 
     /// The pixel that the row of 22 nodes measures.

@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use emu::inject::{FaultKind, FlipPattern, FlipShape, Protection};
+use emu::machine::config::ProtectionConfig;
 use messages::Diagnostic;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -61,7 +62,7 @@ pub struct InjectArguments {
     /// Beginning of the series of random numbers.
     #[arg(long, value_name = "N", default_value = "1", help_heading = "Faults")]
     seed: u64,
-    /// Protection of a structure, such as memory=ecc; may be repeated. Words have parity or ecc, results duplicated or residue, lost grants retry,
+    /// Protection of a structure, such as memory=ecc, in the place of the machine's own (key `protection`); may be repeated. Words have parity or ecc, results duplicated or residue, lost grants retry,
     /// they and other faults of the machine a watchdog.
     #[arg(long = "protect", value_name = "KIND=PROTECTION,..", value_delimiter = ',', value_parser = protection, help_heading = "Faults")]
     protections: Vec<(FaultKind, Protection)>,
@@ -107,7 +108,7 @@ pub(super) struct InjectSettings {
     pattern: &'static str,
     /// Beginning of the series of random numbers.
     seed: u64,
-    /// Protections, such as memory=ecc.
+    /// Protections, such as memory=ecc: those of `machine.protection`.
     protect: Vec<String>,
     /// Number of the one injection that was run; left out where all were.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,7 +117,7 @@ pub(super) struct InjectSettings {
 
 impl InjectSettings {
     fn new(job: &Job, campaign: &FaultCampaign, number: Option<u64>) -> InjectSettings {
-        let protect = |(kind, protection): (&FaultKind, &Protection)| format!("{}={}", kind.name(), protection.name());
+        let protect = |(kind, protection): (FaultKind, Protection)| format!("{}={}", kind.name(), protection.name());
         InjectSettings {
             job: Settings::of(job),
             kind: campaign.kinds.iter().map(|kind| kind.name()).collect(),
@@ -147,13 +148,9 @@ fn protection(text: &str) -> Result<(FaultKind, Protection), String> {
     let refusal = || format!("a protection is KIND=PROTECTION, such as memory=ecc; the kinds are {}", kinds());
     let (kind, name) = text.split_once('=').ok_or_else(refusal)?;
     let kind = FaultKind::ALL.into_iter().find(|one| one.name() == kind.trim()).ok_or_else(refusal)?;
-    let names: Vec<Protection> =
-        [Protection::Unprotected].into_iter().chain(inject::possible_protections(kind).iter().copied()).collect();
-    let found = names.iter().copied().find(|one| one.name() == name.trim()).ok_or_else(|| {
-        let names: Vec<&str> = names.iter().map(|one| one.name()).collect();
-        format!("the protections of {} are {}", kind.name(), names.join(", "))
-    });
-    Ok((kind, found?))
+    let found = kind.protection_names().find(|one| *one == name.trim()).and_then(Protection::from_name);
+    let names = || kind.protection_names().collect::<Vec<_>>().join(", ");
+    Ok((kind, found.ok_or_else(|| format!("the protections of {} are {}", kind.name(), names()))?))
 }
 
 fn picture(text: &str) -> Result<PathBuf, String> {
@@ -162,7 +159,16 @@ fn picture(text: &str) -> Result<PathBuf, String> {
 }
 
 impl InjectArguments {
-    fn campaign(&self) -> Result<FaultCampaign, Failure> {
+    /// The picture, on a machine whose protections are its own but for those that options say otherwise; of two for one structure the last one holds.
+    fn protected_job(&self) -> Result<Job, Failure> {
+        let mut job = self.job.job()?;
+        self.protections.iter().for_each(|&(kind, protection)| job.machine.protection.set(kind, protection));
+        job.machine.check()?;
+        Ok(job)
+    }
+
+    /// The faults that are wanted, on a machine with these protections.
+    fn campaign(&self, protections: ProtectionConfig) -> Result<FaultCampaign, Failure> {
         let mut kinds = Vec::new();
         let all = FaultKind::ALL;
         for &kind in if self.kinds.is_empty() { &all[..] } else { &self.kinds } {
@@ -174,13 +180,12 @@ impl InjectArguments {
             let message = Diagnostic::error("an injection has a number among those of its kind");
             return Err(Failure::usage(message.hint("name the kind: `--kind registers --number 17`")));
         }
-        let protections = self.protections.iter().filter(|(_, protection)| *protection != Protection::Unprotected);
         Ok(FaultCampaign {
             kinds,
             injections: self.injections,
             shape: FlipShape { bits: self.bits, pattern: self.pattern },
             seed: self.seed,
-            protections: protections.copied().collect(),
+            protections,
         })
     }
 
@@ -199,8 +204,8 @@ impl InjectArguments {
 
 /// Runs the injections and prints what came of them.
 pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let campaign = arguments.campaign()?;
-    let job = arguments.job.job()?;
+    let job = arguments.protected_job()?;
+    let campaign = arguments.campaign(job.machine.protection)?;
     let is_taken = arguments.check(&job)?;
     terminal.show(&job.warnings);
     let load = FaultLoad::new(&job)?;
@@ -222,7 +227,7 @@ pub(super) fn execute(arguments: &InjectArguments, terminal: &mut Terminal) -> R
         return Ok(Exit::Done);
     }
     // What could fail comes before the injections, so that none of them is in vain.
-    let costs = inject::protection_costs(&job, frame.golden.program(), &campaign.kinds)?;
+    let costs = inject::protection_costs(&job, &campaign.kinds)?;
     let Some(rows) = rows(arguments, &campaign, &job, &frame, terminal)? else { return Ok(Exit::Done) };
     let result = InjectResult::new(&job, &frame.golden, &campaign, &costs, &rows);
     let mut written: Vec<(&Path, Vec<u8>)> = Vec::new();

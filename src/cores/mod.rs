@@ -8,6 +8,7 @@ mod demand;
 mod text;
 
 use emu::code::Code;
+use emu::machine::config::protection::WORD_BITS;
 use emu::machine::{self, Config, RunOutcome};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -204,8 +205,10 @@ fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]
         formats: None,
         clock_hz: config.clock_hz,
         timing: OperationTimes::new(config),
+        // Check bits take their share of the beats.
         bus_octets_per_second: config.clock_hz as f64 * config.bus.octets_per_beat as f64
-            / config.bus.clocks_per_beat as f64,
+            / config.bus.clocks_per_beat as f64
+            * (f64::from(WORD_BITS) / f64::from(WORD_BITS + config.protection.moved_bits())),
         demand,
         quotient: demand.quotient(),
         closed_form: demand.saturation(),

@@ -1,11 +1,13 @@
 //! Area of cores: units, registers, buffers and caches, by one published table.
 
+use emu::inject::FaultKind;
 use emu::machine::Config;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::activity::Width;
 use super::price::Pricing;
+use crate::protection::core_words;
 
 /// Scalar registers of a core, of 32 bits whatever the word; `s0` reads zero and has none.
 const SCALARS: u64 = 31;
@@ -75,10 +77,12 @@ impl TableArea {
         let unit = |item: &'static str| {
             (item, Some(word), units[isa::Class::from_name(item).expect("an item is named as its class")])
         };
+        // Check bits stand beside each word of what is protected.
+        let check = |kind| core_words(config, kind) * u64::from(config.protection.of(kind).check_bits());
         let bits = SCALARS * 32 + VECTORS * 3 * u64::from(word) + ACCUMULATORS * 2 * u64::from(word);
         let items = ["add", "sub", "mul", "div", "cmp"].map(unit).into_iter().chain([
-            ("register", None, bits),
-            ("buffer", None, 8 * u64::from(config.buffer_octets)),
+            ("register", None, bits + check(FaultKind::Registers)),
+            ("buffer", None, 8 * u64::from(config.buffer_octets) + check(FaultKind::Buffer)),
             ("cache", None, 8 * u64::from(config.cache.octets)),
         ]);
         let (mut lines, mut without_figure) = (Vec::new(), Vec::new());

@@ -1,8 +1,10 @@
 //! Prices of a machine's items by a published table and the machine's own lines, each with its source.
 
+use emu::inject::{FaultKind, Protection};
 use emu::machine::Config;
 use emu::machine::config::formula::{Dimension, FigureLine};
 use emu::machine::config::ledger::LineChoice;
+use emu::machine::config::protection::WORD_BITS;
 use emu::machine::config::published::{PUBLISHED, PublishedTable};
 use isa::Class;
 
@@ -149,16 +151,46 @@ impl<'c> Pricing<'c> {
         }
     }
 
-    /// Prices of energy, as an activity meets them.
+    /// Prices of energy, as an activity meets them: those of bits with their check bits, those of operations with what checks them.
     pub fn prices(&self) -> Prices {
+        // A residue unit works on two bits beside each word, and an operation that is executed twice costs as much again.
+        let results = match self.protection(FaultKind::Results) {
+            Protection::Duplicated => (1, 1),
+            residue => (residue.check_bits(), self.word()),
+        };
+        let class = |class: Class| self.protected(class_item(class)?, &[FaultKind::Results], results);
+        let bits = |item, kinds: &[FaultKind]| {
+            let check = kinds.iter().map(|&kind| self.protection(kind).check_bits()).sum();
+            self.protected(item, kinds, (check, WORD_BITS))
+        };
         Prices {
-            classes: std::array::from_fn(|at| self.price(class_item(Class::ALL[at])?)),
-            register: self.price("register"),
-            buffer: self.price("buffer"),
+            classes: std::array::from_fn(|at| class(Class::ALL[at])),
+            register: bits("register", &[FaultKind::Registers]),
+            buffer: bits("buffer", &[FaultKind::Buffer]),
             cache: self.price("cache"),
-            bus: self.price("bus"),
-            memory: self.price("memory"),
+            bus: bits("bus", &[FaultKind::Memory, FaultKind::Bus]),
+            memory: bits("memory", &[FaultKind::Memory]),
         }
+    }
+
+    fn protection(&self, kind: FaultKind) -> Protection {
+        self.config.protection.of(kind)
+    }
+
+    /// Price of an item whose protections add a share, each figure rounded to the nearest whole one.
+    ///
+    /// A bit of a register for 9,000 aJ with a bit of parity beside each 32 comes to 9,000 * 33 / 32 = 9,281.25, so it is 9,281.
+    fn protected(&self, item: &'static str, kinds: &[FaultKind], (part, whole): (u32, u32)) -> Option<ItemPrice> {
+        let mut price = self.price(item)?;
+        if part != 0 {
+            let (part, whole) = (u128::from(part), u128::from(whole));
+            let with = |figure: u64| (u128::from(figure) * (2 * (whole + part)) + whole) / (2 * whole);
+            price.figures = price.figures.map(|figure| with(figure).try_into().unwrap_or(u64::MAX));
+            let names = kinds.iter().map(|&kind| self.protection(kind)).filter(|one| *one != Protection::Unprotected);
+            let names: Vec<&str> = names.map(Protection::name).collect();
+            price.source = format!("{}; protected by {}", price.source, names.join(" and "));
+        }
+        Some(price)
     }
 }
 
@@ -209,5 +241,37 @@ impl Prices {
             + i128::from(activity.buffer_bits) * figure(self.buffer.as_ref())
             + memory * figure(self.memory.as_ref())
             + (memory + i128::from(8 * activity.message_octets)) * figure(self.bus.as_ref())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn protected_items_cost_what_they_take_in_addition() {
+        let energy = "add = \"64 aJ; by hand\"\nbus = \"640 aJ; by hand\"\nmemory = \"3200 aJ; by hand\"\nregister = \"9000 aJ; by hand\"\n";
+        let source = messages::Source::new("m.toml", format!("[energy]\n{energy}"));
+        let plain = Config::parse(&source).unwrap();
+        let figures = |protections: &[(FaultKind, Protection)]| {
+            let mut config = plain.clone();
+            protections.iter().for_each(|&(kind, protection)| config.protection.set(kind, protection));
+            let prices = Pricing::all(&config, Dimension::Energy)[0].prices();
+            let add = prices.classes[Class::Add as usize].clone().unwrap();
+            let bits = [prices.register, prices.memory, prices.bus].map(|price| figure(price.as_ref()));
+            (add, bits)
+        };
+        let (add, bits) = figures(&[]);
+        assert_eq!((add.figures[0], bits, add.source.as_str()), (64, [9_000, 3_200, 640], "by hand"));
+        // 9,000 * 33 / 32 = 9,281.25; 3,200 and 640 with 7 bits beside each 32, and the bus with 1 more.
+        let (add, bits) =
+            figures(&[(FaultKind::Registers, Protection::Parity), (FaultKind::Memory, Protection::Secded)]);
+        assert_eq!((add.figures[0], bits), (64, [9_281, 3_900, 780]));
+        let (_, bits) = figures(&[(FaultKind::Bus, Protection::Parity), (FaultKind::Memory, Protection::Secded)]);
+        assert_eq!(bits, [9_000, 3_900, 800]);
+        // Twice; and two bits of 32 in addition.
+        let (add, _) = figures(&[(FaultKind::Results, Protection::Duplicated)]);
+        assert_eq!((add.figures[0], add.source.as_str()), (128, "by hand; protected by duplicated"));
+        assert_eq!(figures(&[(FaultKind::Results, Protection::Residue)]).0.figures[0], 68);
     }
 }

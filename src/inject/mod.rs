@@ -13,12 +13,12 @@ pub mod statistics;
 mod text;
 pub mod unprotected;
 
-use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
 
 use emu::inject::{
     FaultKind, FlipRequest, FlipShape, GoldenFrame, InjectedEnd, InjectedFlip, MOST_TRANSFERS, Protection, inject,
 };
+use emu::machine::config::ProtectionConfig;
 use emu::machine::{RunOptions, Setup};
 use emu::octets::Memory;
 use messages::Diagnostic;
@@ -28,7 +28,7 @@ use scenes::image::{MemoryImage, MemoryKind};
 use scenes::layout::PIXEL;
 use scenes::metrics;
 
-pub use cost::{ProtectionCost, costs as protection_costs, possible as possible_protections};
+pub use cost::{ProtectionCost, costs as protection_costs};
 #[cfg(feature = "cli")]
 pub use heat::map;
 #[cfg(feature = "cli")]
@@ -60,14 +60,14 @@ pub struct FaultCampaign {
     pub shape: FlipShape,
     /// Beginning of all series of random numbers.
     pub seed: u64,
-    /// Protected structures.
-    pub protections: BTreeMap<FaultKind, Protection>,
+    /// Protected structures: those of the machine.
+    pub protections: ProtectionConfig,
 }
 
 impl FaultCampaign {
     /// Protection of a structure.
     pub fn protection(&self, kind: FaultKind) -> Protection {
-        self.protections.get(&kind).copied().unwrap_or_default()
+        self.protections.of(kind)
     }
 
     /// Flip of an injection: a function of seed, structure, shape, protection and number.

@@ -29,6 +29,7 @@ use serde::{Serialize, Serializer};
 use crate::drawing::Drawing;
 use crate::energy::EnergyResult;
 use crate::job::{Job, result_name};
+use crate::protection::ProtectionUse;
 use crate::settings::{Settings, VERSION};
 use crate::shadow::ShadowResult;
 pub use hash::{image_hash, run_hash};
@@ -144,6 +145,8 @@ pub struct Render {
     pub main: Main,
     /// The bus.
     pub bus: BusResult,
+    /// Protections of the machine, what they took beside clocks and energy; zeros where nothing is protected.
+    pub protection: ProtectionUse,
     /// Octets over the bus, and beside it, by kind of data: of the kind that a cache holds, the lines that were filled. Without a
     /// cache they are those of `bus.kinds`, which were asked for.
     pub moved_kinds: ByKind,
@@ -382,6 +385,7 @@ impl Render {
                     filled: frame.cache.filled.0,
                 },
             },
+            protection: ProtectionUse::new(&job.machine, drawing.stored_words(), frame.bus.moved),
             moved_kinds: moved::moved_kinds(job, frame),
             formats: (&drawing.image.formats).into(),
             flags: drawing.flags.clone(),

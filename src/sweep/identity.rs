@@ -54,6 +54,8 @@ impl SettingsPart {
             (true, Some("main")) => self == SettingsPart::Main,
             (true, Some("energy")) => self == SettingsPart::Energy,
             (true, Some("area")) => self == SettingsPart::Area,
+            // Whether results are computed twice is part of the times of operations.
+            (true, Some("protection")) => matches!(self, SettingsPart::Whole | SettingsPart::Timing),
             (true, Some(_)) => self == SettingsPart::Whole,
         }
     }
@@ -97,8 +99,8 @@ impl PartDigest {
 
     /// The digest of a part of the machine.
     ///
-    /// A recording does not depend on cores, clock rate, bus, caches, main processor and the prices of energy and area, as
-    /// [`Config::computes_like`] has it. Clocks and units count as what they come to for the word.
+    /// A recording does not depend on cores, clock rate, bus, caches, main processor, protections and the prices of energy and area, as
+    /// [`Config::computes_like`] has it, but for the clocks of results that are computed twice. Clocks and units count as what they come to for the word.
     pub fn of_machine(part: SettingsPart, config: &Config) -> PartDigest {
         let Config {
             cores,
@@ -112,6 +114,7 @@ impl PartDigest {
             bus,
             cache,
             main,
+            protection,
             energy,
             area,
         } = config;
@@ -119,7 +122,11 @@ impl PartDigest {
             SettingsPart::Picture => PartDigest { point: [0; 32], recording: [0; 32] },
             SettingsPart::Whole => {
                 let computing = (buffer_octets, step_limit, packet_lanes);
-                PartDigest::new(&(cores, clock_hz, computing), &computing)
+                // The digest of a machine without protections is that of one that knew of none.
+                match protection.is_none() {
+                    true => PartDigest::new(&(cores, clock_hz, computing), &computing),
+                    false => PartDigest::new(&(cores, clock_hz, computing, protection), &computing),
+                }
             }
             SettingsPart::Timing => {
                 let timing = config.timing();
@@ -172,6 +179,7 @@ fn digest(part: &impl Serialize) -> [u8; 32] {
 
 #[cfg(test)]
 mod tests {
+    use emu::machine::config::ProtectionConfig;
     use isa::Class;
     use serde_json::Value;
 
@@ -198,6 +206,12 @@ mod tests {
             ("machine.arithmetic.quantization", _) => "TRN".into(),
             ("machine.arithmetic.overflow", _) => "WRAP".into(),
             ("machine.bus.arbiter", _) => "tdma".into(),
+            ("machine.protection.results", _) => "duplicated".into(),
+            _ if key.starts_with("machine.protection.") => {
+                let name = key.rsplit('.').next().unwrap();
+                let kind = ProtectionConfig::keys().find(|kind| kind.name() == name).unwrap();
+                kind.protections()[0].name().into()
+            }
             ("machine.energy.tables" | "machine.area.tables", _) => "horowitz".into(),
             _ if ["machine.energy.", "machine.area."].iter().any(|group| key.starts_with(group)) => "none".into(),
             ("machine.bus.weights", _) => serde_json::json!([3]),
@@ -218,12 +232,13 @@ mod tests {
     const NAMES: [&str; 4] = ["scene.name", "scene.mesh", "machine.name", "engine"];
 
     /// Groups of keys that only replays and what is measured of a picture depend on.
-    const REPLAYED: [&str; 8] = [
+    const REPLAYED: [&str; 9] = [
         "machine.cores",
         "machine.clock_hz",
         "machine.bus.",
         "machine.cache.",
         "machine.main.",
+        "machine.protection.",
         "machine.energy.",
         "machine.area.",
         "results.",
@@ -239,7 +254,8 @@ mod tests {
             assert_ne!(changed, settings, "{key}");
             let is_named = NAMES.contains(&key.as_str());
             assert_eq!(point(&changed) == point(&settings), is_named, "point, {key}");
-            let is_replayed = REPLAYED.iter().any(|group| key.starts_with(group));
+            let is_computing = key == "machine.protection.results";
+            let is_replayed = REPLAYED.iter().any(|group| key.starts_with(group)) && !is_computing;
             let is_shared = recording(&changed) == recording(&settings);
             assert_eq!(is_shared, is_named || is_replayed, "recording, {key}");
             // Just the parts that have the key may change, of which the plan makes use.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use clap::CommandFactory;
 use emu::engine::EngineKind;
 use emu::machine::arbiter::ArbiterKind;
+use emu::machine::config::ProtectionConfig;
 use emu::machine::preset::PRESETS;
 use isa::number::{Overflow, Quantization};
 use kernels::{KernelSet, Skip};
@@ -291,6 +292,9 @@ fn random_settings(lot: &mut SplitMix64) -> Settings {
     config.bus.weights = (0..lot.below(4)).map(|_| 1 + lot.below(5) as u32).collect();
     config.cache.octets = one(lot, &[0, 0, 256]);
     config.main.traffic = lot.below(2) == 0;
+    for kind in ProtectionConfig::keys().filter(|_| lot.below(3) == 0).collect::<Vec<_>>() {
+        config.protection.set(kind, one(lot, kind.protections()));
+    }
     config.clocks.0[isa::Class::Div] =
         if lot.below(4) == 0 { "linear 1/4 + 3".parse().unwrap() } else { lot.below(20).into() };
     settings.engine = one(lot, &[EngineKind::default(), EngineKind::Checked]);

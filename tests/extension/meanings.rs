@@ -221,8 +221,8 @@ fn it_reads_global_memory_over_the_bus_and_counts_its_units() {
     let counts = run.tally.counts(&code);
     // 12 octets, each with two additions.
     assert_eq!([Class::Mem, Class::Octet, Class::Add, Class::Cmp].map(|class| counts[class]), [1, 12, 24, 1]);
-    let bus = Config::default().bus;
-    let length = |octets| bus.whole_length(emu::quantity::Octets(octets)).0;
+    let config = Config::default();
+    let length = |octets| config.transfer_clocks(emu::quantity::Octets(octets)).0;
     assert_eq!(run.waiting.0, length(12) + length(4));
     assert_eq!(run.clocks.0 - run.waiting.0, 24 + 1);
 }

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::flip::{BitFlip, FaultKind};
+use super::FaultKind;
+use super::flip::BitFlip;
 use super::golden::GoldenFrame;
 use super::injector::{InjectedEnd, Injector, flip_memory};
 use super::item::{ItemRun, ItemTask};

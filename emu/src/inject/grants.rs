@@ -4,12 +4,13 @@ use std::collections::HashMap;
 
 use random::SplitMix64;
 
-use super::flip::{BitFlip, FaultKind};
+use super::flip::BitFlip;
 use super::frame::{FrameFault, HangLimit, frame_end};
 use super::golden::GoldenFrame;
 use super::injector::{InjectedEnd, InjectedFlip, Injector};
 use super::item::FlipHit;
-use super::protection::{Protection, RETRY_CLOCKS};
+use super::protection::RETRY_CLOCKS;
+use super::{FaultKind, Protection};
 use crate::code::quantity::Clocks;
 use crate::code::trap::{Fault, Trap};
 use crate::machine::{GrantFault, GrantFaultKind, RunFailure, RunOptions, RunOutcome, Setup};

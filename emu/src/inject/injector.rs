@@ -6,12 +6,13 @@ use std::ops::Range;
 use isa::Program;
 use random::SplitMix64;
 
-use super::flip::{BitFlip, FaultKind, FlipShape, REGISTER_WORDS};
+use super::flip::{BitFlip, FlipShape, REGISTER_WORDS};
 use super::frame::{FaultyStore, FrameFault, HangLimit, frame_end};
 use super::golden::GoldenFrame;
 use super::grants::draw_grant;
 use super::item::{FlipHit, ItemRun, ItemRunner, ItemTask};
-use super::protection::{Protection, SeenFlip};
+use super::protection::SeenFlip;
+use super::{FaultKind, Protection};
 use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::tally::Tally;

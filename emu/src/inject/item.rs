@@ -1,6 +1,7 @@
 //! A work item by itself on the interpreter, with or without a flip, up to a limit of steps.
 
-use super::flip::{BitFlip, FaultKind, RegisterWord};
+use super::FaultKind;
+use super::flip::{BitFlip, RegisterWord};
 use super::link::{BusWord, ItemLink, ItemTraffic};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};

@@ -15,10 +15,13 @@ mod link;
 mod main_link;
 mod protection;
 
-pub use flip::{BitFlip, FaultKind, FlipPattern, FlipShape, REGISTER_WORDS, RegisterWord};
+pub use flip::{BitFlip, FlipPattern, FlipShape, REGISTER_WORDS, RegisterWord};
 pub use frame::HangLimit;
 pub use golden::{GoldenFrame, GoldenTotals, GuestLimits, MOST_TRANSFERS};
 pub use injector::{FlipRequest, InjectedEnd, InjectedFlip, inject, inject_at};
 pub use item::FlipHit;
 pub use link::{BusWord, ItemTraffic};
-pub use protection::{Protection, RETRY_CLOCKS, SeenFlip};
+pub use protection::{RETRY_CLOCKS, SeenFlip};
+
+pub use crate::machine::FaultKind;
+pub use crate::machine::config::protection::Protection;

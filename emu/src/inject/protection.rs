@@ -1,24 +1,6 @@
 //! Protections of words, and what each sees of flipped bits. The codes are computed, not assumed: three flipped bits may look like another one.
 
-/// Protection of a structure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Protection {
-    /// None at all.
-    #[default]
-    Unprotected,
-    /// A bit of parity a word: finds an odd number of flipped bits.
-    Parity,
-    /// Seven check bits a word of 32 (an extended Hamming code): mends one flipped bit, finds two.
-    Secded,
-    /// Each instruction that computes is executed twice, and the results compared.
-    Duplicated,
-    /// Results are computed a second time modulo 3, and the remainders compared.
-    Residue,
-    /// A core whose request is not granted for [`RETRY_CLOCKS`] makes it again.
-    Retry,
-    /// The machine stops when nobody has been granted the bus, and nobody computes, for as long.
-    Watchdog,
-}
+use crate::machine::config::protection::Protection;
 
 /// Clocks after which a request is made again, or a watchdog finds that nothing happens.
 pub const RETRY_CLOCKS: u64 = 4_096;
@@ -50,45 +32,6 @@ const fn columns() -> [u8; 32] {
 }
 
 impl Protection {
-    /// All of them.
-    pub const ALL: [Protection; 7] = [
-        Protection::Unprotected,
-        Protection::Parity,
-        Protection::Secded,
-        Protection::Duplicated,
-        Protection::Residue,
-        Protection::Retry,
-        Protection::Watchdog,
-    ];
-
-    /// Name in options and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Protection::Unprotected => "none",
-            Protection::Parity => "parity",
-            Protection::Secded => "ecc",
-            Protection::Duplicated => "duplicated",
-            Protection::Residue => "residue",
-            Protection::Retry => "retry",
-            Protection::Watchdog => "watchdog",
-        }
-    }
-
-    /// True for a protection of words at rest or on their way, false for one of computing.
-    pub const fn is_of_words(self) -> bool {
-        matches!(self, Protection::Parity | Protection::Secded)
-    }
-
-    /// Bits that a word of 32 bits has beside its own.
-    pub const fn check_bits(self) -> u32 {
-        match self {
-            Protection::Unprotected | Protection::Duplicated | Protection::Retry | Protection::Watchdog => 0,
-            Protection::Parity => 1,
-            Protection::Secded => 7,
-            Protection::Residue => 2,
-        }
-    }
-
     /// Flipped bits of a word, of which `change` is what they add to its number.
     ///
     /// A check of remainders sees a change that 3 does not divide: one bit changes a number by a power of 2, two bits in neighbouring places

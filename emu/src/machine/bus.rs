@@ -3,7 +3,7 @@
 mod slots;
 
 use super::arbiter::{Arbiter, BusRequests, NEVER, Ranking, Tdma, Verdict};
-use super::config::BusConfig;
+use super::config::{BusConfig, protection::WORD_BITS};
 use super::grant_fault::{FaultyArbiter, GrantFault};
 use super::muted::MutedMasters;
 use super::waits::Waits;
@@ -90,17 +90,18 @@ pub struct Lengths {
     /// Binary logarithm of the octets of a beat, where it is whole.
     beat_shift: Option<u32>,
     setup: Clocks,
-    clocks_per_beat: u64,
+    /// Clocks of as many beats as a word has bits, check bits among them.
+    clocks_of_words: u64,
 }
 
 impl Lengths {
-    fn new(config: &BusConfig) -> Lengths {
+    fn new(config: &BusConfig, check_bits: u32) -> Lengths {
         Lengths {
-            longest_burst: config.longest_burst(),
+            longest_burst: config.longest_burst(check_bits),
             octets_per_beat: config.octets_per_beat,
             beat_shift: config.octets_per_beat.is_power_of_two().then(|| config.octets_per_beat.trailing_zeros()),
             setup: Clocks(config.setup_clocks),
-            clocks_per_beat: config.clocks_per_beat,
+            clocks_of_words: config.clocks_of_words(check_bits),
         }
     }
 
@@ -113,7 +114,8 @@ impl Lengths {
             Some(shift) => (octets.0 + self.octets_per_beat - 1) >> shift,
             None => octets.0.div_ceil(self.octets_per_beat),
         };
-        Burst { octets, rest: transfer - octets, length: self.setup + Clocks(beats * self.clocks_per_beat) }
+        let clocks = Clocks((beats * self.clocks_of_words).div_ceil(WORD_BITS.into()));
+        Burst { octets, rest: transfer - octets, length: self.setup + clocks }
     }
 }
 
@@ -182,10 +184,10 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// An idle bus for that many masters.
-    pub fn new(config: &BusConfig, masters: u32) -> Bus {
+    /// An idle bus for that many masters, over which each word goes with so many check bits.
+    pub fn new(config: &BusConfig, check_bits: u32, masters: u32) -> Bus {
         Bus {
-            lengths: Lengths::new(config),
+            lengths: Lengths::new(config, check_bits),
             arbiter: config.arbiter.build(config, masters),
             free_at: Clocks(0),
             not_before: Clocks(0),
@@ -435,13 +437,13 @@ mod tests {
 
     #[test]
     fn a_burst_is_as_long_with_a_shift_as_with_a_division() {
-        for octets_per_beat in 1..10 {
+        for (octets_per_beat, check) in (1..10).flat_map(|octets| [0, 1, 7, 14].map(|check| (octets, check))) {
             let config = BusConfig { octets_per_beat, setup_clocks: 3, ..BusConfig::default() };
             for octets in 0..70 {
-                let mut bus = Bus::new(&config, 1);
+                let mut bus = Bus::new(&config, check, 1);
                 bus.request(0, Clocks(5), Octets(octets));
                 let grant = bus.decide(Clocks(5)).expect("it is alone");
-                assert_eq!(grant.end - grant.start, config.length(Octets(octets)), "{octets_per_beat} {octets}");
+                assert_eq!(grant.end - grant.start, config.length(Octets(octets), check), "{octets_per_beat} {octets}");
             }
         }
     }

@@ -4,10 +4,11 @@ mod file;
 pub mod formula;
 pub mod law;
 pub mod ledger;
+pub mod protection;
 pub mod published;
 
-use isa::Counts;
 use isa::number::{Modes, Overflow, Quantization};
+use isa::{Class, Counts};
 use serde::{Deserialize, Serialize};
 
 use super::arbiter::ArbiterKind;
@@ -16,6 +17,8 @@ use crate::code::timing::{PACKET_LANES, Timing};
 use crate::semantics::Watching;
 pub use law::{ClassClocks, ClassUnits};
 pub use ledger::{AreaConfig, EnergyConfig};
+pub use protection::ProtectionConfig;
+use protection::WORD_BITS;
 
 /// Most cores that a machine may have.
 pub const MOST_CORES: u32 = 256;
@@ -58,6 +61,8 @@ pub struct Config {
     pub cache: CacheConfig,
     /// The main processor.
     pub main: MainConfig,
+    /// Protections against faults; none. Report: none.
+    pub protection: ProtectionConfig,
     /// Figures of energy; those of the published tables. Nothing but energies depends on them.
     pub energy: EnergyConfig,
     /// Figures of area; those of the published tables. Nothing but areas depends on them.
@@ -78,6 +83,7 @@ impl Default for Config {
             bus: BusConfig::default(),
             cache: CacheConfig::default(),
             main: MainConfig::default(),
+            protection: ProtectionConfig::default(),
             energy: EnergyConfig::default(),
             area: AreaConfig::default(),
         }
@@ -193,15 +199,25 @@ impl Default for BusConfig {
 }
 
 impl BusConfig {
-    /// Length of a burst in clocks.
-    pub fn length(&self, octets: Octets) -> Clocks {
-        Clocks(self.setup_clocks + octets.0.div_ceil(self.octets_per_beat) * self.clocks_per_beat)
+    /// Length in clocks of a burst whose words of 32 bits have so many check bits.
+    ///
+    /// Check bits go over the wires of the words, so beats take (32 + c) / 32 of their clocks, and the burst ends with a whole one: 4 octets in 8 clocks
+    /// take 8 * 33 / 32 = 8.25 with parity, which are 9, and 64 octets in 128 clocks take 132.
+    pub fn length(&self, octets: Octets, check_bits: u32) -> Clocks {
+        let beats = octets.0.div_ceil(self.octets_per_beat);
+        Clocks(self.setup_clocks + (beats * self.clocks_of_words(check_bits)).div_ceil(WORD_BITS.into()))
+    }
+
+    /// Clocks of 32 beats with the check bits of their words.
+    pub(super) fn clocks_of_words(&self, check_bits: u32) -> u64 {
+        self.clocks_per_beat * u64::from(WORD_BITS + check_bits)
     }
 
     /// Octets of the longest burst.
-    pub fn longest_burst(&self) -> Octets {
+    pub fn longest_burst(&self, check_bits: u32) -> Octets {
         let limit = if self.burst_octets == 0 { u64::MAX } else { self.burst_octets };
-        let beats_of_slot = self.slot_clocks.saturating_sub(self.setup_clocks) / self.clocks_per_beat;
+        let clocks_of_slot = self.slot_clocks.saturating_sub(self.setup_clocks);
+        let beats_of_slot = clocks_of_slot * u64::from(WORD_BITS) / self.clocks_of_words(check_bits);
         match self.arbiter {
             ArbiterKind::Tdma => Octets(limit.min((beats_of_slot * self.octets_per_beat).max(1))),
             _ => Octets(limit),
@@ -209,13 +225,16 @@ impl BusConfig {
     }
 
     /// Clocks for which a transfer that nobody disturbs holds the bus, all its bursts together.
-    pub fn whole_length(&self, octets: Octets) -> Clocks {
-        let burst = self.longest_burst();
+    pub fn whole_length(&self, octets: Octets, check_bits: u32) -> Clocks {
+        let burst = self.longest_burst(check_bits);
         if octets <= burst {
-            return self.length(octets);
+            return self.length(octets, check_bits);
         }
-        let whole = Clocks(self.length(burst).0 * (octets.0 / burst.0));
-        if octets.0.is_multiple_of(burst.0) { whole } else { whole + self.length(Octets(octets.0 % burst.0)) }
+        let whole = Clocks(self.length(burst, check_bits).0 * (octets.0 / burst.0));
+        match octets.0 % burst.0 {
+            0 => whole,
+            rest => whole + self.length(Octets(rest), check_bits),
+        }
     }
 }
 
@@ -263,12 +282,26 @@ impl Default for MainConfig {
 }
 
 impl Config {
-    /// Times of operations, for words of the machine's length.
+    /// Times of operations, for words of the machine's length. Elementary ones that are executed twice take twice their clocks.
     pub fn timing(&self) -> Timing {
         let word = self.arithmetic.word;
         // An inverse law may come to no unit at all; a class always has one.
         let units = Counts(self.units.0.at(word).0.map(|units| units.max(1)));
-        Timing { clocks: self.clocks.0.at(word), units, packet_lanes: self.packet_lanes }
+        let mut clocks = self.single_clocks();
+        for &class in Class::ALL.iter().filter(|class| class.is_elementary()) {
+            clocks[class] = clocks[class].saturating_mul(self.protection.executions());
+        }
+        Timing { clocks, units, packet_lanes: self.packet_lanes }
+    }
+
+    /// Clocks of operations that are executed once, for words of the machine's length, as the key `clocks` has them.
+    pub fn single_clocks(&self) -> Counts {
+        self.clocks.0.at(self.arithmetic.word)
+    }
+
+    /// Clocks for which a transfer that nobody disturbs holds the bus, all its bursts and check bits together.
+    pub fn transfer_clocks(&self, octets: Octets) -> Clocks {
+        self.bus.whole_length(octets, self.protection.moved_bits())
     }
 
     /// Some clocks or units depend on the word.
@@ -276,8 +309,8 @@ impl Config {
         self.clocks.0.is_grown() || self.units.0.is_grown()
     }
 
-    /// True where work items do the same on both machines, in the same clocks of computing: only cores, bus, caches and
-    /// main processor may differ.
+    /// True where work items do the same on both machines, in the same clocks of computing: only cores, bus, caches,
+    /// main processor and protections may differ, but not whether results are computed twice, which the times of operations have.
     pub fn computes_like(&self, other: &Config) -> bool {
         let Config {
             cores: _,
@@ -291,6 +324,7 @@ impl Config {
             bus: _,
             cache: _,
             main: _,
+            protection: _,
             energy: _,
             area: _,
         } = self;

@@ -141,7 +141,7 @@ mod tests {
             ..BusConfig::default()
         };
         let fault = GrantFault { kind, at: Clocks(5), master };
-        let mut bus = Bus::new(&config, 3).with_fault(Some(fault));
+        let mut bus = Bus::new(&config, 0, 3).with_fault(Some(fault));
         (0..asking).for_each(|master| bus.request(master, Clocks(0), Octets(10)));
         bus
     }

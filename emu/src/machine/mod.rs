@@ -6,6 +6,7 @@ pub mod bus;
 pub mod cache;
 pub mod config;
 pub mod course;
+mod fault_kind;
 pub(crate) mod finish;
 mod grant_fault;
 pub(crate) mod kinds;
@@ -30,6 +31,7 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
+pub use fault_kind::FaultKind;
 pub use grant_fault::{GrantFault, GrantFaultKind};
 pub use outcome::{Item, KindUse, Method, ProcessorUse, RunOutcome};
 

@@ -145,7 +145,7 @@ fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic:
             // All bursts follow each other at once: the bus has no other master.
             let start = processor.clock;
             processor.note_ask(&kinds);
-            processor.wait_until(start + one_core.config.bus.whole_length(octets));
+            processor.wait_until(start + one_core.config.transfer_clocks(octets));
         }
         is_permitted = true;
     };

@@ -119,7 +119,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         let window = setup.options.window;
         let (fault, serves_itself) = (setup.options.grant_fault, window.is_none() && !setup.options.has_course);
         // Without traffic the main processor is no master, so no slot or turn of an arbiter is kept for it.
-        let bus = Bus::new(&config.bus, cores + u32::from(config.main.traffic));
+        let bus = Bus::new(&config.bus, config.protection.moved_bits(), cores + u32::from(config.main.traffic));
         // The main processor comes last: at equal clocks and acts a core goes first.
         processors.push(Processor::new(main_code, setup.main_id(), main));
         for processor in &mut processors {

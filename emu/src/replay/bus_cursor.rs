@@ -375,7 +375,7 @@ mod tests {
         #[test]
         fn ranks_and_masters_alone_are_short_cuts(
             kind in prop::sample::select(&ArbiterKind::ALL[..]),
-            masters in 1u32..6, burst_octets in 0u64..30, setup_clocks in 0u64..4,
+            masters in 1u32..6, burst_octets in 0u64..30, setup_clocks in 0u64..4, check in prop::sample::select(vec![0u32, 0, 7]),
             overlaps: bool, octets in prop::sample::select(vec![0, 64]),
             mut items in prop::collection::vec(
                 (0u32..6, 0u64..40, prop::collection::vec((0u64..30, 0u64..60), 1..8), 0u64..200, prop::option::of(0u32..6)), 1..20,
@@ -384,7 +384,7 @@ mod tests {
         ) {
             let config = BusConfig { arbiter: kind, burst_octets, setup_clocks, ..BusConfig::default() };
             let fault = fault.map(|(kind, at, master, retry)| GrantFault::numbered(kind, at, master % masters, retry));
-            let new = || (Bus::new(&config, masters), BusMasters::<BusCursor>::new(masters, true));
+            let new = || (Bus::new(&config, check, masters), BusMasters::<BusCursor>::new(masters, true));
             let ((quick, mut cursors), (plain, mut plain_cursors)) = (new(), new());
             let (mut quick, mut plain) = (quick.with_muted(fault), plain.with_fault(fault));
             let (mut now, mut ends) = (Clocks(0), vec![Clocks(0); masters as usize]);

@@ -3,7 +3,7 @@
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::{Fault, Stop};
-use crate::machine::config::BusConfig;
+use crate::machine::config::Config;
 use crate::semantics::{Link, Message, at_once};
 
 /// Kind of a transfer.
@@ -90,14 +90,14 @@ impl LoneLink {
 pub(super) struct TimedLone<'a> {
     /// The link.
     pub link: &'a mut LoneLink,
-    /// The bus, which has no other master.
-    pub bus: &'a BusConfig,
+    /// The machine, whose bus has no other master.
+    pub config: &'a Config,
 }
 
 impl TimedLone<'_> {
     fn note(&mut self, kind: TransferKind, address: u32, octets: u32) {
         if octets != 0 && kind != TransferKind::Receive {
-            self.link.waited += self.bus.whole_length(Octets(octets.into()));
+            self.link.waited += self.config.transfer_clocks(Octets(octets.into()));
         }
         self.link.note(kind, address, octets);
     }

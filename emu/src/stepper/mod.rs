@@ -293,7 +293,7 @@ impl<'a> Stepper<'a> {
         let before = self.state.steps + self.state.inner_steps;
         let limit = before.saturating_add(more).min(self.seat.step_limit);
         let seat = CoreId { step_limit: limit, ..self.seat };
-        let mut link = TimedLone { link: &mut self.link, bus: &self.config.bus };
+        let mut link = TimedLone { link: &mut self.link, config: self.config };
         let Stepper { code, state, arithmetic, tally, witness, .. } = self;
         let pause = match self.shadow.take() {
             None => interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, witness),

@@ -66,7 +66,7 @@ proptest! {
         // In turn, nobody waits for more than one burst of each other master, each of at most 64 octets, or with weights
         // for at most three of them; with slots for less than all of them.
         let others = u64::from(cores) - u64::from(!traffic);
-        let burst = bus.length(Octets(64).min(bus.longest_burst())).0;
+        let burst = bus.length(Octets(64).min(bus.longest_burst(0)), 0).0;
         let bound = match arbiter {
             ArbiterKind::RoundRobin => others * burst,
             ArbiterKind::Weighted => others.min(2) * 3 * burst + others.saturating_sub(2) * burst,
@@ -103,7 +103,7 @@ proptest! {
         // Each master asks again a while after its last transfer, in the order of the list.
         const MASTERS: u32 = 5;
         let config = BusConfig { setup_clocks, arbiter, burst_octets, slot_clocks: 20, ..BusConfig::default() };
-        let mut bus = Bus::new(&config, MASTERS);
+        let mut bus = Bus::new(&config, 0, MASTERS);
         let mut lists: Vec<Vec<(u64, u64)>> = vec![Vec::new(); MASTERS as usize];
         for &(master, pause, octets) in requests.iter().rev() {
             lists[master as usize].push((pause, octets));
@@ -162,7 +162,7 @@ proptest! {
 }
 
 /// The report's load: a pixel of 20 equal segments, each 10,150 clocks of computation and 1,240 octets. Report 6.1.
-fn report_pixel() -> Program {
+pub fn report_pixel() -> Program {
     program(|p| {
         p.emit(Op::recv5, &[0, 20]).constant(3, 1240);
         // A turn of the inner loop takes two clocks, one of the outer loop two more.
@@ -175,7 +175,7 @@ fn report_pixel() -> Program {
 }
 
 /// Hands out work two pieces ahead to each core, so that none of them waits for the main processor.
-fn dispatch_ahead(items: i32) -> Program {
+pub fn dispatch_ahead(items: i32) -> Program {
     program(|p| {
         let (more, answers, done) = (p.label(), p.label(), p.label());
         p.emit(Op::movi, &[1, 0]).constant(2, items).emit(Op::cores, &[3]).emit(Op::movi, &[4, 0]);

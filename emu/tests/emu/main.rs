@@ -11,6 +11,7 @@ mod messages;
 mod naive;
 mod native;
 mod profile;
+mod protection;
 mod ray;
 mod replay;
 mod saturation;

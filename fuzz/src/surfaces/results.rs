@@ -1,11 +1,11 @@
 //! Files that commands write and others read: plans, parts and tables of studies, and results that are compared.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::LazyLock;
 
 use emu::inject::{FaultKind, FlipShape};
+use emu::machine::config::ProtectionConfig;
 use lancer::difference::{self, DiffSide};
 use lancer::inject::row::InjectionRow;
 use lancer::inject::{self, FaultCampaign};
@@ -201,7 +201,7 @@ fn read_whole_injections(text: &str, seen: &mut Seen) {
         injections: BLOCK.end,
         shape: FlipShape::SINGLE,
         seed: 1,
-        protections: BTreeMap::new(),
+        protections: ProtectionConfig::default(),
     };
     let map = inject::map(&campaign, &rows);
     assert_eq!(map.colours.len() as u32, map.size.0 * map.size.1, "a map has its pixels");

@@ -6,6 +6,7 @@ use isa::Class;
 use messages::{Diagnostic, Report, Source, read_toml};
 
 use super::law::Law;
+use super::protection::WORD_BITS;
 use super::{Config, MOST_BUFFER_OCTETS, MOST_CLOCKS, MOST_CORES, MOST_LANES, MOST_OCTETS};
 use crate::machine::arbiter::ArbiterKind;
 
@@ -58,7 +59,8 @@ impl Config {
         check("bus.burst_octets", self.bus.burst_octets, 0, MOST_BUFFER_OCTETS.into());
         // A slot that holds no beat would never be granted to anybody.
         let slot = if self.bus.arbiter == ArbiterKind::Tdma {
-            self.bus.setup_clocks.saturating_add(self.bus.clocks_per_beat)
+            let one = self.bus.clocks_of_words(self.protection.moved_bits()).div_ceil(u64::from(WORD_BITS));
+            self.bus.setup_clocks.saturating_add(one)
         } else {
             1
         };
@@ -72,6 +74,7 @@ impl Config {
         check("main.buffer_octets", self.main.buffer_octets.into(), 0, MOST_BUFFER_OCTETS.into());
         check("main.step_limit", self.main.step_limit, 1, 1 << 62);
         messages.extend(self.laws_out_of_range());
+        messages.extend(self.protection.misplaced());
         for (key, octets) in [("buffer_octets", self.buffer_octets), ("cache.octets", self.cache.octets)] {
             let all = u64::from(self.cores) * u64::from(octets);
             // Each core's own key is fine; what is too much is a host's memory for all of them.
@@ -112,8 +115,10 @@ mod tests {
     use isa::number::Quantization;
 
     use super::super::law::Growth;
+    use super::super::protection::Protection;
     use super::*;
     use crate::code::quantity::{Clocks, Octets};
+    use crate::machine::FaultKind;
 
     fn parse(text: &str) -> Result<Config, String> {
         Config::parse(&Source::new("m.toml", text)).map_err(|report| report.render(false))
@@ -124,8 +129,8 @@ mod tests {
         assert_eq!(parse(""), Ok(Config::default()));
         let config = parse("cores = 8\n[clocks]\ndiv = 16\n[bus]\noctets_per_beat = 4\n").expect("it is right");
         assert_eq!((config.cores, config.clocks.0[Class::Div], config.clocks.0[Class::Mul]), (8, 16.into(), 1.into()));
-        assert_eq!(config.bus.length(Octets(31)), Clocks(16));
-        assert_eq!(Config::default().bus.length(Octets(31)), Clocks(62));
+        assert_eq!(config.bus.length(Octets(31), 0), Clocks(16));
+        assert_eq!(Config::default().bus.length(Octets(31), 0), Clocks(62));
     }
 
     #[test]
@@ -136,6 +141,8 @@ mod tests {
         config.units.0[Class::Add] = Law::times(Growth::Inverse, 96);
         config.clocks.0[Class::Mul] = Law::Grown { growth: Growth::Linear, times: 1, by: 4, plus: 2 };
         config.main.traffic = false;
+        config.protection.set(FaultKind::Memory, Protection::Secded);
+        config.protection.set(FaultKind::Results, Protection::Residue);
         let energy = "tables = \"aladdin\"\nmul = \"1.5/32 b pJ; a paper, table 2\"\nmove = \"none\"\n";
         config.energy = parse(&format!("[energy]\n{energy}")).expect("it is right").energy;
         assert_eq!(parse(&config.text()), Ok(config));
@@ -162,6 +169,17 @@ mod tests {
                 "2048000 for words of 32 bits, but may be at most 1000000",
             ),
             ("[clocks]\nmul = \"linear 2 3\"", "m.toml:2:7", "no whole number from 1"),
+            ("[protection]\nmemry = \"ecc\"", "m.toml:2:1", "did you mean `memory`?"),
+            ("[protection]\nmemory = \"ec\"", "m.toml:2:10", "did you mean `ecc`?"),
+            ("[protection]\nmemory = \"residue\"", "m.toml:2:10", "must be one of none, parity, ecc"),
+            ("[protection]\nmemory = true", "m.toml:2:10", "a text in quotation marks is expected"),
+            ("[protection]\ndoubled_grant = \"ecc\"", "m.toml:2:1", "unknown structure `doubled_grant`"),
+            // A slot of 2 clocks has room for a beat of 2, and not for its check bits.
+            (
+                "[bus]\narbiter = \"tdma\"\nslot_clocks = 2\n[protection]\nbus = \"parity\"",
+                "m.toml:3:15",
+                "the nearest possible value is 3",
+            ),
             ("[energy]\nmul = \"0.2 b pJ\"", "m.toml:2:7", "a line is a figure, a unit, `;` and where it comes from"),
             ("[energy]\nmul = \"0.2 b um2; me\"", "m.toml:2:7", "it is one of aJ, fJ, pJ, nJ"),
             (

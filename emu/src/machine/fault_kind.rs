@@ -1,0 +1,111 @@
+//! Structures and parts of the machine in which faults happen, by their names: those that faults are put into, and those that a machine protects.
+//! How a fault is drawn, and what comes of it, is not said here.
+
+use super::config::protection::Protection;
+
+/// Structure in which bits flip, all of them rows of words of 32 bits, or part of the machine that goes wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FaultKind {
+    /// Registers that programs can name, of the core that does the work item; a wide accumulator is two words.
+    Registers,
+    /// Local buffer of that core.
+    Buffer,
+    /// Program store of that core, from the work item of the moment on.
+    Program,
+    /// Image in global memory, from the work item of the moment on.
+    Memory,
+    /// Addresses and data of the transfers and messages of a work item.
+    Bus,
+    /// Result of an instruction that computes, on its way to the register.
+    Results,
+    /// A grant that reaches nobody.
+    LostGrant,
+    /// A grant to two cores at once, whose data are on the bus together.
+    DoubledGrant,
+    /// An arbiter that grants to one master alone.
+    StuckArbiter,
+    /// A core that asks no more.
+    StoppedCore,
+}
+
+impl FaultKind {
+    /// All of them.
+    pub const ALL: [FaultKind; 10] = [
+        FaultKind::Registers,
+        FaultKind::Buffer,
+        FaultKind::Program,
+        FaultKind::Memory,
+        FaultKind::Bus,
+        FaultKind::Results,
+        FaultKind::LostGrant,
+        FaultKind::DoubledGrant,
+        FaultKind::StuckArbiter,
+        FaultKind::StoppedCore,
+    ];
+
+    /// Name in options and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            FaultKind::Registers => "registers",
+            FaultKind::Buffer => "buffer",
+            FaultKind::Program => "program",
+            FaultKind::Memory => "memory",
+            FaultKind::Bus => "bus",
+            FaultKind::Results => "results",
+            FaultKind::LostGrant => "lost_grant",
+            FaultKind::DoubledGrant => "doubled_grant",
+            FaultKind::StuckArbiter => "stuck_arbiter",
+            FaultKind::StoppedCore => "stopped_core",
+        }
+    }
+
+    /// True where bits of a word flip.
+    pub const fn has_bits(self) -> bool {
+        !matches!(
+            self,
+            FaultKind::LostGrant | FaultKind::DoubledGrant | FaultKind::StuckArbiter | FaultKind::StoppedCore
+        )
+    }
+
+    /// True where the machine's clocks decide what comes of it.
+    pub const fn is_of_clocks(self) -> bool {
+        matches!(self, FaultKind::LostGrant | FaultKind::StuckArbiter | FaultKind::StoppedCore)
+    }
+
+    /// True where a flip stays for later work items.
+    pub const fn is_lasting(self) -> bool {
+        matches!(self, FaultKind::Program | FaultKind::Memory)
+    }
+    /// Protections that the structure, or the part of the machine, may have; none for what no code or counter is made for.
+    pub const fn protections(self) -> &'static [Protection] {
+        match self {
+            FaultKind::Results => &[Protection::Duplicated, Protection::Residue],
+            FaultKind::LostGrant => &[Protection::Retry, Protection::Watchdog],
+            FaultKind::StuckArbiter | FaultKind::StoppedCore => &[Protection::Watchdog],
+            // A wire with a 1 too many is none of the errors that the codes are made for.
+            FaultKind::DoubledGrant => &[],
+            _ => &[Protection::Parity, Protection::Secded],
+        }
+    }
+
+    /// Names of those, and of no protection.
+    pub fn protection_names(self) -> impl Iterator<Item = &'static str> {
+        [Protection::Unprotected].into_iter().chain(self.protections().iter().copied()).map(Protection::name)
+    }
+
+    /// Part of the machine that a protection of it protects, in words.
+    pub const fn protected(self) -> &'static str {
+        match self {
+            FaultKind::Registers => "registers of the cores",
+            FaultKind::Buffer => "local buffers of the cores",
+            FaultKind::Program => "program stores of the cores",
+            FaultKind::Memory => "global memory, whose check bits go over the bus with each word",
+            FaultKind::Bus => "addresses, data and messages on the bus",
+            FaultKind::Results => "what elementary operations compute",
+            FaultKind::LostGrant => "requests of the bus whose grant is lost",
+            FaultKind::DoubledGrant => "transfers that are granted at once",
+            FaultKind::StuckArbiter => "the arbiter",
+            FaultKind::StoppedCore => "cores that ask for nothing any more",
+        }
+    }
+}

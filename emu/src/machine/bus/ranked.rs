@@ -1,0 +1,109 @@
+//! Service of masters whom an arbiter ranks: round the circle, by number, or by when they began to ask.
+
+use super::super::arbiter::{NEVER, Ranking};
+use super::{Burst, Bus, Grant, NextTransfer};
+use crate::code::quantity::{Clocks, Octets};
+
+impl Bus {
+    /// Service with an arbiter that ranks its masters, of which there are at most `SIZE`. Where it is not simply the next in turn, the next one is
+    /// found without branches, since nobody could foresee them: the smallest number of a clock and, in its last bits, a rank.
+    ///
+    /// A number has the clock at which a master could be served, and behind it in six bits its rank. Round the circle from master 1 on, with the bus
+    /// free at clock 10, masters 0 and 2 waiting since 4 and 9, and master 1 asking from 12 on, the numbers are 10:2, 10:1 and 12:0, and
+    /// the smallest, 10:1, says master 2 at clock 10. Oldest first leaves out the floor: 4:0, 12:1, 9:2 say master 0, at clock 10.
+    pub(super) fn serve_ranked<const SIZE: usize, M: NextTransfer>(
+        &mut self,
+        all_masters: &mut [M],
+        until: Clocks,
+    ) -> Option<Grant> {
+        // Take what the loop works on into variables of its own
+        const RANK: u32 = 6;
+        let masters = self.requests.masters() as usize;
+        let (lengths, waits, all_masters) = (self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
+        let (all, bursts) = (&mut self.requests.arrivals[..masters], &mut self.requests.bursts[..masters]);
+        // Places behind the last master stay beyond every clock and never win.
+        let mut arrivals = [NEVER.0; SIZE];
+        for (arrival, Clocks(known)) in arrivals.iter_mut().zip(all.iter()) {
+            *arrival = *known;
+        }
+        let ranking = self.arbiter.ranking();
+        let mut first = match &ranking {
+            Some(Ranking::Circle(turn)) => **turn as usize,
+            _ => 0,
+        };
+        // What decides among those that wait, their rank or since when they do; and whether the rank depends on who came last.
+        let by_rank = if ranking == Some(Ranking::Arrival) { 0 } else { u64::MAX };
+        let is_circle = matches!(ranking, Some(Ranking::Circle(_)));
+        let in_turn = if is_circle { usize::MAX } else { 0 };
+        let (mut free, mut used) = (self.free_at, self.used);
+        // Where nobody asks, the smallest number is beyond every clock.
+        let until = until.min(Clocks(NEVER.0 >> RANK));
+        let granted = loop {
+            // On a full bus the next in turn mostly waits already: it is served without a comparison with the others.
+            let (master, start) = if is_circle && arrivals[first] <= free.0 {
+                (first, free)
+            } else {
+                // Find the smallest number by halving, without a branch
+                let floor = free.0 & by_rank;
+                let ranks = &self.circle[masters - first..][..SIZE];
+                let mut keys: [u64; SIZE] = std::array::from_fn(|at| arrivals[at].max(floor) << RANK | ranks[at]);
+                let mut left = SIZE;
+                while left > 1 {
+                    let half = left / 2;
+                    for at in 0..half {
+                        keys[at] = keys[at].min(keys[left - 1 - at]);
+                    }
+                    left -= half;
+                }
+                // Turn the rank back into a master
+                let master = (keys[0] & ((1 << RANK) - 1)) as usize + first;
+                (if master >= masters { master - masters } else { master }, Clocks((keys[0] >> RANK).max(free.0)))
+            };
+            if start >= until {
+                break None;
+            }
+            first = if master + 1 == masters { 0 } else { master + 1 } & in_turn;
+            // Grant the burst
+            let (burst, one) = (&mut bursts[master], &mut all_masters[master]);
+            let (waited, end) = (start - Clocks(arrivals[master]), start + burst.length);
+            let Burst { octets, rest, .. } = *burst;
+            let is_last = rest == Octets(0);
+            let grant = Grant { master: master as u32, start, end, waited, octets, is_last };
+            free = end;
+            used.add(&grant);
+            waits[master].add(waited);
+            one.note_wait(waited);
+            // Ask for what comes next: the rest of the transfer, or the next one after some computing
+            let (computing, next) = if is_last {
+                let Some(ahead) = one.next_transfer(end, &lengths) else {
+                    arrivals[master] = NEVER.0;
+                    break Some(grant);
+                };
+                ahead
+            } else {
+                (Clocks(0), lengths.burst(rest))
+            };
+            arrivals[master] = (end + computing).0;
+            *burst = next;
+            if SIZE == 2 && masters == 2 {
+                // With one rival it often asks again before that does.
+                let limit = Clocks(arrivals[1 - master]).min(until);
+                let alone = one.go_alone(&lengths, *burst, Clocks(arrivals[master]), limit);
+                if alone.bursts != 0 {
+                    (free, *burst, arrivals[master]) = (alone.free, alone.burst, alone.arrival.0);
+                    used.add_alone(&alone);
+                    waits[master].add_none(alone.bursts);
+                }
+            }
+        };
+        // Put back what has changed
+        for (arrival, known) in arrivals.iter().zip(all) {
+            *known = Clocks(*arrival);
+        }
+        if let Some(Ranking::Circle(turn)) = ranking {
+            *turn = first as u32;
+        }
+        (self.free_at, self.used, self.not_before) = (free, used, Clocks(0));
+        granted
+    }
+}

@@ -32,10 +32,16 @@ pub fn twin_picture(scene: &Scene, view: &View, set: KernelSet, modes: Modes) ->
     (image, Picture { size: view.size, pixels })
 }
 
-/// The difference of a set's picture from double precision.
-pub fn error(scene: &Scene, view: &View, set: KernelSet, modes: Modes) -> PictureError {
+/// A picture of a set and that of double precision.
+pub fn pair(scene: &Scene, view: &View, set: KernelSet, modes: Modes) -> [Picture; 2] {
     let (image, picture) = twin_picture(scene, view, set, modes);
     let reference = Reference::new(scene, view, SearchMethod::Hierarchy).expect("the reference draws any scene");
     let exact = reference.picture(Some(&Samples::new(scene, &image, set, modes))).picture;
+    [picture, exact]
+}
+
+/// The difference of a set's picture from double precision.
+pub fn error(scene: &Scene, view: &View, set: KernelSet, modes: Modes) -> PictureError {
+    let [picture, exact] = pair(scene, view, set, modes);
     metrics::compare(&picture, &exact).expect("pictures of one size")
 }

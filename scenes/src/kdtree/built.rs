@@ -41,33 +41,55 @@ pub(crate) struct NumberedNode<'a> {
 impl BuiltTree {
     /// The tree in the box `root`.
     pub(super) fn new(root: Bounds, subtrees: Vec<Subtree>) -> BuiltTree {
+        let mut tree = BuiltTree { root, subtrees, levels: Vec::new() };
         let mut sizes: Vec<[u32; 2]> = Vec::new();
-        // Nodes stand in the order of a walk, left side first: behind a leaf comes the right side that has waited least.
-        let (mut level, mut waiting) = (0, Vec::new());
-        for &node in subtrees.iter().flat_map(|subtree| &subtree.nodes) {
+        for (level, _, packet) in tree.walk() {
             if level == sizes.len() {
                 sizes.push([0; 2]);
             }
             sizes[level][0] += 1;
-            level = match node {
-                BuildNode::Inner { .. } => {
-                    waiting.push(level + 1);
-                    level + 1
-                }
-                BuildNode::Leaf { count } => {
-                    sizes[level][1] += count;
-                    waiting.pop().unwrap_or(0)
-                }
-            };
+            sizes[level][1] += packet.len() as u32;
         }
         // Nodes and references of all levels above, which is where a level's numbers begin.
         let mut before = [0; 2];
-        let mut levels = vec![before];
+        tree.levels.push(before);
         for size in sizes {
             before = [0, 1].map(|k| before[k] + size[k]);
-            levels.push(before);
+            tree.levels.push(before);
         }
-        BuiltTree { root, subtrees, levels }
+        tree
+    }
+
+    /// All nodes in the order of a walk, each with its level and, if it is a leaf, its packet.
+    #[inline]
+    fn walk(&self) -> impl Iterator<Item = (usize, BuildNode, &[u32])> {
+        let mut subtrees = self.subtrees.iter();
+        let (mut nodes, mut packets): (std::slice::Iter<BuildNode>, &[u32]) = ([].iter(), &[]);
+        // Left sides come first: behind a leaf comes the right side that has waited least.
+        let (mut below, mut waiting) = (0, Vec::new());
+        std::iter::from_fn(move || {
+            let node = loop {
+                if let Some(&node) = nodes.next() {
+                    break node;
+                }
+                let subtree = subtrees.next()?;
+                (nodes, packets) = (subtree.nodes.iter(), &subtree.triangles);
+            };
+            let level = below;
+            Some(match node {
+                BuildNode::Inner { .. } => {
+                    below = level + 1;
+                    waiting.push(below);
+                    (level, node, [].as_slice())
+                }
+                BuildNode::Leaf { count } => {
+                    below = waiting.pop().unwrap_or(0);
+                    let (packet, others) = packets.split_at(count as usize);
+                    packets = others;
+                    (level, node, packet)
+                }
+            })
+        })
     }
 
     fn size(&self) -> [u32; 2] {
@@ -87,36 +109,27 @@ impl BuiltTree {
     /// All nodes: each one, then all of its left side, then its right one.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = NumberedNode<'_>> {
         let mut places = self.levels.clone();
-        let mut here = (0, self.root);
+        let mut bounds = self.root;
         let mut waiting = Vec::new();
-        let nodes = self.subtrees.iter().flat_map(|subtree| {
-            let mut packets = subtree.triangles.as_slice();
-            subtree.nodes.iter().map(move |&node| {
-                let count = if let BuildNode::Leaf { count } = node { count } else { 0 };
-                let (packet, others) = packets.split_at(count as usize);
-                packets = others;
-                (node, packet)
-            })
-        });
-        nodes.map(move |(node, triangles)| {
-            let (level, bounds) = here;
+        self.walk().map(move |(level, node, triangles)| {
             let [number, first] = places[level];
             places[level] = [number + 1, first + triangles.len() as u32];
+            let here = bounds;
             let content = match node {
                 BuildNode::Inner { axis, at } => {
                     let (axis, left) = (axis.into(), places[level + 1][0]);
-                    let [lower, upper] = bounds.divided(axis, at);
-                    waiting.push((level + 1, upper));
-                    here = (level + 1, lower);
+                    let [lower, upper] = here.divided(axis, at);
+                    waiting.push(upper);
+                    bounds = lower;
                     Content::Inner { axis, at, left }
                 }
                 BuildNode::Leaf { .. } => {
-                    here = waiting.pop().unwrap_or((0, self.root));
+                    bounds = waiting.pop().unwrap_or(self.root);
                     Content::Leaf { triangles }
                 }
             };
             let next = (number + 1 < self.levels[level + 1][0]).then_some(number + 1);
-            NumberedNode { number, first, node: Node { bounds, next, content } }
+            NumberedNode { number, first, node: Node { bounds: here, next, content } }
         })
     }
 
@@ -129,12 +142,15 @@ impl BuiltTree {
     pub(super) fn by_levels(&self) -> KdTree {
         let mut nodes = vec![StoredNode::Leaf { first: 0, count: 0 }; self.count() as usize];
         let mut references = vec![0; self.references() as usize];
-        for NumberedNode { number, first, node } in self.nodes() {
-            nodes[number as usize] = match node.content {
-                Content::Inner { axis, at, left } => StoredNode::Inner { axis: axis as u8, at, left },
-                Content::Leaf { triangles } => {
+        let mut places = self.levels.clone();
+        for (level, node, triangles) in self.walk() {
+            let [number, first] = places[level];
+            places[level] = [number + 1, first + triangles.len() as u32];
+            nodes[number as usize] = match node {
+                BuildNode::Inner { axis, at } => StoredNode::Inner { axis, at, left: places[level + 1][0] },
+                BuildNode::Leaf { count } => {
                     references[first as usize..][..triangles.len()].copy_from_slice(triangles);
-                    StoredNode::Leaf { first, count: triangles.len() as u32 }
+                    StoredNode::Leaf { first, count }
                 }
             };
         }

@@ -26,16 +26,16 @@ pub(super) fn halves(vertices: &[[i32; 3]; 3], part: &Bounds, division: &Divisio
     let [before, alone, after] = THREE_FROM[usize::from(second) + 2 * usize::from(third)].map(|k| vertices[k]);
 
     // Where the edges cross it. An edge that ends in the plane is not cut there: its end is a vertex of both halves, and as exact as all of them.
-    let [first, second] = [(&before, &alone), (&alone, &after)].map(|(from, to)| {
-        let share = (f64::from(at) - f64::from(from[axis])) / (f64::from(to[axis]) - f64::from(from[axis]));
-        real(from) + f64x4::splat(share) * (real(to) - real(from))
-    });
-    let [first_margin, second_margin] =
-        [before, after].map(|vertex| f64x4::splat(if vertex[axis] == at { 0.0 } else { MARGIN }));
-    let low = (first - first_margin).fast_min(second - second_margin);
-    let high = (first + first_margin).fast_max(second + second_margin);
+    let plane = f64::from(at);
+    let [from, middle, to] = [f64::from(before[axis]), f64::from(alone[axis]), f64::from(after[axis])];
+    let shares = [(plane - from) / (middle - from), (plane - middle) / (to - middle)].map(f64x4::splat);
+    let margins = [before[axis], after[axis]].map(|end| f64x4::splat(if end == at { 0.0 } else { MARGIN }));
+    let (before, alone, after) = (real(&before), real(&alone), real(&after));
+    let first = before + shares[0] * (alone - before);
+    let second = alone + shares[1] * (after - alone);
+    let low = (first - margins[0]).fast_min(second - margins[1]);
+    let high = (first + margins[0]).fast_max(second + margins[1]);
 
-    let [before, alone, after] = [before, alone, after].map(|vertex| real(&vertex));
     let one = on_grid(low.fast_min(alone), high.fast_max(alone), part);
     let other = on_grid(low.fast_min(before).fast_min(after), high.fast_max(before).fast_max(after), part);
     let [mut left, mut right] = if is_left { [one, other] } else { [other, one] };
@@ -50,7 +50,7 @@ const THREE_FROM: [[usize; 3]; 4] = [[2, 0, 1], [0, 1, 2], [1, 2, 0], [2, 0, 1]]
 /// A vertex as real numbers, with a fourth coordinate that is 0: four are computed as fast as three.
 #[inline]
 fn real(&[x, y, z]: &[i32; 3]) -> f64x4 {
-    f64x4::new([x, y, z, 0].map(f64::from))
+    f64x4::new([f64::from(x), f64::from(y), f64::from(z), 0.0])
 }
 
 /// The smallest box on the grid around a box of real numbers, cut down to `part`.
@@ -75,8 +75,8 @@ fn floor(x: f64x4) -> f64x4 {
 /// Whole numbers of 32 bits.
 #[inline]
 fn whole(x: f64x4) -> [i32; 3] {
-    let [x, y, z, _] = (x + f64x4::splat(LARGE)).to_array().map(|x| x.to_bits() as u32 as i32);
-    [x, y, z]
+    let [x, y, z, _] = (x + f64x4::splat(LARGE)).to_array();
+    [x.to_bits() as i32, y.to_bits() as i32, z.to_bits() as i32]
 }
 
 #[cfg(test)]

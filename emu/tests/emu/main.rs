@@ -16,6 +16,7 @@ mod ray;
 mod replay;
 mod saturation;
 mod shadow;
+mod stack;
 mod stepper;
 mod tails;
 mod totals;

@@ -13,6 +13,7 @@ use random::SplitMix64;
 
 use super::builder::{ProgramBuilder, program};
 use super::machine::dispatch;
+use super::stack::STACK_KIB;
 
 /// Items of a frame: more than a host thread takes at a time.
 const ITEMS: i32 = 45;
@@ -96,7 +97,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
 /// Calls of the guest that never return take none of the host's stack, on either engine and whatever is measured.
 #[test]
 fn calls_without_end_take_no_stack() {
-    const CALLS: u64 = 1 << 16;
+    const CALLS: u64 = 1 << 18;
     let core = program(|p| {
         let function = p.label();
         p.constant(1, CALLS as i32);
@@ -116,8 +117,8 @@ fn calls_without_end_take_no_stack() {
             let one_core = OneCore { profile, ..OneCore::new(&config, &isa, core) };
             one_core::run_with(&one_core, Memory::default(), wish).expect("the setup is right")
         });
-        // Compiling a program takes most of this; a call that took sixteen octets would take four times as much.
-        let thread = std::thread::Builder::new().stack_size(256 << 10).spawn(move || run(&core));
+        // Compiling a program takes most of this; calls that took sixteen octets each would take four times as much.
+        let thread = std::thread::Builder::new().stack_size(STACK_KIB << 10).spawn(move || run(&core));
         let found = thread.expect("a thread can be had").join().expect("the stack is large enough");
         assert_eq!((found.trap, found.engine.kind), (None, wish.kind), "{profile:?}");
         assert!(found.state.steps > 3 * (CALLS - 1), "{profile:?}");

@@ -92,3 +92,19 @@ fn lights_with_steps_of_their_own_are_those_of_the_twin() {
         }
     }
 }
+
+#[test]
+fn a_picture_needs_no_more_stack_than_the_page_says() {
+    let page = include_str!("../../../docs/engines.md");
+    let (_, rest) = page.split_once("A thread needs ").expect("the page says what a thread needs");
+    let kib: usize = rest.split(' ').next().and_then(|number| number.parse().ok()).expect("it is a number");
+    let options = GenerateOptions { level: Some(1), size: (6, 5), ..GenerateOptions::default() };
+    let scene = generate::scene("mirrors", &options).expect("a scene of the list");
+    let view = View::new((6, 5));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).stack_size(kib << 10).build();
+    let pool = pool.expect("threads can be had");
+    for &set in KernelSet::ALL {
+        let [found, expected] = pool.install(|| drawn(&scene, &view, set, 32, Skips::ALL));
+        assert_eq!(found, expected, "{set:?}");
+    }
+}

@@ -144,7 +144,7 @@ pub fn draw(job: &Job, comparison: Comparison, progress: &mut dyn FnMut(u64)) ->
     // Build tree, memory image and programs, and the reference's hierarchy.
     let (load, image) = Load::picture(job)?;
     let reference = match comparison {
-        Comparison::Reference => Some(Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?),
+        Comparison::Reference => Some(Reference::new(&job.scene, &job.reference_view(), SearchMethod::Hierarchy)?),
         Comparison::None => None,
     };
     let crop = load.build.crop;

@@ -79,6 +79,8 @@ pub struct Job {
     pub energy: bool,
     /// True where a picture is run beside exact arithmetic.
     pub shadow: bool,
+    /// Levels of secondary rays in double precision; `None` for as many as the picture has.
+    pub reference_bounces: Option<u32>,
     /// Likely mistakes in the scene's files.
     pub warnings: Report,
     /// All files that were read for it.
@@ -108,6 +110,7 @@ impl Job {
             flags: false,
             energy: false,
             shadow: false,
+            reference_bounces: None,
             warnings: Report::default(),
             files: Vec::new(),
         }
@@ -137,6 +140,11 @@ impl Job {
     /// Way to build the kd tree.
     pub fn kd_method(&self) -> BuildMethod {
         self.kd_method.unwrap_or(self.kernels.profile.kd_method())
+    }
+
+    /// The view of the picture in double precision.
+    pub fn reference_view(&self) -> View {
+        View { bounces: self.reference_bounces.unwrap_or(self.view.bounces), ..self.view.clone() }
     }
 
     /// The part of the picture that is drawn: all of it unless the user chose one.

@@ -19,7 +19,7 @@ use crate::job::Job;
 pub const ANNEX: &str = "annex";
 
 /// Pixels of the report's estimate.
-const ANNEX_PIXELS: u32 = 1_000;
+pub const ANNEX_PIXELS: u32 = 1_000;
 
 /// Programs and memory for a machine.
 #[derive(Clone, Debug)]

@@ -45,10 +45,13 @@ pub fn count(number: u64, singular: &str, plural: &str) -> String {
     format!("{} {}", grouped(number), if number == 1 { singular } else { plural })
 }
 
+/// Most numbers of a list.
+const MOST_NUMBERS: usize = 10_000_000;
+
 /// Whole numbers from `least` to `most`: single ones and ranges, between commas: `1,4-8`, `1..4`, `1..=4`, ranges with both ends.
 ///
 /// # Errors
-/// Anything else, and ranges that go down.
+/// Anything else, ranges that go down, and more than ten million numbers.
 pub fn numbers(text: &str, least: u32, most: u32, what: &str) -> Result<Vec<u32>, String> {
     let number = |text: &str| match text.trim().parse::<u32>() {
         Ok(number) if (least..=most).contains(&number) => Ok(number),
@@ -63,6 +66,9 @@ pub fn numbers(text: &str, least: u32, most: u32, what: &str) -> Result<Vec<u32>
                 let (first, last) = (number(first)?, number(last)?);
                 if first > last {
                     return Err(format!("`{part}` goes down"));
+                }
+                if (last - first) as usize >= MOST_NUMBERS - numbers.len().min(MOST_NUMBERS) {
+                    return Err(format!("`{text}` is more than {} numbers", grouped(MOST_NUMBERS as u64)));
                 }
                 numbers.extend(first..=last);
             }
@@ -94,5 +100,8 @@ mod tests {
         for text in ["", "0", "257", "4..2", "4-2", "1..", "1-", "-1", "a", "1,,2", "1..999", "1-2-3"] {
             assert!(cores(text).is_err(), "{text}");
         }
+        let any = |text: &str| numbers(text, 0, u32::MAX, "number").map(|numbers| numbers.len());
+        assert_eq!(any("1-10000000"), Ok(MOST_NUMBERS));
+        assert!(["0-10000000", "0-4294967295", "1-9999999,0-1"].iter().all(|text| any(text).is_err()));
     }
 }

@@ -5,6 +5,7 @@
 mod axis;
 #[cfg(feature = "cli")]
 mod chart;
+mod choices;
 mod front;
 mod pooled;
 mod rays;
@@ -14,10 +15,8 @@ mod study;
 mod text;
 
 use std::fmt;
-use std::sync::Arc;
 
 use isa::number::Quantization;
-use kernels::KernelSet;
 use scenes::layout::Layout;
 use scenes::metrics::PictureError;
 use schemars::JsonSchema;
@@ -29,92 +28,55 @@ use crate::settings::Settings;
 pub use axis::{CostAxis, ErrorAxis};
 #[cfg(feature = "cli")]
 pub use chart::{ChartAxes, figure};
+pub use choices::{Choices, PictureNumber, VariantMachine, VariantStudy};
 pub use front::{MeanAndWorst, OverScenes, OverallVariant, overall, rank};
 pub use rays::RayErrors;
 pub use study::{AccuracyStudy, PLACES, RefusedVariant, run};
 #[cfg(feature = "cli")]
 pub use text::{csv, text};
 
-/// Settings that variants share, on one of the machines.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StudyBase {
-    /// Everything but the scene and what variants vary.
-    pub settings: Settings,
-    /// Words that tell the machine from the others; empty for the only one.
-    pub words: String,
-}
-
-/// Settings of one picture.
+/// A picture in one of the arithmetics.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
-    /// The machine and all that no variant varies.
-    pub base: Arc<StudyBase>,
-    /// Set of kernels.
-    pub profile: KernelSet,
-    /// Bits of a word.
-    pub word: u32,
-    /// Rounding mode.
-    pub rounding: Quantization,
-    /// Structures of global memory.
-    pub layout: Layout,
-    /// Levels of secondary rays.
-    pub bounces: u32,
-    /// Weight that a secondary ray must exceed.
-    pub cutoff: f64,
-    /// Difference up to which corners agree, so that a pixel between them is interpolated; `None` when every pixel has its ray.
-    pub interpolate: Option<f64>,
+    /// Settings of its first picture, with what goes by the scene.
+    pub settings: Settings,
+    /// Words that tell the machine from the others; empty for the only one.
+    pub machine_words: String,
 }
 
 impl Variant {
-    /// The variant with other kernels, those that were made for a layout in that.
-    fn with(&self, profile: KernelSet) -> Variant {
-        let layout = match profile.layout() {
-            own @ (Layout::Report | Layout::Packet | Layout::Packed) => own,
-            Layout::Wide => self.layout,
-        };
-        Variant { profile, layout, ..self.clone() }
-    }
-
-    /// Settings of the picture of a scene, with its samples moved by `shift` beside the shift that all share.
-    pub fn settings(&self, scene: &str, shift: [f64; 2]) -> Settings {
-        let mut settings = self.base.settings.clone();
-        scene.clone_into(&mut settings.scene.name);
-        settings.view.shift = [0, 1].map(|k| settings.view.shift[k] + shift[k]);
-        settings.kernels.profile = self.profile;
-        settings.layout = Some(self.layout);
-        settings.machine.config.arithmetic.word = self.word;
-        settings.machine.config.arithmetic.quantization = self.rounding;
-        settings.effort.bounces = self.bounces;
-        settings.effort.weight_cutoff = self.cutoff;
-        settings.effort.interpolate = self.interpolate;
-        settings
-    }
-
     /// The variant in words without the word length.
     pub fn kind(&self) -> String {
-        format!("{}{}", self.profile, self.particulars())
+        format!("{}{}", self.settings.kernels.profile, self.particulars())
+    }
+
+    /// Structures of global memory.
+    pub fn layout(&self) -> Layout {
+        self.settings.layout.unwrap_or(self.settings.kernels.profile.layout())
     }
 
     /// Words for what is not as usual.
     fn particulars(&self) -> String {
+        let Settings { kernels, effort, machine, .. } = &self.settings;
+        let (rounding, layout) = (machine.config.arithmetic.quantization, self.layout());
         let mut words = String::new();
-        if self.rounding != Quantization::Rnd {
-            words += &format!(" {}", self.rounding);
+        if rounding != Quantization::Rnd {
+            words += &format!(" {rounding}");
         }
-        if self.layout != self.profile.layout() {
-            words += &format!(" {}", self.layout.name());
+        if layout != kernels.profile.layout() {
+            words += &format!(" {}", layout.name());
         }
-        if self.bounces != BOUNCES {
-            words += &format!(" bounces {}", self.bounces);
+        if effort.bounces != BOUNCES {
+            words += &format!(" bounces {}", effort.bounces);
         }
-        if self.cutoff != 0.0 {
-            words += &format!(" cutoff {}", self.cutoff);
+        if effort.weight_cutoff != 0.0 {
+            words += &format!(" cutoff {}", effort.weight_cutoff);
         }
-        if let Some(difference) = self.interpolate {
+        if let Some(difference) = effort.interpolate {
             words += &format!(" interpolated {difference}");
         }
-        if !self.base.words.is_empty() {
-            words += &format!(" {}", self.base.words);
+        if !self.machine_words.is_empty() {
+            words += &format!(" {}", self.machine_words);
         }
         words
     }
@@ -122,68 +84,13 @@ impl Variant {
 
 impl fmt::Display for Variant {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}{}", self.profile, self.word, self.particulars())
+        let Settings { kernels, machine, .. } = &self.settings;
+        write!(f, "{} {}{}", kernels.profile, machine.config.arithmetic.word, self.particulars())
     }
 }
 
 /// Levels of secondary rays where nothing else is said.
 const BOUNCES: u32 = 5;
-
-/// The values that are tried of each setting. The first one of each list is the base.
-#[derive(Clone, Debug)]
-pub struct Choices {
-    /// Machines, each with all that no variant varies.
-    pub bases: Vec<Arc<StudyBase>>,
-    /// Sets of kernels.
-    pub profiles: Vec<KernelSet>,
-    /// Bits of a word.
-    pub words: Vec<u32>,
-    /// Rounding modes.
-    pub roundings: Vec<Quantization>,
-    /// Layouts.
-    pub layouts: Vec<Layout>,
-    /// Levels of secondary rays.
-    pub bounces: Vec<u32>,
-    /// Weights that a secondary ray must exceed.
-    pub cutoffs: Vec<f64>,
-    /// Differences up to which corners agree.
-    pub interpolate: Vec<Option<f64>>,
-}
-
-impl Choices {
-    /// Every profile in every word (that of the report in its own layout), and for each further value of another setting the base profile in
-    /// every word; all of them on each machine. `None` without a value of some setting.
-    pub fn variants(&self) -> Option<Vec<Variant>> {
-        let base = Variant {
-            base: self.bases.first()?.clone(),
-            profile: *self.profiles.first()?,
-            word: *self.words.first()?,
-            rounding: *self.roundings.first()?,
-            layout: *self.layouts.first()?,
-            bounces: *self.bounces.first()?,
-            cutoff: *self.cutoffs.first()?,
-            interpolate: *self.interpolate.first()?,
-        };
-        let with = |change: &dyn Fn(&mut Variant)| {
-            let mut variant = base.clone();
-            change(&mut variant);
-            variant
-        };
-        let mut kinds: Vec<Variant> = self.profiles.iter().map(|&profile| base.with(profile)).collect();
-        kinds.extend(self.roundings[1..].iter().map(|&rounding| with(&|one| one.rounding = rounding)));
-        kinds.extend(self.layouts[1..].iter().map(|&layout| with(&|one| one.layout = layout)));
-        kinds.extend(self.bounces[1..].iter().map(|&bounces| with(&|one| one.bounces = bounces)));
-        kinds.extend(self.cutoffs[1..].iter().map(|&cutoff| with(&|one| one.cutoff = cutoff)));
-        kinds.extend(self.interpolate[1..].iter().map(|&interpolate| with(&|one| one.interpolate = interpolate)));
-        let mut variants = Vec::new();
-        for base in &self.bases {
-            for kind in &kinds {
-                variants.extend(self.words.iter().map(|&word| Variant { word, base: base.clone(), ..kind.clone() }));
-            }
-        }
-        Some(variants)
-    }
-}
 
 /// Error of the picture of one shift.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]

@@ -9,6 +9,7 @@ use scenes::metrics::PictureError;
 use super::{MeanAndWorst, MeasuredVariant, RayErrors, ShiftError, Variant};
 use crate::energy::{EnergySummary, FigureRange, UNDECIDED};
 use crate::result::{ByClass, FormatTable};
+use crate::settings::Settings;
 
 /// Figures of a picture that are the same on all machines that share its recording.
 #[derive(Clone, Debug)]
@@ -39,7 +40,8 @@ pub struct ShiftFigures {
 /// A variant's result from its pictures, one a shift, all of one size; `None` without any.
 pub fn pooled(number: usize, scene: &str, variant: &Variant, shifts: &[ShiftFigures]) -> Option<MeasuredVariant> {
     let first = shifts.first()?;
-    let machine = &variant.base.settings.machine;
+    let Settings { kernels, effort, machine, .. } = &variant.settings;
+    let arithmetic = &machine.config.arithmetic;
     let pixels = shifts.iter().map(|one| one.pixels).sum::<u64>().max(1) as f64;
     let each = |part: fn(&ShiftFigures) -> u64| shifts.iter().map(part).sum::<u64>() as f64 / pixels;
     let errors = |part: fn(&PictureFigures) -> &PictureError| {
@@ -55,13 +57,13 @@ pub fn pooled(number: usize, scene: &str, variant: &Variant, shifts: &[ShiftFigu
         kind: variant.kind(),
         scene: scene.to_owned(),
         variant: variant.to_string(),
-        profile: variant.profile.name(),
-        word: variant.word,
-        rounding: variant.rounding.name(),
-        layout: variant.layout.name(),
-        bounces: variant.bounces,
-        cutoff: variant.cutoff,
-        interpolate: variant.interpolate,
+        profile: kernels.profile.name(),
+        word: arithmetic.word,
+        rounding: arithmetic.quantization.name(),
+        layout: variant.layout().name(),
+        bounces: effort.bounces,
+        cutoff: effort.weight_cutoff,
+        interpolate: effort.interpolate,
         machine: machine.name.clone(),
         cores: machine.config.cores,
         arbiter: machine.config.bus.arbiter.name(),

@@ -8,13 +8,13 @@ use emu::code::Code;
 use emu::machine::{Method, RunOutcome};
 use kernels::twin::samples::Samples;
 use scenes::metrics;
-use scenes::model::{Scene, View};
+use scenes::model::Scene;
 use scenes::reference::{Reference, SearchMethod};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::pooled::{PictureFigures, ShiftFigures, pooled};
-use super::{BOUNCES, MeasuredVariant, RayErrors, Variant, similarity};
+use super::{MeasuredVariant, PictureNumber, RayErrors, Variant, VariantStudy, similarity};
 use crate::drawing::{self, colour_words};
 use crate::energy::EnergyResult;
 use crate::failure::Failure;
@@ -70,39 +70,36 @@ pub struct AccuracyStudy {
 /// # Errors
 /// Files that cannot be read, settings out of their ranges. A scene that does not fit a variant, or a trap, is a result.
 pub fn run(
-    scenes: &[String],
-    variants: &[Variant],
-    shifts: &[[f64; 2]],
+    points: &VariantStudy,
     has_times: bool,
     (contents, store): (&Contents, Option<&RecordingStore>),
     progress: &mut dyn FnMut(u64),
 ) -> Result<AccuracyStudy, Failure> {
     let mut study = AccuracyStudy::default();
     let store = store.filter(|_| !has_times);
-    let Some(first) = variants.first() else { return Ok(study) };
-    for scene in scenes {
-        let known = contents.scene(&first.settings(scene, [0.0; 2]))?;
-        let mut figures: Vec<Vec<ShiftFigures>> = vec![Vec::new(); variants.len()];
-        let mut reasons: Vec<Option<String>> = vec![None; variants.len()];
-        for &shift in shifts {
+    let count = points.variants();
+    for scene in 0..points.scenes() {
+        let variants = (0..count).map(|variant| points.variant(scene, variant, contents));
+        let variants = variants.collect::<Result<Vec<Variant>, _>>()?;
+        let known = contents.scene(&variants[0].settings)?;
+        let mut figures: Vec<Vec<ShiftFigures>> = vec![Vec::new(); count];
+        let mut reasons: Vec<Option<String>> = vec![None; count];
+        for shift in 0..points.shifts() {
             // A variant without a picture at one shift is refused, and needs no others.
-            let fitting: Vec<usize> = (0..variants.len()).filter(|&at| reasons[at].is_none()).collect();
-            progress((variants.len() - fitting.len()) as u64);
-            let mut points = Vec::with_capacity(fitting.len());
-            for &at in &fitting {
-                let mut settings = variants[at].settings(scene, shift);
-                contents.resolve(&mut settings)?;
-                points.push(settings);
-            }
+            let fitting: Vec<usize> = (0..count).filter(|&at| reasons[at].is_none()).collect();
+            progress((count - fitting.len()) as u64);
+            let settings = fitting.iter().map(|&variant| PictureNumber { scene, variant, shift });
+            let settings = settings.map(|number| points.settings(number, contents));
+            let settings = settings.collect::<Result<Vec<Settings>, _>>()?;
             let groups = match has_times {
-                true => (0..points.len()).map(|point| vec![point]).collect(),
-                false => group::by_recording(&points),
+                true => (0..settings.len()).map(|point| vec![point]).collect(),
+                false => group::by_recording(&settings),
             };
             let mut reference = None;
             for group in groups {
-                let settings: Vec<&Settings> = group.iter().map(|&point| &points[point]).collect();
+                let alike: Vec<&Settings> = group.iter().map(|&point| &settings[point]).collect();
                 let measured =
-                    study.measure(&settings, (contents, store), has_times, (&known.loaded.scene, &mut reference))?;
+                    study.measure(&alike, (contents, store), has_times, (&known.loaded.scene, &mut reference))?;
                 for (&point, figure) in group.iter().zip(measured) {
                     match figure {
                         Ok(figure) => figures[fitting[point]].push(figure),
@@ -136,7 +133,7 @@ impl AccuracyStudy {
     ) -> Result<Vec<Result<ShiftFigures, String>>, Failure> {
         // Draw the points, those of one recording together.
         let start = Instant::now();
-        let (job, drawn) = group::draw(points, contents, store)?;
+        let (job, drawn) = group::draw(points, contents, store, &mut |_| {})?;
         let host = has_times.then(|| start.elapsed());
         let mut drawn = match drawn {
             Ok(drawn) => drawn,
@@ -148,10 +145,7 @@ impl AccuracyStudy {
         self.recordings += drawn.recordings;
         let reference = match reference {
             Some(known) => known,
-            None => {
-                let view = View { bounces: BOUNCES, ..job.view.clone() };
-                reference.insert(Reference::new(scene, &view, SearchMethod::Hierarchy)?)
-            }
+            None => reference.insert(Reference::new(scene, &job.reference_view(), SearchMethod::Hierarchy)?),
         };
         // The scene as it lies in memory, for double precision over the vertices that the format could hold.
         drawn.image.bytes = drawn.load.memory.octets().to_vec();
@@ -234,8 +228,7 @@ fn picture_figures(
     let picture = drawing::picture(image, words, (crop.width, crop.height));
     let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
     let stored = image.stored_scene(&job.scene).expect("an image that was built can be read");
-    let view = View { bounces: BOUNCES, ..job.view.clone() };
-    let stored = Reference::framed(&stored, job.scene.bounds(), &view, SearchMethod::Hierarchy)?;
+    let stored = Reference::framed(&stored, job.scene.bounds(), &job.reference_view(), SearchMethod::Hierarchy)?;
     let [exact, stored] = [reference, &stored].map(|reference| drawing::part(reference, &samples, crop));
     let error = |reference| metrics::compare(&picture, reference).expect("both have the size of the drawn part");
     Ok(PictureFigures {

@@ -14,6 +14,9 @@ use toml::Value;
 use crate::job::Job;
 use crate::machine::arbiter_note;
 use crate::numeral::grouped;
+use crate::settings::key;
+use crate::settings::named::NamedChoice;
+use crate::sweep::study::Assignments;
 
 /// Part of the machine or of the picture that a change is about. Two changes of one part cannot be made together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,15 +81,20 @@ pub enum PictureOption {
 }
 
 impl PictureOption {
+    /// Name of the option and its value.
+    fn parts(self) -> (&'static str, String) {
+        match self {
+            PictureOption::Layout(layout) => ("layout", layout.name().to_owned()),
+            PictureOption::Profile(set) => ("profile", set.name().to_owned()),
+            PictureOption::KdDepth(depth) => ("kd-depth", NamedChoice::name(&depth)),
+            PictureOption::KdBuild(method) => ("kd-build", method.name().to_owned()),
+        }
+    }
+
     /// Words of a command line.
     pub fn words(self) -> String {
-        match self {
-            PictureOption::Layout(layout) => format!("--layout {}", layout.name()),
-            PictureOption::Profile(set) => format!("--profile {}", set.name()),
-            PictureOption::KdDepth(Depth::Levels(levels)) => format!("--kd-depth {levels}"),
-            PictureOption::KdDepth(Depth::Auto) => "--kd-depth auto".to_owned(),
-            PictureOption::KdBuild(method) => format!("--kd-build {}", method.name()),
-        }
+        let (option, value) = self.parts();
+        format!("--{option} {value}")
     }
 
     /// Changes a job as the option would.
@@ -139,6 +147,18 @@ impl Change {
     /// Lines of a machine file: `bus.octets_per_beat = 8`.
     pub fn lines(&self) -> Vec<String> {
         self.keys.iter().map(|(key, value)| format!("{key} = {value}")).collect()
+    }
+
+    /// Keys of the settings with their new values.
+    pub fn assignments(&self) -> Assignments {
+        let of_machine = |(key, value): &(String, Value)| {
+            (format!("machine.{key}"), serde_json::to_value(value).expect("keys of a machine hold no dates"))
+        };
+        let of_option = |option: &PictureOption| {
+            let (option, value) = option.parts();
+            (key::resolve(option).expect("an option sets a key"), value.into())
+        };
+        self.keys.iter().map(of_machine).chain(self.options.iter().map(of_option)).collect()
     }
 
     /// The machine with the keys changed.

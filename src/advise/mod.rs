@@ -11,6 +11,7 @@ mod verdict;
 use emu::code::Code;
 use emu::machine::{Config, RunOutcome};
 use isa::{Class, Counts};
+use messages::Report;
 use scenes::image::MemoryImage;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -28,6 +29,7 @@ use crate::load::Load;
 use crate::settings::Settings;
 use crate::sweep::frames::{FrameResult, KeptRecordings, PictureFrames};
 use crate::sweep::recordings::RecordingStore;
+use crate::sweep::study::{Assignments, Study};
 
 /// Version of [`AdviceResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-advise-1";
@@ -90,6 +92,9 @@ pub struct Advice {
     pub price: Price,
     /// True where the picture has other bits.
     pub changes_picture: bool,
+    /// Keys of the settings with their new values.
+    #[serde(skip)]
+    pub set: Assignments,
 }
 
 /// Time of a frame and what sets its pace.
@@ -127,6 +132,20 @@ pub struct RefusedChange {
     pub change: String,
     /// Reason for which there is no prediction.
     pub reason: String,
+    /// Keys of the settings with their new values, of a change that was tried.
+    #[serde(skip)]
+    pub set: Option<Assignments>,
+}
+
+impl AdviceResult {
+    /// The study of the machine as it is and of all changes and pairs that were tried, in the order of the result; those without a prediction come
+    /// last. `base` are the settings of the machine as it is.
+    pub fn study(&self, name: &str, base: &Settings) -> Study {
+        let found = self.advice.iter().chain(&self.pairs).map(|advice| &advice.set);
+        let refused = self.refused.iter().filter_map(|refused| refused.set.as_ref());
+        let tried = std::iter::once(Assignments::new()).chain(found.chain(refused).cloned());
+        Study { name: name.to_owned(), base: base.value(), factors: vec![tried.collect()] }
+    }
 }
 
 impl Prediction {
@@ -223,7 +242,10 @@ pub fn advise(
         octets: picture.load.memory.size(),
         colours: picture.colours(&now),
     };
-    let mut found = Findings { singles: Vec::new(), refused: left.into_iter().map(refused).collect() };
+    let mut found = Findings {
+        singles: Vec::new(),
+        refused: left.into_iter().map(|(change, reason)| refused(&change, reason, None)).collect(),
+    };
     // Those that differ in time only share a recording.
     try_on(&mut picture, &base, &on_machine, &mut found, &mut step)?;
     for change in &of_picture {
@@ -272,8 +294,13 @@ struct Findings {
     refused: Vec<RefusedChange>,
 }
 
-fn refused((change, reason): (Change, String)) -> RefusedChange {
-    RefusedChange { change: change.words, reason }
+fn refused(change: &Change, reason: String, set: Option<Assignments>) -> RefusedChange {
+    RefusedChange { change: change.words.clone(), reason, set }
+}
+
+/// A change that was tried, and is refused.
+fn failed(change: &Change, report: &Report) -> RefusedChange {
+    refused(change, change::reason(report), Some(change.assignments()))
 }
 
 /// Octets and clocks of a frame of the machine as it is.
@@ -291,7 +318,7 @@ impl Findings {
     fn take(&mut self, base: &Baseline, change: &Change, machine: &Config, picture: &BuiltPicture, frame: FrameResult) {
         match frame {
             Ok(frame) => self.singles.push((change.clone(), advice(base, change, machine, picture, &frame))),
-            Err(failure) => self.refused.push(refused((change.clone(), change::reason(&failure.report())))),
+            Err(failure) => self.refused.push(failed(change, &failure.report())),
         }
     }
 }
@@ -303,7 +330,7 @@ fn try_all(base: &Baseline, changes: &[Change], found: &mut Findings, step: &mut
         Ok(built) => built,
         // A layout or a word that the scene does not fit is a result; a closed pipe is not.
         Err(Failure::Message { report, .. }) => {
-            found.refused.extend(changes.iter().map(|change| refused((change.clone(), change::reason(&report)))));
+            found.refused.extend(changes.iter().map(|change| failed(change, &report)));
             return Ok(());
         }
         Err(failure) => return Err(failure),
@@ -348,6 +375,7 @@ fn advice(base: &Baseline, change: &Change, machine: &Config, picture: &BuiltPic
         price: Price::new(base.job, machine, change, picture.load.memory.size() as i64 - base.octets as i64),
         predicted,
         changes_picture,
+        set: change.assignments(),
     }
 }
 

@@ -12,6 +12,7 @@ use crate::job::Job;
 use crate::settings::{
     EffortSettings, FileSettings, FormatSettings, KernelSettings, ResultSettings, SceneSettings, Settings, ViewSettings,
 };
+use crate::sweep::contents::Contents;
 
 /// The options that decide a picture.
 #[derive(Args, Clone, Debug)]
@@ -99,7 +100,18 @@ impl JobArguments {
     /// # Errors
     /// See [`Settings::job`].
     pub fn job_of(&self, settings: &Settings) -> Result<Job, Failure> {
-        let mut job = settings.job()?;
+        self.with_files(settings.job()?)
+    }
+
+    /// The job of settings that come from these options, with contents that are not read again.
+    ///
+    /// # Errors
+    /// See [`Settings::job`].
+    pub fn job_by(&self, settings: &Settings, contents: &Contents) -> Result<Job, Failure> {
+        self.with_files(contents.job(settings)?)
+    }
+
+    fn with_files(&self, mut job: Job) -> Result<Job, Failure> {
         let machine = &self.machine.keys;
         job.files.push(PathBuf::from(&machine.machine));
         job.files.extend(machine.sets.settings.settings.clone());

@@ -1,8 +1,7 @@
 //! `lancer accuracy`: run time against error, in many arithmetics and on several machines.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Arc;
 
 use clap::Args;
 use emu::engine::EngineKind;
@@ -16,9 +15,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::invocation::{CommandSettings, scene_hashes};
+use super::sweep;
 use crate::accuracy::{
     self, ChartAxes, Choices, CostAxis, ErrorAxis, MeasuredVariant, OverScenes, OverallVariant, PLACES, RefusedVariant,
-    StudyBase,
+    VariantMachine,
 };
 use crate::arguments::{
     self, ArithmeticArguments, ChartArguments, EffortArguments, FormatArguments, JobArguments, KernelArguments,
@@ -28,8 +28,9 @@ use crate::arguments::{
 use crate::failure::{Exit, Failure};
 use crate::numeral::numbers;
 use crate::result::WithSettings;
-use crate::settings::{MachineSettings, key};
+use crate::settings::{MachineSettings, SceneSettings, Settings, key};
 use crate::sweep::contents::Contents;
+use crate::sweep::study_text::check_named;
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -42,7 +43,8 @@ Examples:
   lancer accuracy cornell terrain --words 32,24,20 --size 160x120 --svg accuracy.svg --pdf accuracy.pdf
   lancer accuracy slabs --profiles ray --roundings RND,TRN,RND_CONV --bounces 5 --cutoffs 0 --json
   lancer accuracy cornell --profiles ray --layouts packed,wide --machine report,wide32 --shifts 8 --axis seconds --error off
-  lancer accuracy cornell slabs terrain --axis nj --error others --over worst --svg all.svg";
+  lancer accuracy cornell slabs terrain --axis nj --error others --over worst --svg all.svg
+  lancer accuracy terrain --shifts 8 --study terrain.toml && lancer sweep terrain.toml";
 
 /// Draws scenes in many arithmetics and sets cost against error.
 ///
@@ -124,6 +126,10 @@ pub struct AccuracyArguments {
     over: OverScenes,
     #[command(flatten)]
     chart: ChartArguments,
+    /// Writes all pictures as a study that `lancer sweep` runs, a row each, on one machine or on many, and draws nothing (`-` for standard
+    /// output).
+    #[arg(long, value_name = "FILE", help_heading = "Charts and data", conflicts_with_all = DRAWN)]
+    study: Option<PathBuf>,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
@@ -137,6 +143,9 @@ pub struct AccuracyArguments {
 
 /// The engine is chosen.
 const AUTO: &str = crate::settings::named::AUTO;
+
+/// Options of what is measured and how it is shown, none of which a study has.
+const DRAWN: [&str; 10] = ["json", "csv", "svg", "pdf", "energy", "timing", "axis", "error", "over", "folder"];
 
 /// Size of pictures where none is asked for: there are dozens of them.
 const SIZE: &str = "64x48";
@@ -230,8 +239,8 @@ pub(super) struct AccuracyResults {
 }
 
 impl AccuracyArguments {
-    /// Settings that all variants share, on each machine.
-    fn bases(&self) -> Result<Vec<Arc<StudyBase>>, Failure> {
+    /// Settings that all variants share, and the machines.
+    fn shared(&self) -> Result<(Settings, Vec<VariantMachine>), Failure> {
         for set in &self.sets.sets {
             let key = key::resolve(set.split('=').next().unwrap_or_default())?;
             if let Some((_, option)) = VARIED.iter().find(|(varied, _)| key == *varied) {
@@ -251,7 +260,7 @@ impl AccuracyArguments {
         let numbers_of_cores = or_own(self.cores.iter().flatten().copied());
         let arbiters = or_own(self.arbiters.iter().copied());
         let machines: Vec<&String> = self.machines.iter().flatten().collect();
-        let mut bases = Vec::new();
+        let (mut base, mut variants) = (Settings::default(), Vec::new());
         for &machine in &machines {
             for &cores in &numbers_of_cores {
                 for &arbiter in &arbiters {
@@ -263,11 +272,12 @@ impl AccuracyArguments {
                         arbiter.filter(|_| arbiters.len() > 1).map(|arbiter| arbiter.name().to_owned()),
                     ];
                     let words = words.into_iter().flatten().collect::<Vec<_>>().join(" ");
-                    bases.push(Arc::new(StudyBase { settings, words }));
+                    variants.push(VariantMachine { machine: settings.machine.clone(), words });
+                    base = settings;
                 }
             }
         }
-        Ok(bases)
+        Ok((base, variants))
     }
 
     /// The options of a picture, on one machine.
@@ -303,14 +313,19 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    let targets = arguments.chart.targets(&[])?;
+    let study: Vec<&Path> = arguments.study.as_deref().into_iter().collect();
+    let targets = arguments.chart.targets(&study)?;
     let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
     let sources = arguments.sources();
     files::check_spared(targets.iter().map(PathBuf::as_path), sources.iter().filter(|path| path.exists()))
         .map_err(Failure::usage)?;
     let has_times = arguments.timing || arguments.axis == CostAxis::Host;
+    let (base, machines) = arguments.shared()?;
+    base.check()?;
     let choice = Choices {
-        bases: arguments.bases()?,
+        base,
+        scenes: arguments.scenes.clone(),
+        machines,
         profiles: arguments.profiles.clone(),
         words: arguments.words.concat(),
         roundings: arguments.roundings.clone(),
@@ -318,23 +333,31 @@ pub(super) fn execute(
         bounces: arguments.bounces.concat(),
         cutoffs: arguments.cutoffs.clone(),
         interpolate: arguments.interpolate.iter().map(|agreement| agreement.0).collect(),
+        shifts: PLACES[..usize::from(arguments.shifts)].to_vec(),
     };
-    let variants = choice.variants().ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
+    if arguments.study.is_some() {
+        check_named(&choice.base, arguments.scenes.iter().map(String::as_str))?;
+    }
+    let name = sweep::study_name(arguments.study.as_deref(), "accuracy");
+    let variants = choice.study(&name).ok_or_else(|| Failure::usage(Diagnostic::error("an option has no value")))?;
     // Read the scenes, which the study then knows.
     let contents = Contents::default();
     let mut read = Vec::new();
     for name in &arguments.scenes {
-        let scene = contents.scene(&variants[0].settings(name, [0.0; 2]))?;
+        let scene = SceneSettings { name: name.clone(), ..choice.base.scene.clone() };
+        let scene = contents.scene(&Settings { scene, ..choice.base.clone() })?;
         files::check_spared(targets.iter().map(PathBuf::as_path), &scene.loaded.files).map_err(Failure::usage)?;
         terminal.show(&scene.loaded.warnings);
         read.push(scene.loaded.scene.clone());
     }
+    if let Some(path) = &arguments.study {
+        return sweep::write_study(&variants.study, "accuracy", path, &contents, terminal);
+    }
     // Measure, and rank by the axes that are asked for.
-    let shifts = &PLACES[..usize::from(arguments.shifts)];
-    let bar = terminal.progress("pictures", (read.len() * variants.len() * shifts.len()) as u64);
+    let bar = terminal.progress("pictures", variants.study.count());
     let store = arguments.recordings.store()?;
     let known = (&contents, store.as_ref());
-    let study = accuracy::run(&arguments.scenes, &variants, shifts, has_times, known, &mut |done| bar.inc(done));
+    let study = accuracy::run(&variants, has_times, known, &mut |done| bar.inc(done));
     bar.finish_and_clear();
     tell_notes(store.as_ref(), terminal);
     let mut study = study?;
@@ -348,8 +371,8 @@ pub(super) fn execute(
         0 | 1 => Vec::new(),
         scenes => accuracy::overall(&study.measured, scenes, arguments.axis, arguments.error),
     };
-    let base = &variants[0].base.settings.view;
-    let size = base.size.map_or(read[0].size, <(u32, u32)>::from);
+    let view = &choice.base.view;
+    let size = view.size.map_or(read[0].size, <(u32, u32)>::from);
     // Write and print.
     let axes = ChartAxes { cost: arguments.axis, error: arguments.error, over: arguments.over };
     let figure = || accuracy::figure(&study, &overall, size, axes);
@@ -364,8 +387,8 @@ pub(super) fn execute(
                 schema: SCHEMA,
                 width: size.0,
                 height: size.1,
-                shift: base.shift,
-                shifts: shifts.iter().map(|place| [0, 1].map(|k| base.shift[k] + place[k])).collect(),
+                shift: view.shift,
+                shifts: choice.shifts.iter().map(|place| [0, 1].map(|k| view.shift[k] + place[k])).collect(),
                 cost_axis: arguments.axis,
                 error_axis: arguments.error,
                 recordings: study.recordings,

@@ -1,14 +1,16 @@
 //! `lancer advise`: what limits a machine, and what would help.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::sweep;
 use crate::advise;
 use crate::arguments::{JobArguments, RecordingArguments, tell_notes};
 use crate::failure::{Exit, Failure};
 use crate::result::WithSettings;
 use crate::settings::Settings;
+use crate::sweep::study_text::check_named;
 use crate::terminal::Terminal;
 use crate::{files, result};
 
@@ -17,6 +19,7 @@ Examples:
   lancer advise cornell --size 160x120
   lancer advise terrain --size 160x120 --machine wide32 --all
   lancer advise cornell --size 80x60 --machine mine.toml --json > advice.json
+  lancer advise cornell --size 80x60 --study tried.toml && lancer sweep tried.toml
 
 Keys are written as they stand at the top of a machine's file: bus.octets_per_beat = 8. Each time is that of a
 run of the changed machine on this very picture. Changes marked with + do not come of the recording of the
@@ -40,6 +43,10 @@ pub struct AdviseArguments {
     /// Writes changes and pairs as comma-separated values.
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     csv: Option<PathBuf>,
+    /// Writes the machine as it is and all changes and pairs that were tried as a study that `lancer sweep` runs, a row each. Pairs depend on what
+    /// the changes bring, so everything runs here as well.
+    #[arg(long, value_name = "FILE", help_heading = "Results")]
+    study: Option<PathBuf>,
     /// Prints the results as JSON instead of tables.
     #[arg(long, help_heading = "Results")]
     json: bool,
@@ -47,12 +54,16 @@ pub struct AdviseArguments {
 
 /// Runs all changes, writes and prints.
 pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
-    let is_taken = files::takes_output(arguments.csv.as_deref(), arguments.json).map_err(Failure::usage)?;
-    if let Some(path) = &arguments.csv {
-        files::check_target(path)?;
+    let targets: Vec<&Path> = [&arguments.csv, &arguments.study].into_iter().flatten().map(PathBuf::as_path).collect();
+    let is_taken = files::takes_output(targets.iter().copied(), arguments.json).map_err(Failure::usage)?;
+    files::check_distinct(targets.iter().copied()).map_err(Failure::usage)?;
+    targets.iter().try_for_each(|path| files::check_target(path))?;
+    let settings = arguments.job.settings()?;
+    if arguments.study.is_some() {
+        check_named(&settings, [])?;
     }
-    let job = arguments.job.job()?;
-    files::check_spared(arguments.csv.as_deref(), &job.files).map_err(Failure::usage)?;
+    let job = arguments.job.job_of(&settings)?;
+    files::check_spared(targets, &job.files).map_err(Failure::usage)?;
     terminal.show(&job.warnings);
     let bar = terminal.progress("machines", 1);
     let store = arguments.recordings.store()?;
@@ -63,7 +74,12 @@ pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> R
     bar.finish_and_clear();
     tell_notes(store.as_ref(), terminal);
     let advice = advice?;
-    let files: Vec<_> = arguments.csv.as_ref().map(|path| (path, advise::csv(&advice))).into_iter().collect();
+    let mut files: Vec<(&Path, String)> = Vec::new();
+    files.extend(arguments.csv.as_deref().map(|path| (path, advise::csv(&advice))));
+    if let Some(path) = arguments.study.as_deref() {
+        let study = advice.study(&sweep::study_name(Some(path), "advise"), &settings);
+        files.push((path, sweep::study_text(&study, "advise")?));
+    }
     files::write_all(&files)?;
     match (is_taken, arguments.json) {
         (true, _) => {}

@@ -4,25 +4,27 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use emu::engine::EngineKind;
-use emu::machine::Config;
 use emu::machine::arbiter::ArbiterKind;
 use emu::machine::config::MOST_CORES;
+use messages::{Diagnostic, Report};
 use scenes::layout::Layout;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::sweep;
 use crate::arguments::{
     self, ChartArguments, EffortArguments, JobArguments, KernelArguments, MachineArguments, MachineKeyArguments,
     NumberArguments, RecordingArguments, SetArguments, ViewArguments, tell_notes,
 };
 use crate::cores::{self, CoresResult};
 use crate::failure::{Exit, Failure};
-use crate::job::{Job, result_name};
-use crate::load::{ANNEX, Load};
+use crate::load::{ANNEX, ANNEX_PIXELS};
 use crate::numeral::numbers;
 use crate::result::WithSettings;
 use crate::settings::{MachineSettings, Settings};
-use crate::sweep::frames::KeptRecordings;
+use crate::sweep::contents::Contents;
+use crate::sweep::study::Study;
+use crate::sweep::study_text::check_named;
 use crate::terminal::Terminal;
 use crate::{files, machine, result};
 
@@ -32,6 +34,7 @@ Examples:
   lancer cores cornell --size 80x60 --cores 1..8,16 --svg cores.svg
   lancer cores cornell --size 80x60 --machine report --machine node_cache --csv cores.csv
   lancer cores annex --arbiter fixed-priority --arbiter tdma --json
+  lancer cores cornell --size 80x60 --study cores.toml && lancer sweep cores.toml
 
 The report divides 203,000 clocks of computing by 49,600 of transfers and gets 4.09 cores. A core that
 computes or waits, never both, fills the bus at (C + M) / M = 5.09. Pixels are computed once and
@@ -77,6 +80,10 @@ pub struct CoresArguments {
     roofline: Option<PathBuf>,
     #[command(flatten)]
     chart: ChartArguments,
+    /// Writes all machines with all numbers of cores as a study that `lancer sweep` runs, a row each, on one machine or on many, and draws
+    /// nothing (`-` for standard output).
+    #[arg(long, value_name = "FILE", help_heading = "Charts and data", conflicts_with_all = DRAWN)]
+    study: Option<PathBuf>,
     #[command(flatten)]
     view: ViewArguments,
     #[command(flatten)]
@@ -88,6 +95,9 @@ pub struct CoresArguments {
     #[command(flatten)]
     recordings: RecordingArguments,
 }
+
+/// Options of what is measured and how it is shown, none of which a study has.
+const DRAWN: [&str; 7] = ["json", "csv", "svg", "pdf", "roofline", "energy", "folder"];
 
 /// Settings of a measurement: a picture's, with all machines and all numbers of cores.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -111,9 +121,15 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
     let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
     let machines = arguments.machines.iter().flatten().map(PathBuf::from);
     files::check_spared(targets.iter().map(PathBuf::as_path), machines).map_err(Failure::usage)?;
-    let (scaling, settings) = match arguments.scene == ANNEX && !Path::new(ANNEX).exists() {
+    let is_annex = arguments.scene == ANNEX && !Path::new(ANNEX).exists();
+    if let Some(path) = arguments.study.as_deref().filter(|_| !is_annex) {
+        let contents = Contents::default();
+        let points = points(arguments, &targets, &contents, terminal)?;
+        return sweep::write_study(&points.study, "cores", path, &contents, terminal);
+    }
+    let (scaling, settings) = match is_annex {
         true => annex(arguments, terminal)?,
-        false => picture(arguments, terminal)?,
+        false => picture(arguments, &targets, terminal)?,
     };
     let mut files = arguments.chart.files(|| cores::figure(&scaling), || cores::csv(&scaling));
     files.extend(arguments.roofline.as_deref().map(|path| arguments.chart.file(path, &cores::roofline(&scaling))));
@@ -129,66 +145,101 @@ pub(super) fn execute(arguments: &CoresArguments, terminal: &mut Terminal) -> Re
 
 /// Files that will be written.
 fn targets(arguments: &CoresArguments) -> Result<Vec<PathBuf>, Failure> {
-    let roofline: Vec<&Path> = arguments.roofline.as_deref().into_iter().collect();
-    arguments.chart.targets(&roofline)
+    let more: Vec<&Path> =
+        [&arguments.roofline, &arguments.study].into_iter().flatten().map(PathBuf::as_path).collect();
+    arguments.chart.targets(&more)
 }
 
 /// A machine with each of the arbiters that are asked for, or with its own.
-fn with_arbiters(arguments: &CoresArguments, name: &str, config: &Config) -> Vec<(String, Config)> {
+fn with_arbiters(arguments: &CoresArguments, machine: &MachineSettings) -> Vec<MachineSettings> {
     if arguments.arbiters.is_empty() {
-        return vec![(name.to_owned(), config.clone())];
+        return vec![machine.clone()];
     }
     let with = |&arbiter: &ArbiterKind| {
-        let mut config = config.clone();
-        config.bus.arbiter = arbiter;
-        (name.to_owned(), config)
+        let mut machine = machine.clone();
+        machine.config.bus.arbiter = arbiter;
+        machine
     };
     arguments.arbiters.iter().map(with).collect()
 }
 
 fn annex(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult, CoresSettings), Failure> {
+    if arguments.study.is_some() {
+        let message = Diagnostic::error("the report's estimate is no picture, and a study has pictures");
+        return Err(Failure::usage(message.hint("name a scene in the place of `annex`")));
+    }
     let mut machines = Vec::new();
     for name in arguments.machines.iter().flatten() {
         let mut settings = job(arguments, name).settings()?;
         settings.machine.config.main.traffic = false;
-        machines.extend(with_arbiters(arguments, &settings.machine.name, &settings.machine.config));
+        machines.extend(with_arbiters(arguments, &settings.machine));
     }
-    let scaling = measure(ANNEX, &Load::annex()?, &machines, arguments, (None, terminal))?;
+    let bar = terminal.progress("pixels", ANNEX_PIXELS.into());
+    let scaling = cores::estimate(&machines, &cores_of(arguments), &mut |done| bar.set_position(done));
+    bar.finish_and_clear();
     let mut job = Settings::default();
     ANNEX.clone_into(&mut job.scene.name);
-    Ok((scaling, settings(arguments, job, machines)))
+    Ok((scaling?, settings(arguments, job, machines)))
 }
 
-fn picture(arguments: &CoresArguments, terminal: &Terminal) -> Result<(CoresResult, CoresSettings), Failure> {
-    let jobs = arguments.machines.iter().flatten().map(|machine| job(arguments, machine).job());
-    let jobs = jobs.collect::<Result<Vec<Job>, Failure>>()?;
-    let targets = targets(arguments)?;
-    files::check_spared(targets.iter().map(PathBuf::as_path), jobs.iter().flat_map(|job| &job.files))
-        .map_err(Failure::usage)?;
-    terminal.show(&jobs[0].warnings);
-    let store = arguments.recordings.store()?;
-    let (mut whole, mut all): (Option<CoresResult>, Vec<(String, Config)>) = (None, Vec::new());
-    // Machines with words of the same length share the picture in memory and the programs.
-    for alike in jobs.chunk_by(|one, other| one.machine.arithmetic.word == other.machine.arithmetic.word) {
-        let (load, _) = Load::picture(&alike[0])?;
-        terminal.show(&load.build.warnings);
-        let machines = alike.iter().flat_map(|job| with_arbiters(arguments, &job.machine_name, &job.machine));
-        let machines: Vec<(String, Config)> = machines.collect();
-        let picture = Settings::of(&alike[0]);
-        let kept = store.as_ref().map(|store| KeptRecordings { store, settings: &picture });
-        let scaling = measure(&result_name(&alike[0].scene), &load, &machines, arguments, (kept, terminal))?;
-        all.extend(machines);
-        match &mut whole {
-            Some(whole) => whole.machines.extend(scaling.machines),
-            None => whole = Some(scaling),
-        }
+/// A study of a picture with its machines, and its settings on the first of them.
+struct CorePoints {
+    study: Study,
+    machines: Vec<MachineSettings>,
+    settings: Settings,
+}
+
+/// The points that the options ask for. Reads the scene, and refuses results in the place of what was read.
+fn points(
+    arguments: &CoresArguments,
+    targets: &[PathBuf],
+    contents: &Contents,
+    terminal: &Terminal,
+) -> Result<CorePoints, Failure> {
+    let jobs: Vec<JobArguments> = arguments.machines.iter().flatten().map(|machine| job(arguments, machine)).collect();
+    let all = jobs.iter().map(JobArguments::settings).collect::<Result<Vec<Settings>, _>>()?;
+    let (Some(first), Some(base)) = (jobs.first(), all.first()) else {
+        return Err(Diagnostic::error("no machine was named").into());
+    };
+    if arguments.study.is_some() {
+        check_named(base, [])?;
     }
-    let whole = whole.ok_or_else(|| messages::Diagnostic::error("no machine was named"))?;
-    Ok((whole, settings(arguments, Settings::of(&jobs[0]), all)))
+    let job = first.job_by(base, contents)?;
+    files::check_spared(targets.iter().map(PathBuf::as_path), &job.files).map_err(Failure::usage)?;
+    terminal.show(&job.warnings);
+    let machines: Vec<MachineSettings> =
+        all.iter().flat_map(|settings| with_arbiters(arguments, &settings.machine)).collect();
+    let name = sweep::study_name(arguments.study.as_deref(), "cores");
+    let study = cores::study(&name, base, &machines, &cores_of(arguments));
+    Ok(CorePoints { study, machines, settings: Settings::of(&job) })
 }
 
-fn settings(arguments: &CoresArguments, mut job: Settings, machines: Vec<(String, Config)>) -> CoresSettings {
-    let machines: Vec<_> = machines.into_iter().map(|(name, config)| MachineSettings { name, config }).collect();
+/// Measures the points, and shows how far the computing is.
+fn picture(
+    arguments: &CoresArguments,
+    targets: &[PathBuf],
+    terminal: &Terminal,
+) -> Result<(CoresResult, CoresSettings), Failure> {
+    let contents = Contents::default();
+    let CorePoints { study, machines, settings: job } = points(arguments, targets, &contents, terminal)?;
+    let store = arguments.recordings.store()?;
+    let bar = terminal.progress("pixels", job.pixels());
+    let mut shown: Vec<Report> = Vec::new();
+    let mut warn = |warnings: &Report| {
+        // Machines that compute otherwise have programs of the same kernels.
+        if !shown.contains(warnings) {
+            bar.suspend(|| terminal.show(warnings));
+            shown.push(warnings.clone());
+        }
+    };
+    let progress = &mut |done| bar.set_position(done);
+    let scaling = cores::drawn(&study, (&contents, store.as_ref()), &mut warn, progress);
+    bar.finish_and_clear();
+    tell_notes(store.as_ref(), terminal);
+    Ok((scaling?, settings(arguments, job, machines)))
+}
+
+fn settings(arguments: &CoresArguments, mut job: Settings, machines: Vec<MachineSettings>) -> CoresSettings {
     job.machine.clone_from(&machines[0]);
     job.tree.resolve(job.kernels.profile);
     CoresSettings { job, cores: cores_of(arguments), machines }
@@ -207,20 +258,4 @@ fn job(arguments: &CoresArguments, machine: &str) -> JobArguments {
     let keys = MachineKeyArguments { machine: machine.to_owned(), cores: None, arbiter: None, sets };
     let machine = MachineArguments { keys, layout, engine: EngineKind::default() };
     JobArguments { scene, mesh, view, kernels, machine, numbers, effort }
-}
-
-/// Measures, with the recordings that are kept, and a bar that shows how far the computing is.
-fn measure(
-    scene: &str,
-    load: &Load,
-    machines: &[(String, Config)],
-    arguments: &CoresArguments,
-    (kept, terminal): (Option<KeptRecordings>, &Terminal),
-) -> Result<CoresResult, Failure> {
-    let bar = terminal.progress("pixels", u64::from(load.build.crop.width) * u64::from(load.build.crop.height));
-    let progress = &mut |done| bar.set_position(done);
-    let scaling = cores::measure(scene, load, machines, &cores_of(arguments), kept, progress);
-    bar.finish_and_clear();
-    tell_notes(kept.map(|kept| kept.store), terminal);
-    scaling
 }

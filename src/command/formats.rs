@@ -1,7 +1,7 @@
 //! `lancer formats`: the fewest bits with which pictures keep an error.
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use kernels::KernelSet;
@@ -11,12 +11,15 @@ use scenes::layout::Layout;
 use scenes::model::View;
 
 use super::invocation::{CommandSettings, scene_hashes};
+use super::sweep;
 use crate::arguments::{self, ArithmeticArguments, MachineKeyArguments, Size, layout};
 use crate::failure::{Exit, Failure};
 use crate::formats::{self, ChoiceFigures, DemandedError, FormatsResult, NamedScenes, SearchEffort, TrialFigures};
 use crate::job::Job;
 use crate::numeral::short;
 use crate::result::WithSettings;
+use crate::settings::Settings;
+use crate::sweep::study_text::check_named;
 use crate::table::{row, table};
 use crate::terminal::Terminal;
 use crate::{files, input, result};
@@ -26,6 +29,7 @@ Examples:
   lancer formats cornell --psnr 60
   lancer formats cornell slabs terrain --off 0 -o short.toml
   lancer render cornell --settings short.toml
+  lancer formats slabs --off 0 --study words.toml && lancer sweep words.toml
   lancer formats house.dsc --largest 1/255 --check barn.dsc --size 80x60 --json
 
 Exit codes: 0 done, 1 errors in the input, 2 usage, 4 the longest word does not keep the demand.";
@@ -80,6 +84,10 @@ pub struct FormatsArguments {
     /// Writes the formats that were found as a settings file.
     #[arg(short, long, value_name = "FILE.toml")]
     output: Option<PathBuf>,
+    /// Writes the formats that were found and the words beside them as a study that `lancer sweep` runs, a row for each scene and place of the
+    /// samples. The search is none: its next picture depends on the last.
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
     /// Prints the results as JSON.
     #[arg(long)]
     json: bool,
@@ -157,9 +165,13 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
-    let is_taken = files::takes_output(arguments.output.as_deref(), arguments.json).map_err(Failure::usage)?;
-    if let Some(path) = &arguments.output {
-        files::check_target(path)?;
+    let targets: Vec<&Path> =
+        [&arguments.output, &arguments.study].into_iter().flatten().map(PathBuf::as_path).collect();
+    let is_taken = files::takes_output(targets.iter().copied(), arguments.json).map_err(Failure::usage)?;
+    files::check_distinct(targets.iter().copied()).map_err(Failure::usage)?;
+    targets.iter().try_for_each(|path| files::check_target(path))?;
+    if arguments.study.is_some() {
+        check_named(&Settings::default(), arguments.scenes.iter().map(String::as_str))?;
     }
     let machine = arguments.machine.machine(&ArithmeticArguments::default())?;
     let mut seen = NamedScenes::new();
@@ -187,9 +199,13 @@ pub(super) fn execute(
             exit: Exit::Tolerance,
         });
     };
-    if let Some(path) = &arguments.output {
-        files::write_all(&[(path, settings_file(&found))])?;
+    let mut files: Vec<(&Path, String)> = Vec::new();
+    files.extend(arguments.output.as_deref().map(|path| (path, settings_file(&found))));
+    if let Some(path) = arguments.study.as_deref() {
+        let study = found.study(&sweep::study_name(Some(path), "formats"), &machine, &arguments.scenes);
+        files.push((path, sweep::study_text(&study, "formats")?));
     }
+    files::write_all(&files)?;
     let scenes: Vec<_> = seen.into_iter().map(|(_, scene)| scene).collect();
     let settings = given.clone().with_machine(&machine).with_scenes(&scene_hashes(&arguments.scenes, &scenes));
     match (is_taken, arguments.json) {

@@ -19,7 +19,7 @@ use crate::settings::read::{self, COMMAND, StoredSettings};
 use crate::settings::{MachineSettings, Settings, hash};
 
 /// Arguments on which no result depends but for its form, place and time, by their long names.
-const NO_SETTINGS: [&str; 22] = [
+const NO_SETTINGS: [&str; 23] = [
     "settings",
     "json",
     "csv",
@@ -42,6 +42,7 @@ const NO_SETTINGS: [&str; 22] = [
     "against",
     "tolerance",
     "map",
+    "study",
 ];
 
 /// Arguments that say together which machine there is.

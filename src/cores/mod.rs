@@ -4,6 +4,7 @@
 #[cfg(feature = "cli")]
 mod chart;
 mod demand;
+mod points;
 #[cfg(feature = "cli")]
 mod text;
 
@@ -16,16 +17,18 @@ use serde::Serialize;
 #[cfg(feature = "cli")]
 pub use chart::{figure, roofline};
 pub use demand::PixelDemand;
+pub use points::{drawn, study};
 #[cfg(feature = "cli")]
 pub use text::{csv, energy_text, text};
 
 use crate::energy::{EnergyResult, EnergySummary};
 use crate::failure::Failure;
-use crate::load::Load;
+use crate::load::{ANNEX, Load};
 use crate::machine::arbiter_note;
 use crate::numeral::share;
 use crate::result::{FormatTable, OperationTimes};
-use crate::sweep::frames::{KeptRecordings, PictureFrames};
+use crate::settings::MachineSettings;
+use crate::sweep::frames::PictureFrames;
 
 /// Version of [`CoresResult`]: a key that goes away or changes its meaning changes it, a new key does not.
 pub const SCHEMA: &str = "lancer-cores-1";
@@ -134,51 +137,60 @@ const LEVEL: f64 = 0.1;
 /// Share of the frame from which the bus counts as full.
 const FULL: f64 = 0.98;
 
-/// Measures a load: each machine with one core and with each of the numbers of cores. Whatever only differs in time is
-/// computed once, or found among recordings that are kept.
-///
-/// # Errors
-/// A machine out of its ranges, or a trap.
-pub fn measure(
-    scene: &str,
-    load: &Load,
-    machines: &[(String, Config)],
-    cores: &[u32],
-    kept: Option<KeptRecordings>,
-    progress: &mut dyn FnMut(u64),
-) -> Result<CoresResult, Failure> {
-    // One core is the measure of all others, so it is always among them.
+/// Numbers of cores that are measured, the fewest first: one core is the measure of all others, so it is always among them.
+pub fn numbers(cores: &[u32]) -> Vec<u32> {
     let mut cores: Vec<u32> = std::iter::once(1).chain(cores.iter().copied()).collect();
     cores.sort_unstable();
     cores.dedup();
-    // All machines with all numbers of cores in one run: what only differs in time is computed once.
-    let with = |config: &Config| cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>();
-    let configs: Vec<Config> = machines.iter().flat_map(|(_, config)| with(config)).collect();
+    cores
+}
+
+/// Measures the report's estimate: each machine with one core and with each of the numbers of cores. Whatever only differs in time is computed
+/// once.
+///
+/// # Errors
+/// A machine out of its ranges, or a trap.
+pub fn estimate(
+    machines: &[MachineSettings],
+    cores: &[u32],
+    progress: &mut dyn FnMut(u64),
+) -> Result<CoresResult, Failure> {
+    let (load, cores) = (Load::annex()?, numbers(cores));
+    let with = |MachineSettings { config, .. }: &MachineSettings| {
+        cores.iter().map(|&cores| Config { cores, ..config.clone() }).collect::<Vec<_>>()
+    };
+    let configs: Vec<Config> = machines.iter().flat_map(with).collect();
     if configs.is_empty() {
         return Err(no_machine());
     }
-    let frames = PictureFrames::new(load, kept).run(&configs, progress);
+    let frames = PictureFrames::new(&load, None).run(&configs, progress);
     let frames = frames.into_iter().collect::<Result<Vec<RunOutcome>, _>>()?;
     // Frames come back in the order of the configurations: machine by machine, fewest cores first.
-    let curves = machines.iter().zip(frames.chunks(cores.len())).map(|((name, config), frames)| {
-        let points: Vec<(u32, &RunOutcome)> = cores.iter().copied().zip(frames).collect();
-        Curve { formats: load.formats.as_ref().map(FormatTable::from), ..curve(name, config, load, &points) }
+    let curves = machines.iter().zip(frames.chunks(cores.len())).map(|(machine, frames)| {
+        let frames: Vec<(u32, &RunOutcome)> = cores.iter().copied().zip(frames).collect();
+        curve(machine, &load, &frames)
     });
-    Ok(CoresResult {
-        schema: SCHEMA,
-        scene: scene.to_owned(),
-        pixels: frames[0].item_count,
-        report_quotient: PixelDemand::report().quotient().unwrap_or_default(),
-        machines: curves.collect(),
-    })
+    Ok(result(ANNEX, frames[0].item_count, curves.collect()))
 }
 
 fn no_machine() -> Failure {
     Failure::usage(messages::Diagnostic::error("no machine was named"))
 }
 
+/// The result of curves.
+fn result(scene: &str, pixels: u64, machines: Vec<Curve>) -> CoresResult {
+    CoresResult {
+        schema: SCHEMA,
+        scene: scene.to_owned(),
+        pixels,
+        report_quotient: PixelDemand::report().quotient().unwrap_or_default(),
+        machines,
+    }
+}
+
 /// The curve of a machine from its frames, that of one core first.
-fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]) -> Curve {
+fn curve(machine: &MachineSettings, load: &Load, frames: &[(u32, &RunOutcome)]) -> Curve {
+    let MachineSettings { name, config } = machine;
     let (_, alone) = frames[0];
     let pixels = alone.item_count.max(1) as f64;
     // Computing and transfers of a pixel, as one core shows them.
@@ -199,10 +211,10 @@ fn curve(name: &str, config: &Config, load: &Load, frames: &[(u32, &RunOutcome)]
         point.is_saturated = saturation.is_some_and(|saturation| f64::from(point.cores) >= saturation.cores);
     }
     Curve {
-        machine: name.to_owned(),
+        machine: name.clone(),
         arbiter: config.bus.arbiter.name().to_owned(),
         arbiter_note: arbiter_note(config),
-        formats: None,
+        formats: load.formats.as_ref().map(FormatTable::from),
         clock_hz: config.clock_hz,
         timing: OperationTimes::new(config),
         // Check bits take their share of the beats.

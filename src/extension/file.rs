@@ -15,7 +15,19 @@ use crate::files;
 /// # Errors
 /// A file that cannot be read, or what is wrong in it.
 pub fn extend(isa: &mut Isa, path: &Path) -> Result<(Vec<LoadedInstruction>, Vec<Arc<Source>>), Report> {
-    let source = extension::source(&path.display().to_string(), files::read(path)?)?;
+    extend_by(isa, path, files::read(path)?)
+}
+
+/// Adds the instructions of a file that has been read; see [`extend`].
+///
+/// # Errors
+/// What is wrong in it.
+pub fn extend_by(
+    isa: &mut Isa,
+    path: &Path,
+    octets: Vec<u8>,
+) -> Result<(Vec<LoadedInstruction>, Vec<Arc<Source>>), Report> {
+    let source = extension::source(&path.display().to_string(), octets)?;
     let texts = RefCell::new(vec![source.clone()]);
     let open =
         |wanted: &str, from: &str| included(wanted, from).inspect(|source| texts.borrow_mut().push(source.clone()));

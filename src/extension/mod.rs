@@ -8,6 +8,6 @@ mod suggestion;
 mod text;
 
 pub use comparison::{ExtensionResult, SCHEMA, VariantResult, compare};
-pub use file::extend;
+pub use file::{extend, extend_by};
 pub use findings::findings;
 pub use suggestion::{SUGGESTION_SCHEMA, Suggestion, SuggestionResult, Suggestions, suggest};

@@ -2,6 +2,7 @@
 //! error. How the search goes is said in `search.rs`, what a picture costs comes from its run.
 
 mod choice;
+mod points;
 mod search;
 mod trial;
 

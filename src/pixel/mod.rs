@@ -33,7 +33,7 @@ pub fn explain(
     stepper: &mut Stepper,
 ) -> Result<PixelExplanation, Report> {
     let raw = probe(stepper, image);
-    let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
+    let reference = Reference::new(&job.scene, &job.reference_view(), SearchMethod::Hierarchy)?;
     let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
     let (colour, rays) = reference.explain(pixel[0], pixel[1], Some(&samples));
     let explainer = result::Explainer { job, image, scales: compared::RawScales::new(image) };

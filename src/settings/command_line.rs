@@ -85,6 +85,9 @@ impl Settings {
             }
         }
         options.extend((!self.results.error).then(|| ("no-error".to_owned(), None)));
+        // A key without an option of its own.
+        let bounces = self.results.reference_bounces.map(|bounces| format!("results.reference_bounces={bounces}"));
+        options.extend(bounces.map(|set| ("set".to_owned(), Some(set))));
         options
     }
 

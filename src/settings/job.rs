@@ -65,6 +65,7 @@ impl Settings {
             flags,
             energy,
             shadow,
+            reference_bounces,
             warnings: _,
             files: _,
         } = job;
@@ -115,7 +116,13 @@ impl Settings {
             formats: FormatSettings::from(formats),
             machine: MachineSettings { name: machine_name.clone(), config: machine.clone() },
             engine: *engine,
-            results: ResultSettings { error: *error, flags: *flags, energy: *energy, shadow: *shadow },
+            results: ResultSettings {
+                error: *error,
+                flags: *flags,
+                energy: *energy,
+                shadow: *shadow,
+                reference_bounces: *reference_bounces,
+            },
         }
     }
 
@@ -145,11 +152,19 @@ impl Settings {
     /// # Errors
     /// See [`Settings::job`].
     pub fn job_of(&self, loaded: Loaded) -> Result<Job, Failure> {
+        self.job_by(loaded, &|file| files::read(Path::new(file)))
+    }
+
+    /// The job of the settings with a scene that has been read, and with whoever reads other files by their names.
+    ///
+    /// # Errors
+    /// See [`Settings::job`].
+    pub fn job_by(&self, loaded: Loaded, read: &dyn Fn(&str) -> Result<Vec<u8>, Report>) -> Result<Job, Failure> {
         let Settings { scene, view, kernels, effort, tree, layout, formats, machine, engine, results } = self;
         self.check()?;
         let camera = view.camera()?;
         let mut job = Job::new(loaded.scene);
-        same(&format!("the scene {}", scene.name), scene.hash.as_deref(), || hash::scene(&job.scene))?;
+        check_hash(&format!("the scene {}", scene.name), scene.hash.as_deref(), || hash::scene(&job.scene))?;
         job.source = SceneSource { name: scene.name.clone(), mesh: scene.mesh.as_ref().map(Into::into) };
         (job.warnings, job.files) = (loaded.warnings, loaded.files);
         // Look at it.
@@ -164,11 +179,12 @@ impl Settings {
         (job.machine_name, job.machine) = (machine.name.clone(), machine.config.clone());
         job.engine = *engine;
         (job.error, job.flags, job.energy, job.shadow) = (results.error, results.flags, results.energy, results.shadow);
+        job.reference_bounces = results.reference_bounces;
         // Choose the kernels; files of extensions and those that replace functions are read here.
         for FileSettings { file, hash } in &kernels.extensions {
-            let texts = extension::extend(&mut job.isa, Path::new(file))?.1;
+            let texts = extension::extend_by(&mut job.isa, Path::new(file), read(file)?)?.1;
             let now = hash::texts(texts.iter().map(|text| text.text.as_str()));
-            same(file, hash.as_deref(), || now.clone())?;
+            check_hash(file, hash.as_deref(), || now.clone())?;
             job.files.push(file.into());
             job.extensions.push(FileSettings { file: file.clone(), hash: Some(now) });
         }
@@ -176,15 +192,15 @@ impl Settings {
         job.kernels = KernelOptions {
             profile: *profile,
             replaced: Vec::new(),
-            crop: crop(view, size)?,
+            crop: view.crop(size)?,
             weight_cutoff: effort.weight_cutoff,
             skips: effort.skips,
             interpolate: effort.interpolate,
         };
         for (function, FileSettings { file, hash }) in replaced {
             let function: Function = function.parse().map_err(|message: Box<Diagnostic>| *message)?;
-            let source = files::source(Path::new(file))?;
-            same(file, hash.as_deref(), || hash::texts([source.text.as_str()]))?;
+            let source = files::source_of(Path::new(file), read(file)?)?;
+            check_hash(file, hash.as_deref(), || hash::texts([source.text.as_str()]))?;
             job.files.push(file.into());
             job.kernels.replaced.push((function, source));
         }
@@ -195,6 +211,15 @@ impl Settings {
             job.warnings.0.push(Diagnostic::warning(message).hint(hint));
         }
         Ok(job)
+    }
+
+    /// Pixels of the drawn part; 0 where the size is left to the scene.
+    pub fn pixels(&self) -> u64 {
+        let [.., width, height] = self.view.crop.unwrap_or_else(|| {
+            let [width, height] = self.view.size.unwrap_or_default();
+            [0, 0, width, height]
+        });
+        u64::from(width) * u64::from(height)
     }
 
     /// Check that every number lies in its range, as the options of the command line do.
@@ -215,7 +240,10 @@ impl Settings {
         check("view.size", is_size, &format!("width and height lie in 1 to {LONGEST}"));
         check("view.ambient", *ambient >= 0.0 && ambient.is_finite(), "an intensity is at least 0");
         check("view.background", background.iter().all(in_one), "the components of a colour lie in 0 to 1");
-        check("effort.bounces", self.effort.bounces <= MOST_BOUNCES, &format!("0 to {MOST_BOUNCES} levels"));
+        let levels = format!("0 to {MOST_BOUNCES} levels");
+        check("effort.bounces", self.effort.bounces <= MOST_BOUNCES, &levels);
+        let bounces = self.results.reference_bounces;
+        check("results.reference_bounces", bounces.is_none_or(|bounces| bounces <= MOST_BOUNCES), &levels);
         check("effort.weight_cutoff", in_one(&self.effort.weight_cutoff), "a weight lies in 0 to 1");
         check("effort.interpolate", self.effort.interpolate.as_ref().is_none_or(in_one), "a difference lies in 0 to 1");
         for function in self.kernels.replaced.keys() {
@@ -226,7 +254,7 @@ impl Settings {
 }
 
 /// Refuses contents of another hash than the settings have.
-fn same(what: &str, wanted: Option<&str>, now: impl FnOnce() -> String) -> Result<(), Report> {
+pub(crate) fn check_hash(what: &str, wanted: Option<&str>, now: impl FnOnce() -> String) -> Result<(), Report> {
     let Some(wanted) = wanted else { return Ok(()) };
     let now = now();
     if wanted == now {
@@ -245,23 +273,35 @@ fn check_size((width, height): (u32, u32)) -> Result<(), Failure> {
     Err(Diagnostic::error(message).hint("choose a smaller one with `--size WxH`").into())
 }
 
-/// The part that is drawn, which must lie inside the picture.
-fn crop(view: &ViewSettings, (width, height): (u32, u32)) -> Result<Option<Crop>, Failure> {
-    let Some([column, row, w, h]) = view.crop else { return Ok(None) };
-    let is_inside =
-        |first: u32, length: u32, whole: u32| length > 0 && u64::from(first) + u64::from(length) <= u64::from(whole);
-    if is_inside(column, w, width) && is_inside(row, h, height) {
-        return Ok(Some(Crop { column, row, width: w, height: h }));
-    }
-    let asked = match (w, h) {
-        (1, 1) => format!("pixel {column},{row} lies"),
-        _ => format!("{w} x {h} pixels from {column},{row} on lie"),
-    };
-    let message = format!("{asked} outside a picture of {width} x {height} pixels");
-    Err(Failure::usage(Diagnostic::error(message).hint("columns and rows count from 0, at the top left")))
-}
-
 impl ViewSettings {
+    /// Check that a picture of this size can be drawn: with the camera, and as the part that is asked for.
+    ///
+    /// # Errors
+    /// Pictures that would fill the host's memory, a part outside of the picture, settings of another camera.
+    pub fn check(&self, size: (u32, u32)) -> Result<(), Failure> {
+        check_size(size)?;
+        self.camera()?;
+        self.crop(size)?;
+        Ok(())
+    }
+
+    /// The part that is drawn of a picture of this size, which must lie inside of it.
+    fn crop(&self, (width, height): (u32, u32)) -> Result<Option<Crop>, Failure> {
+        let Some([column, row, w, h]) = self.crop else { return Ok(None) };
+        let is_inside = |first: u32, length: u32, whole: u32| {
+            length > 0 && u64::from(first) + u64::from(length) <= u64::from(whole)
+        };
+        if is_inside(column, w, width) && is_inside(row, h, height) {
+            return Ok(Some(Crop { column, row, width: w, height: h }));
+        }
+        let asked = match (w, h) {
+            (1, 1) => format!("pixel {column},{row} lies"),
+            _ => format!("{w} x {h} pixels from {column},{row} on lie"),
+        };
+        let message = format!("{asked} outside a picture of {width} x {height} pixels");
+        Err(Failure::usage(Diagnostic::error(message).hint("columns and rows count from 0, at the top left")))
+    }
+
     /// The camera; settings that only a perspective one has imply it.
     ///
     /// # Errors

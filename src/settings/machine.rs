@@ -3,12 +3,14 @@
 use std::borrow::Cow;
 
 use emu::machine::Config;
+use emu::machine::preset::PRESETS;
 use messages::Report;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
+use super::key::leaves;
 use crate::machine;
 
 /// Key of the machine's name, which no machine file has.
@@ -39,6 +41,26 @@ impl MachineSettings {
     /// See [`machine::find`].
     pub fn find(name: &str) -> Result<MachineSettings, Report> {
         machine::find(name).map(|(name, config)| MachineSettings { name, config })
+    }
+
+    /// The machine as a person writes it: the name of a preset, or an object with the keys that differ from a preset's, which is that of the
+    /// machine's name where there is one.
+    pub fn brief(&self) -> Value {
+        let named = |name: &str| PRESETS.iter().find(|preset| preset.name == name);
+        let preset = named(&self.name).or_else(|| named(machine::DEFAULT)).expect("the default is a preset");
+        let before = MachineSettings { name: preset.name.to_owned(), config: preset.config() };
+        let [now, before] = [self, &before].map(|one| serde_json::to_value(one).expect("a machine has string keys"));
+        let mut brief = Value::Object(Map::new());
+        for ((key, value), _) in leaves(&now).into_iter().zip(leaves(&before)).filter(|(now, before)| now != before) {
+            *key.split('.').fold(&mut brief, |brief, name| &mut brief[name]) = value.clone();
+        }
+        match brief.as_object_mut() {
+            Some(keys) if !keys.is_empty() => {
+                keys.insert(FROM.to_owned(), preset.name.into());
+                brief
+            }
+            _ => preset.name.into(),
+        }
     }
 }
 
@@ -112,7 +134,7 @@ fn like(example: &Value, key: &str) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use emu::machine::preset::PRESETS;
+    use crate::settings::apply::put;
 
     use super::*;
 
@@ -123,6 +145,30 @@ mod tests {
             let text = serde_json::to_string(&machine).unwrap();
             assert_eq!(serde_json::from_str::<MachineSettings>(&text).unwrap(), machine);
             assert_eq!(MachineSettings::find(&text).unwrap(), machine);
+        }
+    }
+
+    #[test]
+    fn a_machine_in_brief_is_that_machine() {
+        let of = |name: &str, change: fn(&mut Config)| {
+            let mut machine = MachineSettings::find(name).unwrap();
+            change(&mut machine.config);
+            machine
+        };
+        let mine = MachineSettings { name: "mine".to_owned(), ..of("report", |_| ()) };
+        for (machine, brief) in [
+            (of("wide32", |_| ()), serde_json::json!("wide32")),
+            (of("report", |config| config.cores = 7), serde_json::json!({ "from": "report", "cores": 7 })),
+            (
+                of("wide32", |config| (config.bus.overlap, config.bus.weights) = (true, vec![2, 1])),
+                serde_json::json!({ "from": "wide32", "bus": { "overlap": true, "weights": [2, 1] } }),
+            ),
+            (mine, serde_json::json!({ "from": "report", "name": "mine" })),
+        ] {
+            assert_eq!(machine.brief(), brief);
+            let mut settings = crate::settings::Settings::default().value();
+            put(&mut settings, "machine", brief).unwrap();
+            assert_eq!(crate::settings::Settings::of_value(&settings).unwrap().machine, machine);
         }
     }
 }

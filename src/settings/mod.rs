@@ -20,6 +20,7 @@ use scenes::model::View;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+pub(crate) use job::check_hash;
 pub use job::{LONGEST, MOST_BOUNCES};
 pub use machine::{FROM, MachineSettings, NAME};
 
@@ -210,6 +211,8 @@ pub struct ResultSettings {
     pub energy: bool,
     /// True where a picture is run beside exact arithmetic.
     pub shadow: bool,
+    /// Levels of reflected and refracted rays in double precision; null for as many as the picture has.
+    pub reference_bounces: Option<u32>,
 }
 
 impl Default for ViewSettings {
@@ -238,7 +241,7 @@ impl Default for EffortSettings {
 
 impl Default for ResultSettings {
     fn default() -> ResultSettings {
-        ResultSettings { error: true, flags: false, energy: false, shadow: false }
+        ResultSettings { error: true, flags: false, energy: false, shadow: false, reference_bounces: None }
     }
 }
 

@@ -6,13 +6,14 @@ use std::sync::{Arc, Mutex};
 
 use isa::Isa;
 use kernels::Function;
-use messages::Source;
+use messages::Report;
 use scenes::read::Loaded;
 
 use crate::extension;
 use crate::failure::Failure;
 use crate::files;
-use crate::settings::{CameraKind, FIELD, Settings, hash};
+use crate::job::Job;
+use crate::settings::{CameraKind, FIELD, Settings, check_hash, hash};
 
 /// Scenes by name and mesh.
 type SceneTable = HashMap<(String, Option<String>), Arc<SceneContents>>;
@@ -21,7 +22,7 @@ type SceneTable = HashMap<(String, Option<String>), Arc<SceneContents>>;
 #[derive(Default)]
 pub struct Contents {
     scenes: Mutex<SceneTable>,
-    files: Mutex<HashMap<String, Arc<Source>>>,
+    files: Mutex<HashMap<String, Vec<u8>>>,
     extensions: Mutex<HashMap<String, String>>,
     kernels: Mutex<HashMap<String, String>>,
 }
@@ -58,13 +59,17 @@ impl Contents {
     /// Fills in what settings leave to the scene and to each other, and all hashes.
     ///
     /// # Errors
-    /// Files that cannot be read, values out of their ranges.
+    /// Files that cannot be read, or that do not have the hash that the settings say; values out of their ranges.
     pub fn resolve(&self, settings: &mut Settings) -> Result<(), Failure> {
         settings.check()?;
         let scene = self.scene(settings)?;
+        check_hash(&format!("the scene {}", settings.scene.name), settings.scene.hash.as_deref(), || {
+            scene.hash.clone()
+        })?;
         settings.scene.hash = Some(scene.hash.clone());
         let view = &mut settings.view;
-        view.size.get_or_insert(scene.loaded.scene.size.into());
+        let size = *view.size.get_or_insert(scene.loaded.scene.size.into());
+        view.check(size.into())?;
         let is_perspective = view.eye.is_some() || view.look.is_some() || view.fov.is_some();
         let kind = if is_perspective { CameraKind::Perspective } else { CameraKind::Orthographic };
         if *view.camera.get_or_insert(kind) == CameraKind::Perspective {
@@ -75,13 +80,17 @@ impl Contents {
         // Kernels: the user's files, then all that the set has beside them.
         let mut replaced = Vec::new();
         for (function, file) in &mut settings.kernels.replaced {
-            let source = self.file(&file.file)?;
-            file.hash = Some(hash::texts([source.text.as_str()]));
+            let source = files::source_of(Path::new(&file.file), self.file(&file.file)?)?;
+            let now = hash::texts([source.text.as_str()]);
+            check_hash(&file.file, file.hash.as_deref(), || now.clone())?;
+            file.hash = Some(now);
             let function: Function = function.parse().map_err(|message: Box<messages::Diagnostic>| *message)?;
             replaced.push((function, source));
         }
         for file in &mut settings.kernels.extensions {
-            file.hash = Some(self.extension(&file.file)?);
+            let now = self.extension(&file.file)?;
+            check_hash(&file.file, file.hash.as_deref(), || now.clone())?;
+            file.hash = Some(now);
         }
         let profile = settings.kernels.profile;
         let own: Vec<String> =
@@ -93,14 +102,22 @@ impl Contents {
         Ok(())
     }
 
-    fn file(&self, name: &str) -> Result<Arc<Source>, Failure> {
+    /// The job of settings, whose files are not read again.
+    ///
+    /// # Errors
+    /// See [`Settings::job`].
+    pub fn job(&self, settings: &Settings) -> Result<Job, Failure> {
+        settings.job_by(self.scene(settings)?.loaded.clone(), &|name| self.file(name))
+    }
+
+    fn file(&self, name: &str) -> Result<Vec<u8>, Report> {
         let mut files = self.files.lock().expect("no reader panics");
         if let Some(known) = files.get(name) {
             return Ok(known.clone());
         }
-        let source = files::source(Path::new(name))?;
-        files.insert(name.to_owned(), source.clone());
-        Ok(source)
+        let octets = files::read(Path::new(name))?;
+        files.insert(name.to_owned(), octets.clone());
+        Ok(octets)
     }
 
     fn extension(&self, name: &str) -> Result<String, Failure> {
@@ -108,7 +125,7 @@ impl Contents {
         if let Some(known) = extensions.get(name) {
             return Ok(known.clone());
         }
-        let (_, texts) = extension::extend(&mut Isa::base(), Path::new(name))?;
+        let (_, texts) = extension::extend_by(&mut Isa::base(), Path::new(name), self.file(name)?)?;
         let hash = hash::texts(texts.iter().map(|text| text.text.as_str()));
         extensions.insert(name.to_owned(), hash.clone());
         Ok(hash)

@@ -11,7 +11,6 @@ use serde_json::{Map, Value};
 
 use super::contents::Contents;
 use super::identity::{PartDigest, SettingsPart};
-use super::plan::settings_of;
 use super::study::Study;
 use crate::failure::Failure;
 use crate::settings::Settings;
@@ -104,7 +103,7 @@ impl<'s> StudyDigests<'s> {
             Ok((picture, machine)) => Ok((PartDigest::joined(&[picture.0, *machine]), picture.1)),
             // The settings as a whole say what is wrong, with the point.
             Err(failure) => {
-                settings_of(&self.study.base, &self.study.assignments(number), self.contents)?;
+                self.study.settings(number, self.contents)?;
                 Err(failure)
             }
         }
@@ -118,9 +117,7 @@ impl<'s> StudyDigests<'s> {
             self.assign(&mut value, number, SettingsPart::Picture)?;
             let mut settings = Settings::of_value(&value)?;
             self.contents.resolve(&mut settings)?;
-            let [width, height] =
-                settings.view.crop.map_or(settings.view.size.unwrap_or_default(), |[_, _, w, h]| [w, h]);
-            Ok((PartDigest::of_picture(&settings), u64::from(width) * u64::from(height)))
+            Ok((PartDigest::of_picture(&settings), settings.pixels()))
         })?;
         let (alternatives, kept) = &self.machine;
         let machine = known(kept, alternatives.number(chosen), || {
@@ -237,7 +234,7 @@ mod tests {
             let digests = StudyDigests::new(&study, &contents);
             // Each twice: made, and known.
             for number in (0..study.count()).chain(0..study.count()) {
-                let settings = settings_of(&study.base, &study.assignments(number), &contents).unwrap();
+                let settings = study.settings(number, &contents).unwrap();
                 let (digest, pixels) = digests.of(number).unwrap();
                 assert_eq!(digest, identity::digests(&settings), "{number} of {text}");
                 let [width, height] = settings.view.size.unwrap();

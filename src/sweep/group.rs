@@ -53,6 +53,7 @@ pub fn by_recording(points: &[Settings]) -> Vec<Vec<usize>> {
 
 /// Draws points whose settings have the same recording: the job of the first one, and the frames of all or the reason for which there are none.
 /// The recording is in `store`, or is put there, where one is given and the picture is no larger than recordings are kept for.
+/// `progress` is told of pixels as far as somebody waits for those of a large picture.
 ///
 /// # Errors
 /// Files that cannot be read.
@@ -60,10 +61,10 @@ pub fn draw(
     points: &[&Settings],
     contents: &Contents,
     store: Option<&RecordingStore>,
+    progress: &mut dyn FnMut(u64),
 ) -> Result<(Job, Result<DrawnGroup, Failure>), Failure> {
     let first = points.first().expect("a group has a point");
-    let scene = contents.scene(first)?;
-    let job = first.job_of(scene.loaded.clone())?;
+    let job = contents.job(first)?;
     let (load, image) = match Load::picture(&job) {
         Ok(made) => made,
         Err(failure) => return Ok((job, Err(failure))),
@@ -72,7 +73,7 @@ pub fn draw(
     let configs: Vec<Config> = points.iter().map(|settings| settings.machine.config.clone()).collect();
     let kept = store.map(|store| KeptRecordings { store, settings: first });
     let mut picture = PictureFrames::new(&load, kept);
-    let (frames, recordings) = (picture.run(&configs, &mut |_| {}), picture.recordings);
+    let (frames, recordings) = (picture.run(&configs, progress), picture.recordings);
     Ok((job, Ok(DrawnGroup { load, image, frames, recordings })))
 }
 
@@ -86,7 +87,7 @@ pub fn run(
     store: Option<&RecordingStore>,
 ) -> Result<Vec<GroupResult>, Failure> {
     let Some(first) = points.first() else { return Ok(Vec::new()) };
-    let (job, drawn) = draw(&points.iter().collect::<Vec<_>>(), contents, store)?;
+    let (job, drawn) = draw(&points.iter().collect::<Vec<_>>(), contents, store, &mut |_| {})?;
     let labels = |settings: &Settings| labels(settings, &job);
     let DrawnGroup { load, image, frames, .. } = match drawn {
         Ok(drawn) => drawn,
@@ -130,7 +131,7 @@ pub fn run(
 /// The drawn part in double precision, which decides samples on edges as the kernels do.
 fn in_double_precision(job: &Job, image: &MemoryImage, crop: &Crop) -> Result<Picture, Failure> {
     let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
-    let reference = Reference::new(&job.scene, &job.view, SearchMethod::Hierarchy)?;
+    let reference = Reference::new(&job.scene, &job.reference_view(), SearchMethod::Hierarchy)?;
     Ok(part(&reference, &samples, crop))
 }
 

@@ -216,6 +216,7 @@ mod tests {
             _ if ["machine.energy.", "machine.area."].iter().any(|group| key.starts_with(group)) => "none".into(),
             ("machine.bus.weights", _) => serde_json::json!([3]),
             ("view.fov" | "effort.interpolate", _) => 0.5.into(),
+            ("results.reference_bounces", _) => 2.into(),
             (_, Some(Value::Bool(is_set))) => (!is_set).into(),
             (_, Some(Value::Number(number))) if number.is_f64() => (number.as_f64().unwrap() + 0.25).into(),
             (_, Some(Value::Number(number))) => (number.as_u64().unwrap() + 1).into(),

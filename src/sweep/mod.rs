@@ -21,6 +21,7 @@ pub mod recordings;
 pub mod row;
 pub mod shard;
 pub mod study;
+pub mod study_text;
 
 #[cfg(feature = "cli")]
 pub use chart::svg;

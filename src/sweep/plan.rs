@@ -215,8 +215,18 @@ impl StudyPlan {
     }
 }
 
+impl Study {
+    /// Settings of a point by its number, with what goes by the scene and the hashes of all files.
+    ///
+    /// # Errors
+    /// Files that cannot be read, values out of their ranges or that do not go together.
+    pub fn settings(&self, number: u64, contents: &Contents) -> Result<Settings, Failure> {
+        settings_of(&self.base, &self.assignments(number), contents)
+    }
+}
+
 /// Settings with what a point sets.
-pub(super) fn settings_of(base: &Value, assignments: &Assignments, contents: &Contents) -> Result<Settings, Failure> {
+fn settings_of(base: &Value, assignments: &Assignments, contents: &Contents) -> Result<Settings, Failure> {
     let mut value = base.clone();
     for (key, assigned) in assignments {
         change(&mut value, key, assigned.clone())?;

@@ -52,6 +52,12 @@ impl Study {
             let hint = did_you_mean(table, TABLES).unwrap_or_else(|| format!("the parts are {}", TABLES.join(", ")));
             file.refuse(message.hint(hint), table);
         }
+        if !names_scene(&root) {
+            let message = Diagnostic::error("the study names no scene");
+            file.messages.push(
+                message.hint("write `scene = \"cornell\"` below [settings], or a list of scenes below [product]"),
+            );
+        }
         let name = root.get("name").and_then(Value::as_str).unwrap_or(name).to_owned();
         // What all points share comes first, since what varies is tried on it.
         if let Some(table) = root.get("settings") {
@@ -77,7 +83,9 @@ impl Study {
         let list: Vec<Assignments> = tables(&root, "list").map(|table| file.assigned(table, "list")).collect();
         factors.extend((!list.is_empty()).then_some(list));
         if let Some(table) = root.get("latin") {
-            factors.extend(file.latin(table));
+            factors.extend(file.latin(table, points(&factors)));
+        } else {
+            file.has_room(points(&factors));
         }
         // Values are tried by themselves, so that a mistake is named once and not for each point.
         for (key, value) in trials(&factors) {
@@ -92,17 +100,12 @@ impl Study {
         if !file.messages.is_empty() {
             return Err(Report(file.messages));
         }
-        let study = Study { name, base: file.base, factors };
-        if study.count() > MOST_POINTS {
-            let message = format!("the study has more than {} points", grouped(MOST_POINTS));
-            return Err(Diagnostic::error(message).hint("a Latin hypercube covers many keys with few points").into());
-        }
-        Ok(study)
+        Ok(Study { name, base: file.base, factors })
     }
 
     /// Number of points; those that are the same count each.
     pub fn count(&self) -> u64 {
-        self.factors.iter().map(|factor| factor.len() as u64).try_fold(1u64, u64::checked_mul).unwrap_or(u64::MAX)
+        points(&self.factors)
     }
 
     /// Numbers of the alternatives that a point has of each factor, by its number below [`Study::count`]; the last factor varies fastest.
@@ -122,9 +125,27 @@ impl Study {
     }
 }
 
-/// Assignments in the order in which they are set: a scene or a machine as a whole before single keys.
+/// Points of the product of some factors.
+fn points(factors: &[Vec<Assignments>]) -> u64 {
+    factors.iter().fold(1, |points, factor| points.saturating_mul(factor.len() as u64))
+}
+
+/// True where every point of a study has a scene: all points share it, some factor has it, or each alternative of the list.
+fn names_scene(root: &Map<String, Value>) -> bool {
+    let is_scene = |name: &str| key::resolve(name).is_ok_and(|key| ["scene", "scene.name"].contains(&key.as_str()));
+    let has = |table: &Value| key::leaves(table).iter().any(|(name, _)| is_scene(name));
+    let is_in = |name: &str| tables(root, name).any(has);
+    let list: Vec<bool> = tables(root, "list").map(has).collect();
+    let is_in_latin = root.get("latin").is_some_and(|latin| has(&latin["keys"]));
+    ["settings", "product", "zip"].into_iter().any(is_in)
+        || is_in_latin
+        || (list.contains(&true) && !list.contains(&false))
+}
+
+/// Assignments in the order in which they are set: a scene or a machine as a whole before single keys, and hashes last, which go with the name of
+/// another file.
 pub fn ordered(mut assignments: Assignments) -> Assignments {
-    assignments.sort_by_key(|(key, _)| (key != "machine.from", key.matches('.').count()));
+    assignments.sort_by_key(|(key, _)| (key != "machine.from", key.ends_with(".hash"), key.matches('.').count()));
     assignments.sort_by_key(|(key, _)| !["machine", "machine.from", "scene"].contains(&key.as_str()));
     assignments
 }
@@ -180,6 +201,15 @@ impl StudyFile<'_> {
         });
     }
 
+    /// True of as many points as a study may have; more are refused.
+    fn has_room(&mut self, points: u64) -> bool {
+        if points > MOST_POINTS {
+            let message = Diagnostic::error(format!("the study has more than {} points", grouped(MOST_POINTS)));
+            self.messages.push(message.hint("a Latin hypercube covers many keys with few points"));
+        }
+        points <= MOST_POINTS
+    }
+
     /// Keys of a table in full, with their values; dotted keys and tables in tables are the same.
     fn assigned(&mut self, table: &Value, path: &str) -> Assignments {
         let mut found = Assignments::new();
@@ -233,8 +263,8 @@ impl StudyFile<'_> {
         Some((0..length).map(row).collect())
     }
 
-    /// Points of a Latin hypercube.
-    fn latin(&mut self, table: &Value) -> Option<Vec<Assignments>> {
+    /// Points of a Latin hypercube beside so many of the other factors, which are counted before they are made.
+    fn latin(&mut self, table: &Value, others: u64) -> Option<Vec<Assignments>> {
         for name in table.as_object()?.keys().filter(|name| !LATIN.contains(&name.as_str())) {
             let message = Diagnostic::error(format!("`{name}` is no key of a Latin hypercube"));
             self.refuse(message.hint(format!("the keys are {}", LATIN.join(", "))), &format!("latin.{name}"));
@@ -245,6 +275,9 @@ impl StudyFile<'_> {
             self.refuse(Diagnostic::error(message), "latin.points");
             return None;
         };
+        if !self.has_room(others.saturating_mul(points)) {
+            return None;
+        }
         let keys = self.assigned(table.get("keys")?, "latin.keys");
         let mut columns = Vec::new();
         for (key, value) in keys {
@@ -313,6 +346,41 @@ mod tests {
         assert_eq!(trials(&study(&text(0)).unwrap().factors).len(), 2 + 3);
         let shown = study(&text(-9)).expect_err("no clocks are below none");
         assert_eq!(shown.matches("setup_clocks").count(), 1, "{shown}");
+    }
+
+    #[test]
+    fn too_much_is_refused_before_it_is_made() {
+        let many = "product.cores = \"1-4000\"\nproduct.setup_clocks = \"0-4000\"\n";
+        for text in [
+            format!("settings.scene = \"triangle\"\n{many}"),
+            format!(
+                "settings.scene = \"triangle\"\n{many}[latin]\npoints = 10000000\nkeys = {{ clock_hz = [1, 9] }}\n"
+            ),
+        ] {
+            assert!(study(&text).expect_err(&text).contains("more than 10,000,000 points"), "{text}");
+        }
+        // More numbers than any list has are no range.
+        let range = "settings.scene = \"triangle\"\nproduct.clock_hz = \"1-4000000000\"\n";
+        assert!(study(range).expect_err(range).contains("`1-4000000000` is no value of `machine.clock_hz`"));
+    }
+
+    #[test]
+    fn a_study_without_a_scene_is_refused() {
+        for text in [
+            "product.cores = [1, 2]\n",
+            "[[list]]\nscene = \"triangle\"\n[[list]]\ncores = 2\n",
+            "[latin]\npoints = 2\nkeys = { cores = [1, 2] }\n",
+        ] {
+            assert!(study(text).expect_err(text).contains("names no scene"), "{text}");
+        }
+        for text in [
+            "settings.scene.name = \"triangle\"\n",
+            "[[list]]\nscene = \"triangle\"\n[[list]]\nscene = \"slabs\"\n",
+            "[latin]\npoints = 2\nkeys = { scene = [\"triangle\", \"slabs\"] }\n",
+            "[[zip]]\nscene = [\"triangle\", \"slabs\"]\ncores = [1, 2]\n",
+        ] {
+            assert!(study(text).is_ok(), "{text}");
+        }
     }
 
     #[test]

@@ -31,6 +31,7 @@ mod shadow;
 mod standard;
 mod stepping;
 mod streams;
+mod study;
 mod sweep;
 mod trace;
 mod width;

@@ -300,6 +300,7 @@ fn random_settings(lot: &mut SplitMix64) -> Settings {
     settings.engine = one(lot, &[EngineKind::default(), EngineKind::Checked]);
     settings.results.error = lot.below(3) != 0;
     settings.results.flags = lot.below(3) == 0;
+    settings.results.reference_bounces = [None, Some(0), Some(3)][lot.below(3) as usize];
     settings
 }
 

@@ -5,6 +5,8 @@ mod plan;
 mod run;
 mod views;
 
+pub(super) use plan::{study_text, write_study};
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -99,8 +101,13 @@ fn whole(arguments: &SweepArguments, terminal: &mut Terminal) -> Result<Exit, Fa
 
 /// The study of a file.
 fn study(path: &Path) -> Result<Study, Failure> {
-    let name = path.file_stem().map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
-    Ok(Study::parse(&files::source(path)?, &name)?)
+    Ok(Study::parse(&files::source(path)?, &study_name(Some(path), "study"))?)
+}
+
+/// The name of a study that says none: that of its file without the ending, or another one where it has no file.
+pub(super) fn study_name(path: Option<&Path>, other: &str) -> String {
+    let stem = path.filter(|path| path.as_os_str() != files::STANDARD).and_then(Path::file_stem);
+    stem.map_or_else(|| other.to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// The plan of a study; says first how much there is to do.

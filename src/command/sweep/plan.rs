@@ -1,13 +1,15 @@
 //! `lancer sweep plan`: the points of a study.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use messages::Report;
 
 use super::{planned, study};
 use crate::failure::{Exit, Failure};
 use crate::files;
 use crate::sweep::contents::Contents;
+use crate::sweep::study::Study;
 use crate::terminal::Terminal;
 
 const EXAMPLES: &str = "\
@@ -28,6 +30,25 @@ pub struct PlanArguments {
     /// Plan [default: standard output].
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+}
+
+/// The file of a study whose points a command draws.
+pub(in crate::command) fn study_text(study: &Study, command: &str) -> Result<String, Report> {
+    study.text(&format!("Points of `lancer {command}`, which `lancer sweep` runs."))
+}
+
+/// Writes the study whose points a command draws, and says how many they are. Points that could not be run are refused.
+pub(in crate::command) fn write_study(
+    study: &Study,
+    command: &str,
+    path: &Path,
+    contents: &Contents,
+    terminal: &Terminal,
+) -> Result<Exit, Failure> {
+    let text = study_text(study, command)?;
+    planned(study, contents, terminal)?;
+    files::write_all(&[(path, text)])?;
+    Ok(Exit::Done)
 }
 
 /// Plans and prints.

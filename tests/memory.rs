@@ -13,6 +13,11 @@ use lancer::files;
 use lancer::files::program::ProgramFile;
 use lancer::job::Job;
 use lancer::load::Load;
+use lancer::sweep::contents::Contents;
+use lancer::sweep::dataset::DatasetForm;
+use lancer::sweep::row::PointRow;
+use lancer::sweep::study::Study;
+use lancer::sweep::{group, merge, part};
 use messages::Source;
 use peak_alloc::PeakAlloc;
 use scenes::generate;
@@ -201,6 +206,45 @@ fn a_picture_takes_at_most_three_times_its_memory_image() {
     assert!(image > 8 << 20, "what does not grow with the scene must not matter: {image} octets");
     let ratio = octets as f64 / image as f64;
     assert!(ratio < MOST, "{ratio:.2} times the memory image of {image} octets");
+}
+
+/// Rows of the study that is merged, and those of each of its parts.
+const ROWS: usize = 20_000;
+const ROWS_OF_PART: usize = 1_000;
+
+/// Octets that merging a row may take: its place, and its share of the rows that are written at once.
+const MOST_OF_ROW: usize = 400;
+
+#[test]
+fn rows_of_a_study_are_not_in_memory_while_they_are_merged() {
+    let _alone = ALONE.lock();
+    let text = "settings = { scene = \"triangle\", view.size = [2, 1] }\n[product]\ncores = [1, 2]\n";
+    let study = Study::parse(&Source::new("s.toml", text), "s").unwrap_or_else(|report| panic!("{report:?}"));
+    let settings = [0, 1].map(|number| study.settings(number, &Contents::default()).expect("the triangle is there"));
+    let mut drawn = group::run(&settings, &Contents::default(), None).expect("it can be drawn");
+    let (labels, figures) = drawn.remove(0);
+    let row = |number: usize| PointRow {
+        point: format!("{number:064x}"),
+        set: study.assignments(0).into_iter().collect(),
+        labels: labels.clone(),
+        figures: figures.clone().ok(),
+        refused: None,
+    };
+    let folder = tempfile::tempdir().expect("there is a folder for temporary files");
+    for part in 0..ROWS / ROWS_OF_PART {
+        // Neighbours in the table stand in other parts.
+        let rows: Vec<PointRow> = (0..ROWS_OF_PART).map(|number| row(part + number * (ROWS / ROWS_OF_PART))).collect();
+        part::write(folder.path(), &format!("{part:064x}"), &rows).unwrap_or_else(|report| panic!("{report:?}"));
+    }
+    let table = folder.path().join("table.csv");
+    let (octets, rows) = peak(|| {
+        let (parts, damaged) = part::read_all(folder.path()).unwrap_or_else(|report| panic!("{report:?}"));
+        let merged = merge::merge(&parts, &damaged, None).unwrap_or_else(|report| panic!("{report:?}"));
+        merged.write(DatasetForm::Csv, &table).unwrap_or_else(|report| panic!("{report:?}"));
+        merged.rows()
+    });
+    assert_eq!((rows, fs::read_to_string(&table).expect("the table is text").lines().count()), (ROWS, ROWS + 1));
+    assert!(octets / ROWS < MOST_OF_ROW, "{} octets a row", octets / ROWS);
 }
 
 /// Octets that the caches and buffers of many cores may take, of which one core does the work: its buffer of 512 KiB, two more for the program's data,

@@ -173,6 +173,17 @@ pub fn shown(digest: &[u8; 32]) -> String {
     hexadecimal(digest)
 }
 
+/// The digest of hexadecimal digits as [`shown`] writes them.
+pub fn read(digits: &str) -> Option<[u8; 32]> {
+    let octet = |at: usize| u8::from_str_radix(digits.get(2 * at..2 * at + 2)?, 16).ok();
+    let mut digest = [0; 32];
+    for (at, place) in digest.iter_mut().enumerate() {
+        *place = octet(at)?;
+    }
+    // Neither signs nor capitals are such digits.
+    (shown(&digest) == digits).then_some(digest)
+}
+
 fn digest(part: &impl Serialize) -> [u8; 32] {
     Sha256::digest(serde_json::to_vec(part).expect("settings have string keys")).into()
 }
@@ -272,6 +283,16 @@ mod tests {
             if key.starts_with("machine.") && !is_named {
                 assert_eq!(is_shared, machine.computes_like(&changed.machine.config), "{key}");
             }
+        }
+    }
+
+    #[test]
+    fn digests_read_back_as_themselves() {
+        let digest = point(&Settings::default());
+        let digits = shown(&digest);
+        assert_eq!(read(&digits), Some(digest));
+        for text in ["", &digits[1..], &digits.to_uppercase(), &format!("+{}", &digits[1..]), &"é".repeat(32)] {
+            assert_eq!(read(text), None, "{text}");
         }
     }
 

@@ -1,21 +1,30 @@
-//! From parts to a table: every point of a plan once, in the plan's order, whatever process has run it.
+//! From parts to a table: every point of a plan once, in the plan's order, whatever process has run it. Memory holds an index of the rows; the rows
+//! themselves are read a second time when they are written.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
+use std::path::Path;
 
 use messages::{Diagnostic, Report};
+use rayon::prelude::*;
 
-use super::dataset::{Dataset, cell, kind_of};
+use super::dataset::{Dataset, DatasetForm, cell, kind_of};
+use super::identity;
 use super::key_set::KeySet;
-use super::part::{DamagedPart, StudyPart};
-use super::plan::StudyPlan;
-use super::row::{Cell, CellKind, PointFigures, PointLabels, PointRow};
+use super::part::{DamagedPart, IndexedRow, StudyPart};
+use super::plan::{PlannedPoint, StudyPlan};
+use super::row::{Cell, CellKind, PointFigures, PointLabels};
+use crate::files::{self, FileStream};
 use crate::numeral::count;
 
 /// Mistakes of a kind that are listed, at most.
 const LISTED: usize = 20;
 
+/// Rows that are read before they are written.
+const AT_ONCE: usize = 1024;
+
 /// Number of a part, and of a row in it.
-type RowPlace = (usize, usize);
+type RowPlace = (u32, u32);
 
 /// Keys that have a column of their own name among the labels, or part of one.
 const LABELLED: [&str; 15] = [
@@ -36,39 +45,54 @@ const LABELLED: [&str; 15] = [
     "effort.bounces",
 ];
 
+/// A table whose rows stand in parts, and are read when they are written.
+pub struct MergedTable<'p> {
+    parts: &'p [StudyPart],
+    /// The plan, whose points have the order of the rows.
+    plan: Option<&'p StudyPlan>,
+    /// Keys that vary and have no label.
+    keys: Vec<&'p str>,
+    places: Vec<RowPlace>,
+}
+
 /// The table of parts. With a plan, its points in its order; else all points in the order of their hashes.
 ///
 /// # Errors
 /// Parts that were cut short or changed; points of the plan that are missing; points that are in two parts, with the same result or with
 /// another. All of them are named.
-pub fn merge(parts: Vec<StudyPart>, damaged: &[DamagedPart], plan: Option<&StudyPlan>) -> Result<Dataset, Report> {
+pub fn merge<'p>(
+    parts: &'p [StudyPart],
+    damaged: &[DamagedPart],
+    plan: Option<&'p StudyPlan>,
+) -> Result<MergedTable<'p>, Report> {
     let mut messages: Vec<Diagnostic> = Vec::new();
     for (path, reason) in damaged {
         let message = Diagnostic::error(format!("{} is no whole part: {reason}", path.display()));
         messages.push(message.hint("`lancer sweep run` makes it again"));
     }
     // Each point once: the same result in two parts is as wrong as another one, since somebody has copied or mixed parts.
-    let mut found: HashMap<&str, RowPlace> = HashMap::new();
+    let mut found: HashMap<[u8; 32], RowPlace> = HashMap::with_capacity(parts.iter().map(|part| part.rows.len()).sum());
     let (mut double, mut conflicting) = (Vec::new(), Vec::new());
-    for (number, part) in parts.iter().enumerate() {
-        for (at, row) in part.rows.iter().enumerate() {
-            if let Some((before, place)) = found.insert(&row.point, (number, at)) {
-                let before = &parts[before];
-                let other = &before.rows[place];
-                let named = format!("{} ({} and {})", row.point, before.path.display(), part.path.display());
-                let is_same = (&other.figures, &other.refused) == (&row.figures, &row.refused);
-                if is_same { double.push(named) } else { conflicting.push(named) }
+    for (number, part) in (0..).zip(parts) {
+        for (at, row) in (0..).zip(&part.rows) {
+            if let Some(place) = found.insert(row.point, (number, at)) {
+                let (before, other) = row_at(parts, place);
+                let named =
+                    format!("{} ({} and {})", identity::shown(&row.point), before.path.display(), part.path.display());
+                if other.result == row.result { double.push(named) } else { conflicting.push(named) }
             }
         }
     }
     let places: Vec<RowPlace> = match plan {
         None => {
-            let mut points: Vec<(&str, RowPlace)> = found.iter().map(|(&point, &place)| (point, place)).collect();
+            let mut points: Vec<([u8; 32], RowPlace)> = found.into_iter().collect();
             points.sort_unstable();
             points.into_iter().map(|(_, place)| place).collect()
         }
         Some(plan) => {
-            let missing = plan.points.iter().filter(|point| !found.contains_key(point.point.as_str()));
+            let place =
+                |point: &PlannedPoint| identity::read(&point.point).and_then(|point| found.get(&point).copied());
+            let missing = plan.points.iter().filter(|point| place(point).is_none());
             let named = |set: &KeySet| {
                 set.iter()
                     .map(|(key, value)| {
@@ -84,7 +108,7 @@ pub fn merge(parts: Vec<StudyPart>, damaged: &[DamagedPart], plan: Option<&Study
                 &missing,
                 "run `lancer sweep run` with the same plan and folder: it makes what is not there",
             ));
-            plan.points.iter().filter_map(|point| found.get(point.point.as_str()).copied()).collect()
+            plan.points.iter().filter_map(place).collect()
         }
     };
     messages.extend(listed("in two parts", &double, "remove one of the parts"));
@@ -96,20 +120,94 @@ pub fn merge(parts: Vec<StudyPart>, damaged: &[DamagedPart], plan: Option<&Study
     if !messages.is_empty() {
         return Err(Report(messages));
     }
-    // Rows become cells one by one, so that texts are moved and a row goes when its cells are there.
-    let mut taken: Vec<Vec<Option<PointRow>>> =
-        parts.into_iter().map(|part| part.rows.into_iter().map(Some).collect()).collect();
-    let mut rows: Vec<PointRow> = places.into_iter().filter_map(|(part, row)| taken[part][row].take()).collect();
-    // The plan's own names and keys, where there is one: a part may have been run for another study.
-    let own: Vec<KeySet> = match plan {
-        Some(_) => Vec::new(),
-        None => rows.iter_mut().map(|row| std::mem::take(&mut row.set)).collect(),
+    // The plan's own keys, where there is one: a part may have been run for another study.
+    let keys: BTreeSet<&str> = match plan {
+        Some(plan) => plan.points.iter().flat_map(|point| point.set.iter().map(|(key, _)| key)).collect(),
+        None => parts.iter().flat_map(|part| part.keys.iter().map(String::as_str)).collect(),
     };
-    let sets: Vec<&KeySet> = match plan {
-        Some(plan) => plan.points.iter().map(|point| &point.set).collect(),
-        None => own.iter().collect(),
-    };
-    Ok(table(rows, &sets))
+    let keys = keys.into_iter().filter(|key| !LABELLED.contains(key)).collect();
+    Ok(MergedTable { parts, plan, keys, places })
+}
+
+fn row_at(parts: &[StudyPart], (part, row): RowPlace) -> (&StudyPart, &IndexedRow) {
+    let part = &parts[part as usize];
+    (part, &part.rows[row as usize])
+}
+
+impl MergedTable<'_> {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Names of the columns: the hash, the labels, keys that vary and have no label, the figures, the reason of a refusal.
+    pub fn columns(&self) -> Vec<String> {
+        let labels = PointLabels::columns().into_iter().map(|(name, ..)| name);
+        let figures = PointFigures::columns().into_iter().map(|(name, ..)| name);
+        let names = ["point"].into_iter().chain(labels).chain(self.keys.iter().copied()).chain(figures);
+        names.chain(["refused"]).map(str::to_owned).collect()
+    }
+
+    /// Cells of a row, which is read from its part.
+    ///
+    /// # Errors
+    /// A part that has gone or changed since.
+    fn cells(&self, number: usize) -> Result<Vec<Cell>, Report> {
+        let (part, row) = row_at(self.parts, self.places[number]);
+        let row = part.row(row)?;
+        let set = self.plan.map_or(&row.set, |plan| &plan.points[number].set);
+        let mut cells = vec![Cell::Text(row.point)];
+        cells.extend(row.labels.cells());
+        cells.extend(self.keys.iter().map(|key| set.get(key).map_or(Cell::Empty, cell)));
+        match row.figures {
+            Some(figures) => cells.extend(figures.cells()),
+            None => cells.extend(std::iter::repeat_n(Cell::Empty, PointFigures::columns().len())),
+        }
+        cells.push(row.refused.map_or(Cell::Empty, Cell::Text));
+        Ok(cells)
+    }
+
+    /// Some rows, read on all host threads and made to something.
+    fn each<T: Send>(&self, rows: Range<usize>, make: impl Fn(Vec<Cell>) -> T + Sync) -> Result<Vec<T>, Report> {
+        rows.into_par_iter().map(|number| self.cells(number).map(&make)).collect()
+    }
+
+    /// Writes the table. Lines of a text are written as they are read; Parquet, which has columns, is in memory as a whole.
+    ///
+    /// # Errors
+    /// Parts that have gone or changed since, and a place that cannot be written.
+    pub fn write(&self, form: DatasetForm, path: &Path) -> Result<(), Report> {
+        let columns = self.columns();
+        let Some(lines) = form.lines(&columns) else {
+            return files::write(path, &self.dataset()?.encode(form)?);
+        };
+        let mut file = FileStream::new(path)?;
+        if let Some(head) = lines.head() {
+            file.line(&head)?;
+        }
+        for first in (0..self.rows()).step_by(AT_ONCE) {
+            let last = self.rows().min(first + AT_ONCE);
+            for line in self.each(first..last, |cells| lines.line(&cells))? {
+                file.line(&line)?;
+            }
+        }
+        file.finish()
+    }
+
+    /// The table in memory.
+    ///
+    /// # Errors
+    /// Parts that have gone or changed since.
+    pub fn dataset(&self) -> Result<Dataset, Report> {
+        let rows = self.each(0..self.rows(), |cells| cells)?;
+        let labels = PointLabels::columns().into_iter().map(|(_, kind, _)| kind);
+        let figures = PointFigures::columns().into_iter().map(|(_, kind, _)| kind);
+        let first = 1 + labels.len();
+        let keys = (0..self.keys.len()).map(|key| kind_of(rows.iter().map(|row| &row[first + key])));
+        let kinds = [CellKind::Text].into_iter().chain(labels).chain(keys).chain(figures).chain([CellKind::Text]);
+        let columns = self.columns().into_iter().zip(kinds).collect();
+        Ok(Dataset { columns, rows })
+    }
 }
 
 fn listed(what: &str, points: &[String], hint: &str) -> Option<Diagnostic> {
@@ -123,37 +221,4 @@ fn listed(what: &str, points: &[String], hint: &str) -> Option<Diagnostic> {
         let message = format!("{} {are} {what}:\n  {names}", count(points.len() as u64, "point", "points"));
         Diagnostic::error(message).hint(hint)
     })
-}
-
-/// Rows with their columns: the hash, the labels, keys that vary and have no label, the figures, the reason of a refusal.
-fn table(rows: Vec<PointRow>, sets: &[&KeySet]) -> Dataset {
-    let is_labelled = |key: &str| LABELLED.contains(&key);
-    let mut keys: Vec<&str> =
-        sets.iter().flat_map(|set| set.iter()).map(|(key, _)| key).filter(|key| !is_labelled(key)).collect();
-    keys.sort_unstable();
-    keys.dedup();
-    let figures = PointFigures::columns().len();
-    let labels = PointLabels::columns().len();
-    let cells = |(row, set): (PointRow, &&KeySet)| {
-        let mut cells = Vec::with_capacity(2 + labels + keys.len() + figures);
-        cells.push(Cell::Text(row.point));
-        cells.extend(row.labels.cells());
-        cells.extend(keys.iter().map(|key| set.get(key).map_or(Cell::Empty, cell)));
-        match row.figures {
-            Some(figures) => cells.extend(figures.cells()),
-            None => cells.extend(std::iter::repeat_n(Cell::Empty, figures)),
-        }
-        cells.push(row.refused.map_or(Cell::Empty, Cell::Text));
-        cells
-    };
-    let rows: Vec<Vec<Cell>> = rows.into_iter().zip(sets).map(cells).collect();
-    let mut columns = vec![("point".to_owned(), CellKind::Text)];
-    columns.extend(PointLabels::columns().into_iter().map(|(name, kind, _)| (name.to_owned(), kind)));
-    for key in keys {
-        let number = columns.len();
-        columns.push((key.to_owned(), kind_of(rows.iter().map(|row| &row[number]))));
-    }
-    columns.extend(PointFigures::columns().into_iter().map(|(name, kind, _)| (name.to_owned(), kind)));
-    columns.push(("refused".to_owned(), CellKind::Text));
-    Dataset { columns, rows }
 }

@@ -104,8 +104,15 @@ fn injections() -> Vec<Vec<u8>> {
 }
 
 fn tables() -> Vec<Vec<u8>> {
-    let whole = part::parse(&whole_part(&PLANNED.1), Path::new("a"), true).expect("a part is one");
-    let table = merge::merge(vec![whole], &[], None).expect("a part can be merged");
+    // A table is made of files.
+    let folder = std::env::temp_dir().join(format!("lancer-fuzz-{}", std::process::id()));
+    let name = folder.join(part::ENDING);
+    std::fs::create_dir_all(&folder).expect("there is a folder for temporary files");
+    std::fs::write(&name, whole_part(&PLANNED.1)).expect("a temporary file can be written");
+    let whole = part::index(whole_part(&PLANNED.1).as_bytes(), &name).expect("a part is one");
+    let whole = [whole];
+    let table = merge::merge(&whole, &[], None).expect("a part can be merged").dataset().expect("the part is there");
+    std::fs::remove_dir_all(&folder).expect("the folder is there");
     let written = [DatasetForm::Csv, DatasetForm::JsonLines].map(|form| table.encode(form).expect("it can be written"));
     let tests = literals("src/sweep/dataset.rs").into_iter().chain(literals("src/sweep/front.rs"));
     pieces(written.into_iter().chain(tests).collect(), LONGEST)
@@ -157,18 +164,24 @@ fn read_part(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_whole_part(text: &str, input: &[u8], seen: &mut Seen) {
-    match part::parse(text, Path::new("a.part.jsonl"), true) {
+    match part::index(text.as_bytes(), Path::new("a.part.jsonl")) {
         Err(why) => seen.text(&why),
         Ok(whole) => {
             seen.count("rows", whole.rows.len());
-            let drawn = whole.rows.iter().filter(|row| row.figures.is_some()).count();
+            let row = |row: &part::IndexedRow| {
+                let line = &text.as_bytes()[row.start as usize..][..row.length as usize];
+                serde_json::from_slice::<PointRow>(line).expect("a line of the index is a row")
+            };
+            let rows: Vec<PointRow> = whole.rows.iter().map(row).collect();
+            let drawn = rows.iter().filter(|row| row.figures.is_some()).count();
             seen.count("drawn", drawn);
-            let again = part::parse(&part::text(&whole.recording, &whole.rows), Path::new("b"), true);
-            assert!(again.is_ok_and(|again| again.rows == whole.rows), "a part is read as it was written");
+            let again = part::index(part::text(&whole.recording, &rows).as_bytes(), Path::new("b"));
+            let results = |part: &part::StudyPart| -> Vec<_> { part.rows.iter().map(|row| (row.point, row.result)).collect() };
+            assert!(again.is_ok_and(|again| results(&again) == results(&whole)), "a part is read as it was written");
             let plan = is_sample(input, 2).then_some(&PLANNED.0);
-            match merge::merge(vec![whole], &[], plan) {
+            match merge::merge(&[whole], &[], plan) {
                 Err(report) => seen.report(&report, input),
-                Ok(table) => seen.count("merged", table.rows.len()),
+                Ok(table) => seen.count("merged", table.rows()),
             }
             seen.plant(PlantedFault::Panic, drawn == 3);
         }

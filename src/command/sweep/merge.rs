@@ -49,9 +49,9 @@ pub(super) fn execute(arguments: &MergeArguments, terminal: &mut Terminal) -> Re
 
 /// Merges a folder to a table, and gives the number of its rows.
 pub(super) fn write(folder: &Path, plan: Option<&StudyPlan>, output: &Path) -> Result<usize, Failure> {
-    let (parts, damaged) = part::read_all(folder, plan.is_none())?;
-    let table = merge(parts, &damaged, plan)?;
+    let (parts, damaged) = part::read_all(folder)?;
+    let table = merge(&parts, &damaged, plan)?;
     let form = DatasetForm::of(output).expect("the parser lets only such names pass");
-    files::write(output, &table.encode(form)?)?;
-    Ok(table.rows.len())
+    table.write(form, output)?;
+    Ok(table.rows())
 }

@@ -11,6 +11,7 @@ use crate::numeral::{count, grouped};
 use crate::settings::Settings;
 use crate::sweep::contents::Contents;
 use crate::sweep::group;
+use crate::sweep::identity;
 use crate::sweep::part;
 use crate::sweep::plan::{PlannedPoint, StudyPlan};
 use crate::sweep::recordings::RecordingStore;
@@ -99,8 +100,9 @@ pub(super) fn run(
         Report::from(Diagnostic::error(format!("the folder {} cannot be made: {error}", folder.display())))
     })?;
     // Points that are there: a part that was cut short has none.
-    let (parts, _) = part::read_all(folder, false)?;
+    let (parts, _) = part::read_all(folder)?;
     let known = part::points(&parts);
+    let is_known = |point: &PlannedPoint| identity::read(&point.point).is_some_and(|point| known.contains(&point));
     let mut work = SweepWork { recordings: 0, points: 0, skipped: 0, refused: 0, reused: None };
     let groups: Vec<Vec<&PlannedPoint>> = plan
         .groups()
@@ -112,8 +114,7 @@ pub(super) fn run(
     let bar = terminal.progress("points", groups.iter().map(|group| group.len() as u64).sum());
     for group in groups {
         let all = group.len() as u64;
-        let group: Vec<&PlannedPoint> =
-            group.into_iter().filter(|point| !known.contains_key(point.point.as_str())).collect();
+        let group: Vec<&PlannedPoint> = group.into_iter().filter(|point| !is_known(point)).collect();
         work.skipped += all - group.len() as u64;
         if let Some(first) = group.first() {
             let settings =

@@ -1,6 +1,7 @@
 //! Points that share a recording, run together: the work items run once, and each point is a replay of them.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use emu::code::Code;
 use emu::machine::{Config, RunOutcome};
@@ -96,10 +97,10 @@ pub fn run(
             return Ok(points.iter().map(|settings| (labels(settings), Err(reason.clone()))).collect());
         }
     };
-    // Pictures differ only where a machine was stepped and its programs depend on time.
+    // Pictures differ only where a machine was stepped and its programs depend on time; those in double precision by the levels of their rays.
     let crop = load.build.crop;
-    let mut errors: HashMap<String, PictureError> = HashMap::new();
-    let mut reference: Option<Picture> = None;
+    let mut errors: HashMap<(String, Option<u32>), PictureError> = HashMap::new();
+    let mut references: HashMap<Option<u32>, Picture> = HashMap::new();
     let code = Code::new(&load.build.cores, &load.isa, first.machine.config.timing());
     let mut results = Vec::with_capacity(points.len());
     for (settings, frame) in points.iter().zip(frames) {
@@ -113,25 +114,29 @@ pub fn run(
         };
         let words = colour_words(&image, &frame, &crop);
         let hash = image_hash((crop.width, crop.height), &words);
-        if settings.results.error && !errors.contains_key(&hash) {
+        let bounces = settings.results.reference_bounces;
+        let pair = (hash, bounces);
+        if settings.results.error && !errors.contains_key(&pair) {
             let drawn = picture(&image, &words, (crop.width, crop.height));
-            let reference = match &reference {
-                Some(known) => known,
-                None => reference.insert(in_double_precision(&job, &image, &crop)?),
+            let reference = match references.entry(bounces) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(place) => place.insert(in_double_precision(&job, bounces, &image, &crop)?),
             };
-            errors.extend(metrics::compare(&drawn, reference).map(|error| (hash.clone(), error)));
+            errors.extend(metrics::compare(&drawn, reference).map(|error| (pair.clone(), error)));
         }
-        let error = errors.get(&hash).filter(|_| settings.results.error);
+        let error = errors.get(&pair).filter(|_| settings.results.error);
         let counts = frame.tally.counts(&code);
-        results.push((labels(settings), Ok(figures(settings, &job, &load, &frame, counts, error, hash))));
+        results.push((labels(settings), Ok(figures(settings, &job, &load, &frame, counts, error, pair.0))));
     }
     Ok(results)
 }
 
-/// The drawn part in double precision, which decides samples on edges as the kernels do.
-fn in_double_precision(job: &Job, image: &MemoryImage, crop: &Crop) -> Result<Picture, Failure> {
+/// The drawn part in double precision, with so many levels of secondary rays, or as many as the job's picture has; it decides samples on edges as the
+/// kernels do.
+fn in_double_precision(job: &Job, bounces: Option<u32>, image: &MemoryImage, crop: &Crop) -> Result<Picture, Failure> {
     let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
-    let reference = Reference::new(&job.scene, &job.reference_view(), SearchMethod::Hierarchy)?;
+    let view = Job { reference_bounces: bounces, ..job.clone() }.reference_view();
+    let reference = Reference::new(&job.scene, &view, SearchMethod::Hierarchy)?;
     Ok(part(&reference, &samples, crop))
 }
 

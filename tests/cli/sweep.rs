@@ -190,6 +190,24 @@ fn points_that_cannot_be_drawn_are_rows_with_a_reason() {
 }
 
 #[test]
+fn points_are_compared_with_the_levels_that_they_name() {
+    let session = Session::new();
+    session.write(
+        "study.toml",
+        "[settings]\nscene = \"mirrors\"\nview.size = [12, 9]\n[product]\nresults.reference_bounces = [0, 5]\n",
+    );
+    let run = session.run("sweep study.toml -o a.csv");
+    assert!(run.out.starts_with("2 points from 1 recording;"), "{} {}", run.out, run.messages);
+    let table = table(&session, "a.csv");
+    let column = table[0].iter().position(|name| name == "rmse").unwrap();
+    for (row, bounces) in table[1..].iter().zip([0, 5]) {
+        let alone = session.json(&format!("render mirrors --size 12x9 --set results.reference_bounces={bounces}"));
+        assert_eq!(row[column].parse::<f64>().ok(), alone["error"]["rmse"].as_f64());
+    }
+    assert_ne!(table[1][column], table[2][column]);
+}
+
+#[test]
 fn a_study_is_looked_at() {
     let session = session();
     assert_eq!(session.run("sweep study.toml -o a.csv").code, 0);

@@ -238,9 +238,13 @@ pub(crate) fn picture(image: &MemoryImage, words: &[[i32; 3]], size: (u32, u32))
 }
 
 impl Drawing {
-    /// Words of the cores' program and octets of global memory.
+    /// Words of the programs and octets of global memory.
     pub fn stored_words(&self) -> StoredWords {
-        StoredWords { program: self.build.cores.words.len() as u64, memory_octets: self.frame.memory.size() as u64 }
+        StoredWords {
+            program: self.build.cores.words.len() as u64,
+            main_program: self.build.main.words.len() as u64,
+            memory_octets: self.frame.memory.size() as u64,
+        }
     }
 
     /// Pixels that had no ray of their own.

@@ -179,7 +179,7 @@ fn protection_comment(key: &str) -> Option<String> {
     };
     let [first @ .., last] = kind.protections() else { return None };
     let others: String = first.iter().map(|&one| format!(", {}", shown(one))).collect();
-    Some(format!("{}: none{others} or {} (ours: none; the report has none)", kind.protected(), shown(*last)))
+    Some(format!("{}: none{others} or {} (ours: none; the report has none)", kind.protected()?, shown(*last)))
 }
 
 /// Comment behind an item of `[energy]` or `[area]`: its figures by each table for words of the machine's length.

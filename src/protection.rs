@@ -10,6 +10,8 @@ use serde::Serialize;
 pub struct StoredWords {
     /// Words of the cores' program.
     pub program: u64,
+    /// Words of the main processor's program.
+    pub main_program: u64,
     /// Octets of global memory.
     pub memory_octets: u64,
 }
@@ -19,7 +21,7 @@ pub struct StoredWords {
 pub struct ProtectionUse {
     /// Octets of check bits that went over the bus beside those of `bus.moved`, rounded down.
     pub octets: u64,
-    /// Check bits that are stored, of all cores and global memory together.
+    /// Check bits that are stored, of all cores, the main processor and global memory together.
     pub storage_bits: u64,
 }
 
@@ -31,12 +33,13 @@ impl ProtectionUse {
     }
 }
 
-/// Check bits of a structure with a protection, of all cores together; what is only moved or computed stores none.
+/// Check bits of a structure with a protection, of all cores and the main processor together; what is only moved or computed stores none.
 pub fn check_bits(config: &Config, stored: StoredWords, kind: FaultKind, protection: Protection) -> u64 {
     let cores = u64::from(config.cores);
     let words = match kind {
-        FaultKind::Registers | FaultKind::Buffer => cores * core_words(config, kind),
-        FaultKind::Program => cores * stored.program,
+        FaultKind::Registers => (cores + 1) * core_words(config, kind),
+        FaultKind::Buffer => cores * core_words(config, kind) + u64::from(config.main.buffer_octets).div_ceil(4),
+        FaultKind::Program => cores * stored.program + stored.main_program,
         FaultKind::Memory => stored.memory_octets.div_ceil(4),
         _ => 0,
     };
@@ -62,20 +65,22 @@ pub fn named(config: &Config) -> String {
 
 #[cfg(test)]
 mod tests {
+    use emu::machine::config::MainConfig;
     use emu::quantity::Octets;
 
     use super::*;
 
     #[test]
     fn bits_and_octets_by_hand() {
-        let mut config = Config { cores: 2, buffer_octets: 10, ..Config::default() };
-        let stored = StoredWords { program: 100, memory_octets: 4_001 };
+        let main = MainConfig { buffer_octets: 21, ..MainConfig::default() };
+        let mut config = Config { cores: 2, buffer_octets: 10, main, ..Config::default() };
+        let stored = StoredWords { program: 100, main_program: 30, memory_octets: 4_001 };
         assert_eq!(ProtectionUse::new(&config, stored, Octets(1_000)), ProtectionUse::default());
         for (kind, protection, octets, storage_bits) in [
-            // 143 words a core with 7 bits each, three words of a buffer with 1.
-            (FaultKind::Registers, Protection::Secded, 0, 2 * 143 * 7),
-            (FaultKind::Buffer, Protection::Parity, 0, 2 * 3),
-            (FaultKind::Program, Protection::Secded, 0, 2 * 100 * 7),
+            // 143 words a processor with 7 bits each, three words of a core's buffer and six of the main processor's with 1.
+            (FaultKind::Registers, Protection::Secded, 0, 3 * 143 * 7),
+            (FaultKind::Buffer, Protection::Parity, 0, 2 * 3 + 6),
+            (FaultKind::Program, Protection::Secded, 0, (2 * 100 + 30) * 7),
             // 1,000 octets with 7 bits beside each 32, which are 218.75; 1,001 words of memory.
             (FaultKind::Memory, Protection::Secded, 218, 1_001 * 7),
             (FaultKind::Bus, Protection::Parity, 31, 0),

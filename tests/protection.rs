@@ -15,7 +15,9 @@ fn a_machine_says_what_it_protects_and_reads_back_as_itself() {
     session.write("safe.toml", SAFE);
     let text = session.succeed("machine safe.toml");
     for kind in ProtectionConfig::keys() {
-        assert!(text.contains(&format!("# {}: none, ", kind.protected())) || kind.protections().len() == 1, "{text}");
+        let next = if kind.protections().len() == 1 { " or " } else { ", " };
+        let protected = kind.protected().expect("a key has something to protect");
+        assert!(text.contains(&format!("# {protected}: none{next}{}", kind.protections()[0].name())), "{text}");
     }
     for line in [
         "[protection]\n",
@@ -39,12 +41,22 @@ fn a_machine_says_what_it_protects_and_reads_back_as_itself() {
 #[test]
 fn names_that_protect_nothing_are_refused() {
     let session = Session::new();
+    // In the place of a key without a protection all that there are are named.
+    let mut keys: Vec<String> =
+        ProtectionConfig::keys().map(|kind| format!("machine.protection.{}", kind.name())).collect();
+    keys.sort();
+    let keys = format!(", {}, machine.step_limit", keys.join(", "));
     for (set, message) in [
         ("protection.memory=ec", "did you mean `ecc`?"),
+        ("protection.memory=ec", "unknown protection `ec`, expected one of `none`, `parity`, `ecc`\n"),
+        ("protection.stuck_arbiter=retri", "unknown protection `retri`, expected one of `none`, `watchdog`\n"),
+        ("protection=ecc", "a table is expected, not text \"ecc\""),
         ("protection.memory=residue", "`protection.memory` is `residue`, but must be one of none, parity, ecc"),
         ("protection.memory=residue", "`residue` protects results"),
         ("protection.memry=ecc", "did you mean"),
-        ("protection.doubled_grant=ecc", "machine.protection.memory"),
+        ("protection.doubled_grant=ecc", &keys),
+        // A beat is out of its range before a slot has to hold it.
+        ("bus.arbiter=tdma --set bus.clocks_per_beat=600000000000000000", "the nearest possible value is 1000000"),
     ] {
         session.fail(&format!("render triangle --size 2x2 --set {set}"), 1, message);
     }
@@ -89,10 +101,14 @@ fn a_protected_picture_takes_what_inject_says_that_it_costs() {
         assert_eq!(protected["protection"]["octets"], cost["octets"], "{name}");
         assert_eq!(protected["protection"]["storage_bits"], cost["storage_bits"], "{name}");
         let more = least(&protected) - least(&plain);
+        // No table has a figure for a bit on the bus, for a program store or for a counter.
+        use FaultKind::{Buffer, Memory, Registers, Results};
+        let has_figure = matches!(kind, Registers | Buffer | Memory | Results);
+        assert_eq!(cost["energy_nj"].is_null(), !has_figure, "{name}");
         let wanted = cost["energy_nj"]["least"].as_f64().unwrap_or(0.0);
         assert!((more - wanted).abs() < 1e-6 * least(&plain), "{name}: {more} {wanted}");
         // Check bits in a core take place in it.
-        let has_area = matches!(kind, FaultKind::Registers | FaultKind::Buffer);
+        let has_area = matches!(kind, Registers | Buffer);
         let area = |result: &Value| result["energy"]["area_um2"]["most"].as_f64().unwrap();
         assert_eq!(area(&protected) > area(&plain), has_area, "{name}");
         clocks += usize::from(whole(&cost["clocks"]) != 0);
@@ -100,13 +116,65 @@ fn a_protected_picture_takes_what_inject_says_that_it_costs() {
         bits += usize::from(whole(&cost["storage_bits"]) != 0);
         energy += usize::from(wanted != 0.0);
     }
-    // Two codes each of memory and bus, and results computed twice; two codes each of registers, buffer, program and memory; no table has
-    // figures for bus and program.
+    // Two codes each of memory and bus, and results computed twice; two codes each of registers, buffer, program and memory; two each of what has
+    // figures.
     assert_eq!((clocks, octets, bits, energy), (5, 4, 8, 8));
-    // With several protections each costs as by itself, but for the rounding of bursts.
     session.write("safe.toml", SAFE);
     let text = session.run(&format!("render {picture} --machine safe.toml --full")).out;
     assert!(text.contains("protected: memory ecc, results duplicated, lost_grant retry; "), "{text}");
+}
+
+#[test]
+fn several_protections_take_what_each_takes_by_itself() {
+    let session = Session::new();
+    // On one core nobody waits for another one's burst, so clocks of computing and of the bus add up.
+    let one = "mirrors --size 5x4 --cores 1 --set main.traffic=false";
+    let plain = session.json(&format!("render {one}"));
+    let all = ["memory=ecc", "bus=parity", "registers=ecc", "buffer=parity", "results=duplicated", "lost_grant=retry"];
+    let keys = |names: &[&str]| names.iter().map(|name| format!(" --set protection.{name}")).collect::<String>();
+    let protected = |names: &[&str]| session.json(&format!("render {one}{}", keys(names)));
+    let number = |result: &Value, path: &str| result.pointer(path).and_then(Value::as_i64).expect(path);
+    let (together, alone) = (protected(&all), all.map(|name| protected(&[name])));
+    for path in ["/clocks", "/cores/0/busy", "/bus/busy", "/protection/octets", "/protection/storage_bits"] {
+        let more = |result: &Value| number(result, path) - number(&plain, path);
+        let (sum, found) = (alone.iter().map(more).sum::<i64>(), more(&together));
+        // Two codes on the bus are rounded once in a burst together, and once each by themselves, up to a clock each; octets once in a frame.
+        let bursts = if ["/clocks", "/bus/busy"].contains(&path) { number(&plain, "/bus/bursts") } else { 0 };
+        let least = sum - bursts;
+        let most = sum + i64::from(path == "/protection/octets");
+        assert!((least..=most).contains(&found) && found > 0, "{path}: {found}, {sum}");
+    }
+}
+
+#[test]
+fn a_cost_that_is_not_known_is_null() {
+    let session = Session::new();
+    let base = "inject triangle --size 4x3 --injections 1 --kind memory,registers,bus";
+    let cost = |more: &str, kind: &str, protection: &str| {
+        let result = session.json(&format!("{base}{more}"));
+        let named = |list: &Value, key: &str, name: &str| -> Value {
+            list.as_array().unwrap().iter().find(|one| one[key] == name).unwrap().clone()
+        };
+        named(&named(&result["kinds"], "kind", kind)["protections"], "protection", protection)["cost"].clone()
+    };
+    // A slot of 2 clocks has room for a beat, and none for its check bits.
+    let narrow = " --arbiter tdma --set bus.slot_clocks=2";
+    for (kind, protection) in [("memory", "ecc"), ("bus", "parity")] {
+        for (key, value) in cost(narrow, kind, protection).as_object().unwrap() {
+            assert_eq!(*value, Value::Null, "{kind} {key}");
+        }
+    }
+    let registers = cost(narrow, "registers", "parity");
+    assert_eq!((&registers["clocks"], &registers["storage_bits"]), (&0.into(), &(5 * 143).into()));
+    // A figure of the machine's own, be it 0, is one.
+    let own = |figure: &str| {
+        session.write("own.toml", &format!("[energy]\nbus = \"{figure} aJ; mine\"\n"));
+        cost(" --machine own.toml", "bus", "ecc")["energy_nj"].clone()
+    };
+    assert_eq!(own("0"), serde_json::json!({ "least": 0.0, "most": 0.0 }));
+    let octets = cost("", "bus", "ecc")["octets"].as_f64().unwrap();
+    let (found, wanted) = (own("32000")["least"].as_f64().unwrap(), 8.0 * octets * 32_000e-9);
+    assert!((found - wanted).abs() <= 8.0 * 32_000e-9, "{found} {wanted}");
 }
 
 #[test]
@@ -119,6 +187,26 @@ fn a_core_by_hand() {
     let classes = ["add", "sub", "mul", "div", "cmp"];
     let operations: u64 = classes.iter().map(|class| plain["counts"][class].as_u64().unwrap()).sum();
     assert_eq!((busy(&plain), busy(&twice)), (operations, 2 * operations));
+    // The main processor's results are computed twice as well, and its registers have the same check bits: 9,000 * 33 / 32 = 9,281.25 aJ a bit.
+    let main_busy = |result: &Value| result["main"]["busy"].as_u64().unwrap();
+    assert!(main_busy(&plain) > 0 && main_busy(&twice) == 2 * main_busy(&plain), "{}", plain["main"]);
+    let registers = "register = \"9000 aJ; mine\"\n";
+    let others = ["add", "sub", "mul", "div", "cmp", "address", "buffer", "memory", "bus"];
+    let others: String = others.iter().map(|item| format!("{item} = \"none\"\n")).collect();
+    session.write("registers.toml", &format!("[energy]\n{registers}{others}"));
+    let energies = ["", " --set protection.registers=parity"].map(|more| {
+        session.json(&format!("{one} --machine registers.toml --energy{more}"))["energy"]["tables"][0].clone()
+    });
+    let [functions, parity] = energies.clone().map(|table| table["functions"].as_array().unwrap().clone());
+    let mut programs = std::collections::BTreeSet::new();
+    for (function, parity) in functions.iter().zip(&parity) {
+        let attojoules = |function: &Value| function["attojoules"].as_u64().unwrap();
+        assert_eq!(9_281 * attojoules(function), 9_000 * attojoules(parity), "{function}");
+        assert_eq!(function["name"], parity["name"]);
+        programs.insert(function["program"].as_str().unwrap());
+    }
+    assert_eq!(programs.into_iter().collect::<Vec<_>>(), ["cores", "main"]);
+    assert_eq!(energies[1]["lines"][0]["formula"], "33/32 x (9000 aJ)");
     // Bursts of 4 octets take 8 clocks, with a code 8 * 39 / 32 = 9.75, which are 10; the few of 2 octets 4 clocks and 4.875, which are 5.
     let words = format!("{one} --set bus.burst_octets=4");
     let [plain, coded] = ["", " --set protection.memory=ecc"].map(|more| session.json(&format!("{words}{more}")));
@@ -157,9 +245,64 @@ fn inject_takes_its_protections_from_the_machine() {
     let [undone, plain] = [format!("{base} --machine safe.toml {undone}"), format!("{base} --cores 3")]
         .map(|command| without_name(&session.succeed(&format!("{command} --json"))));
     assert_eq!(undone, plain);
+    // On one line `--set` holds, as after every option.
+    let both = format!("{base} --cores 3 --protect memory=ecc,results=duplicated --set protection.memory=none");
+    let one = format!("{base} --cores 3 --protect results=duplicated");
+    let [both, one] = [both, one].map(|command| session.succeed(&format!("{command} --json")));
+    assert_eq!(both, one);
+    assert!(one.matches("\"duplicated\"").count() >= 2 && !one.contains("\"protect\""), "{one}");
+    // Where nothing does harm, nothing is the most vulnerable.
+    let harmless = "inject triangle --size 4x3 --injections 30 --kind memory --protect memory=ecc";
+    assert!(!session.succeed(harmless).contains("Most vulnerable"));
     // A code for which a slot has no room is refused as a key of the machine is.
     let narrow = "inject cornell --size 4x3 --arbiter tdma --set bus.slot_clocks=2 --protect memory=ecc";
     session.fail(narrow, 1, "`bus.slot_clocks` is 2");
+}
+
+#[test]
+fn a_result_with_protections_is_changed_by_options() {
+    let session = Session::new();
+    let protect = |text: &str| -> Value {
+        let result: Value = serde_json::from_str(text).unwrap();
+        let keys = result["settings"]["machine"]["protection"].as_object().unwrap().clone();
+        Value::Object(keys.into_iter().filter(|(_, name)| name != "none").collect())
+    };
+    let base = "inject triangle --size 4x3 --injections 3 --kind memory,bus";
+    let first = session.succeed(&format!("{base} --protect memory=ecc,bus=parity --json"));
+    assert_eq!(protect(&first), serde_json::json!({ "memory": "ecc", "bus": "parity" }));
+    session.write("result.json", &first);
+    // Results of before had protections beside the machine, or in both places.
+    let mut older: Value = serde_json::from_str(&first).unwrap();
+    older["settings"]["protect"] = serde_json::json!(["memory=ecc", "bus=parity"]);
+    session.write("both.json", &older.to_string());
+    older["settings"]["machine"].as_object_mut().unwrap().remove("protection");
+    session.write("beside.json", &older.to_string());
+    for (more, wanted) in [
+        ("", serde_json::json!({ "memory": "ecc", "bus": "parity" })),
+        ("--set protection.memory=none", serde_json::json!({ "bus": "parity" })),
+        ("--set protection.memory=parity", serde_json::json!({ "memory": "parity", "bus": "parity" })),
+        (
+            "--protect memory=ecc --set protection.memory=parity --set protection.bus=none",
+            serde_json::json!({ "memory": "parity" }),
+        ),
+    ] {
+        for file in ["result.json", "both.json", "beside.json"] {
+            let found = session.succeed(&format!("inject --settings {file} --json {more}"));
+            // Beside the machine they were an option, in whose place another one stands.
+            if file != "beside.json" || !more.starts_with("--protect") {
+                assert_eq!(protect(&found), wanted, "{file} {more}");
+            }
+            if more.is_empty() {
+                assert_eq!(found, first, "{file}");
+            }
+        }
+    }
+    for file in ["result.json", "both.json"] {
+        let other = session.succeed(&format!("inject --settings {file} --json --machine report"));
+        assert_eq!(other, session.succeed(&format!("{base} --json")), "{file}");
+        let less = session.succeed(&format!("inject --settings {file} --json --protect memory=none"));
+        assert_eq!(less, session.succeed(&format!("{base} --json --protect bus=parity")), "{file}");
+    }
 }
 
 #[test]

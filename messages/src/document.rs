@@ -152,8 +152,8 @@ fn span(document: &TomlPart<'_>, key: &str) -> Option<Range<usize>> {
     Some(part.span())
 }
 
-/// A message of the TOML reader about a value of the wrong type, without the names of types of Rust.
-fn plain(message: &str) -> String {
+/// A message of a reader of TOML or JSON about a value of the wrong type, without the names of types of Rust.
+pub fn plain(message: &str) -> String {
     let wrong = ["invalid type: ", "invalid value: "].iter().find_map(|start| message.strip_prefix(start));
     let Some((found, wanted)) = wrong.and_then(|rest| rest.split_once(", expected ")) else {
         return match message.strip_prefix("missing field ") {

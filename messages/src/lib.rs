@@ -11,7 +11,7 @@ mod suggestion;
 mod visible;
 
 pub use diagnostic::{Diagnostic, Severity};
-pub use document::read_toml;
+pub use document::{plain, read_toml};
 pub use packed::{packed_by, refuse_packed, refuse_utf16};
 pub use report::Report;
 pub use source::{Place, Source};

@@ -10,7 +10,8 @@ use super::{EffortArguments, KernelArguments, MachineArguments, NumberArguments,
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::settings::{
-    EffortSettings, FileSettings, FormatSettings, KernelSettings, ResultSettings, SceneSettings, Settings, ViewSettings,
+    EffortSettings, FileSettings, FormatSettings, KernelSettings, MachineSettings, ResultSettings, SceneSettings,
+    Settings, ViewSettings,
 };
 use crate::sweep::contents::Contents;
 
@@ -45,6 +46,22 @@ impl JobArguments {
     /// # Errors
     /// Mistakes in the machine's file, and changes of no key or to no value.
     pub fn settings(&self) -> Result<Settings, Report> {
+        self.settings_on(self.chosen_machine()?)
+    }
+
+    /// The machine with what options say otherwise; changes of single keys are not made yet.
+    ///
+    /// # Errors
+    /// Mistakes in the machine's file.
+    pub fn chosen_machine(&self) -> Result<MachineSettings, Report> {
+        self.machine.keys.chosen(&self.numbers.arithmetic)
+    }
+
+    /// The settings that a command line asks for on a machine that a command's own options have changed: changes of single keys come after those.
+    ///
+    /// # Errors
+    /// Changes of no key or to no value.
+    pub fn settings_on(&self, chosen: MachineSettings) -> Result<Settings, Report> {
         let JobArguments { scene, mesh, view, kernels, machine, numbers, effort } = self;
         let shown = |path: &Path| path.display().to_string();
         let file = |path: &PathBuf| FileSettings { file: shown(path), hash: None };
@@ -80,7 +97,7 @@ impl JobArguments {
             tree: effort.tree.settings(),
             layout: machine.layout,
             formats: FormatSettings::from(&overrides::collect(&numbers.formats.formats)),
-            machine: machine.keys.chosen(&numbers.arithmetic)?,
+            machine: chosen,
             engine: machine.engine,
             results: ResultSettings::default(),
         };

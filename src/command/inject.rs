@@ -40,8 +40,8 @@ Exit codes: 0 done, 1 errors in the input, 2 usage, 3 a kernel trapped without a
 
 /// Puts faults into a frame on purpose, and says what comes of them: nothing, a wrong pixel, wrong counts, a trap or a hang.
 ///
-/// An injection flips bits of one word at one moment of the frame, or makes one grant of the bus, the arbiter or a core go wrong. It depends on its kind, its number, the seed and the settings alone. Shares have
-/// intervals of 95 % (Wilson).
+/// An injection flips bits of one word at one moment of the frame, or makes one grant of the bus, the arbiter or a core go wrong. It depends on its
+/// kind, its number, the seed and the settings alone. Shares have intervals of 95 % (Wilson).
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct InjectArguments {
@@ -62,8 +62,8 @@ pub struct InjectArguments {
     /// Beginning of the series of random numbers.
     #[arg(long, value_name = "N", default_value = "1", help_heading = "Faults")]
     seed: u64,
-    /// Protection of a structure, such as memory=ecc, in the place of the machine's own (key `protection`); may be repeated. Words have parity or ecc, results duplicated or residue, lost grants retry,
-    /// they and other faults of the machine a watchdog.
+    /// Protection of a structure, such as memory=ecc, in the place of the machine's own (key `protection`); may be repeated. Words have parity or
+    /// ecc, results duplicated or residue, lost grants retry, they and other faults of the machine a watchdog.
     #[arg(long = "protect", value_name = "KIND=PROTECTION,..", value_delimiter = ',', value_parser = protection, help_heading = "Faults")]
     protections: Vec<(FaultKind, Protection)>,
     /// Runs the injection of this number alone, of the one kind that is named, and shows it.
@@ -108,8 +108,6 @@ pub(super) struct InjectSettings {
     pattern: &'static str,
     /// Beginning of the series of random numbers.
     seed: u64,
-    /// Protections, such as memory=ecc: those of `machine.protection`.
-    protect: Vec<String>,
     /// Number of the one injection that was run; left out where all were.
     #[serde(skip_serializing_if = "Option::is_none")]
     number: Option<u64>,
@@ -117,7 +115,6 @@ pub(super) struct InjectSettings {
 
 impl InjectSettings {
     fn new(job: &Job, campaign: &FaultCampaign, number: Option<u64>) -> InjectSettings {
-        let protect = |(kind, protection): (FaultKind, Protection)| format!("{}={}", kind.name(), protection.name());
         InjectSettings {
             job: Settings::of(job),
             kind: campaign.kinds.iter().map(|kind| kind.name()).collect(),
@@ -125,7 +122,6 @@ impl InjectSettings {
             bits: campaign.shape.bits,
             pattern: campaign.shape.pattern.name(),
             seed: campaign.seed,
-            protect: campaign.protections.iter().map(protect).collect(),
             number,
         }
     }
@@ -159,12 +155,12 @@ fn picture(text: &str) -> Result<PathBuf, String> {
 }
 
 impl InjectArguments {
-    /// The picture, on a machine whose protections are its own but for those that options say otherwise; of two for one structure the last one holds.
+    /// The picture, on a machine whose protections are its own but for those that options say otherwise, before changes of single keys; of two for one
+    /// structure the last one holds.
     fn protected_job(&self) -> Result<Job, Failure> {
-        let mut job = self.job.job()?;
-        self.protections.iter().for_each(|&(kind, protection)| job.machine.protection.set(kind, protection));
-        job.machine.check()?;
-        Ok(job)
+        let mut machine = self.job.chosen_machine()?;
+        self.protections.iter().for_each(|&(kind, protection)| machine.config.protection.set(kind, protection));
+        self.job.job_of(&self.job.settings_on(machine)?)
     }
 
     /// The faults that are wanted, on a machine with these protections.

@@ -228,6 +228,10 @@ fn picture(stored: &StoredSettings) -> Result<OptionList, Report> {
     // `lancer inject` has what it injects, `lancer extension suggest` a file and a number.
     let lists = [("machines", "machine"), ("cores", "cores"), ("extension", "file.isa"), ("most", "most")];
     let faults = ["kind", "injections", "bits", "pattern", "seed", "protect", "number"].map(|name| (name, name));
+    // Protections are keys of the machine; an older result has them beside it, or in both places.
+    if stored.keys.get("machine").is_some_and(|machine| machine.get("protection").is_some()) {
+        stored.keys.remove("protect");
+    }
     for (key, option) in lists.into_iter().chain(faults) {
         let values = match stored.keys.remove(key) {
             Some(Value::Array(values)) => values,

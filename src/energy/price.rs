@@ -158,7 +158,11 @@ impl<'c> Pricing<'c> {
             Protection::Duplicated => (1, 1),
             residue => (residue.check_bits(), self.word()),
         };
-        let class = |class: Class| self.protected(class_item(class)?, &[FaultKind::Results], results);
+        // As their clocks, that is of elementary operations alone: nobody computes an address, a copy or a jump twice.
+        let class = |class: Class| match class.is_elementary() {
+            true => self.protected(class_item(class)?, &[FaultKind::Results], results),
+            false => self.price(class_item(class)?),
+        };
         let bits = |item, kinds: &[FaultKind]| {
             let check = kinds.iter().map(|&kind| self.protection(kind).check_bits()).sum();
             self.protected(item, kinds, (check, WORD_BITS))
@@ -177,12 +181,17 @@ impl<'c> Pricing<'c> {
         self.config.protection.of(kind)
     }
 
-    /// Price of an item whose protections add a share, each figure rounded to the nearest whole one.
+    /// Price of an item whose protections add a share, each figure rounded to the nearest whole one, and its formula with that factor.
     ///
-    /// A bit of a register for 9,000 aJ with a bit of parity beside each 32 comes to 9,000 * 33 / 32 = 9,281.25, so it is 9,281.
+    /// A bit of a register for 9,000 aJ with a bit of parity beside each 32 comes to 9,000 * 33 / 32 = 9,281.25, so it is 9,281 by `33/32 x (9000 aJ)`.
     fn protected(&self, item: &'static str, kinds: &[FaultKind], (part, whole): (u32, u32)) -> Option<ItemPrice> {
         let mut price = self.price(item)?;
         if part != 0 {
+            let factor = match (whole + part) % whole {
+                0 => format!("{}", (whole + part) / whole),
+                _ => format!("{}/{whole}", whole + part),
+            };
+            price.formula = format!("{factor} x ({})", price.formula);
             let (part, whole) = (u128::from(part), u128::from(whole));
             let with = |figure: u64| (u128::from(figure) * (2 * (whole + part)) + whole) / (2 * whole);
             price.figures = price.figures.map(|figure| with(figure).try_into().unwrap_or(u64::MAX));
@@ -203,7 +212,7 @@ pub fn class_item(class: Class) -> Option<&'static str> {
 }
 
 /// Energies of everything that an activity consists of.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Prices {
     /// Of an operation of each class.
     pub classes: [Option<ItemPrice>; Class::ALL.len()],
@@ -250,14 +259,24 @@ mod tests {
 
     #[test]
     fn protected_items_cost_what_they_take_in_addition() {
+        let other = ["address", "jump", "logic", "move"].map(|item| format!("{item} = \"70 aJ; by hand\"\n")).concat();
         let energy = "add = \"64 aJ; by hand\"\nbus = \"640 aJ; by hand\"\nmemory = \"3200 aJ; by hand\"\nregister = \"9000 aJ; by hand\"\n";
-        let source = messages::Source::new("m.toml", format!("[energy]\n{energy}"));
+        let source = messages::Source::new("m.toml", format!("[energy]\n{energy}{other}"));
         let plain = Config::parse(&source).unwrap();
         let figures = |protections: &[(FaultKind, Protection)]| {
             let mut config = plain.clone();
             protections.iter().for_each(|&(kind, protection)| config.protection.set(kind, protection));
             let prices = Pricing::all(&config, Dimension::Energy)[0].prices();
             let add = prices.classes[Class::Add as usize].clone().unwrap();
+            // What is not executed twice, and has no residue, costs the same on every machine.
+            for class in [Class::Address, Class::Jump, Class::Logic, Class::Move] {
+                let price = prices.classes[class as usize].as_ref().unwrap();
+                assert_eq!((price.figures[0], price.formula.as_str()), (70, "70 aJ"), "{}", class.name());
+            }
+            for bit in [&prices.register, &prices.memory, &prices.bus].map(|bit| bit.as_ref().unwrap()) {
+                let is_other = ["9000 aJ", "3200 aJ", "640 aJ"].contains(&bit.formula.as_str());
+                assert_eq!(is_other, !bit.source.contains("protected"), "{bit:?}");
+            }
             let bits = [prices.register, prices.memory, prices.bus].map(|price| figure(price.as_ref()));
             (add, bits)
         };
@@ -271,7 +290,10 @@ mod tests {
         assert_eq!(bits, [9_000, 3_900, 800]);
         // Twice; and two bits of 32 in addition.
         let (add, _) = figures(&[(FaultKind::Results, Protection::Duplicated)]);
-        assert_eq!((add.figures[0], add.source.as_str()), (128, "by hand; protected by duplicated"));
-        assert_eq!(figures(&[(FaultKind::Results, Protection::Residue)]).0.figures[0], 68);
+        let shown = |add: &ItemPrice| (add.figures[0], add.formula.clone(), add.source.clone());
+        let wanted = |each, formula: &str, source: &str| (each, formula.to_owned(), source.to_owned());
+        assert_eq!(shown(&add), wanted(128, "2 x (64 aJ)", "by hand; protected by duplicated"));
+        let (add, _) = figures(&[(FaultKind::Results, Protection::Residue)]);
+        assert_eq!(shown(&add), wanted(68, "34/32 x (64 aJ)", "by hand; protected by residue"));
     }
 }

@@ -41,7 +41,7 @@ use crate::settings::{Settings, VERSION, hash};
 use row::{InjectionClass, InjectionRow};
 
 /// Version of [`result::InjectResult`].
-pub const SCHEMA: &str = "lancer-inject-1";
+pub const SCHEMA: &str = "lancer-inject-2";
 
 /// Injections that share a part: few enough that a run which is stopped loses little.
 pub const BLOCK: u64 = 500;

@@ -103,7 +103,7 @@ pub struct InjectionRow {
 }
 
 /// Version of [`InjectionResult`].
-pub const ROW_SCHEMA: &str = "lancer-injection-1";
+pub const ROW_SCHEMA: &str = "lancer-injection-2";
 
 /// An injection by itself.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

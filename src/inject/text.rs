@@ -1,5 +1,7 @@
 //! A campaign as people read it.
 
+use std::fmt::Display;
+
 use super::result::{GroupShare, InjectResult, KindVulnerability};
 use super::row::{InjectionClass, InjectionRow};
 use super::statistics::ShareInterval;
@@ -30,7 +32,10 @@ pub fn text(result: &InjectResult) -> String {
         grouped(limits.main_steps)
     );
     text += &classes(&result.kinds);
-    text += &format!("\nMost vulnerable: {}\n", result.most_vulnerable.join(", "));
+    // Where nothing does harm, no structure is more vulnerable than another.
+    if result.kinds.iter().any(|kind| kind.vulnerability.share > 0.0) {
+        text += &format!("\nMost vulnerable: {}\n", result.most_vulnerable.join(", "));
+    }
     text += &harm(&result.kinds);
     text += &functions(&result.kinds);
     text += &formats(&result.kinds);
@@ -141,6 +146,11 @@ fn left_unprotected(result: &InjectResult) -> String {
     format!("\nBits that may be left unprotected for a picture within 1/255:\n{}", table(rows))
 }
 
+/// Cost in addition, as `+5`; a dash where it is not known.
+fn more(cost: Option<impl Display>) -> String {
+    cost.map_or_else(|| "-".to_owned(), |cost| format!("+{cost}"))
+}
+
 fn protections(kinds: &[KindVulnerability]) -> String {
     let head = [
         "structure",
@@ -167,10 +177,10 @@ fn protections(kinds: &[KindVulnerability]) -> String {
                 grouped(effect.passed),
                 grouped(effect.unknown),
                 interval(&effect.left),
-                cost.clocks_share.map_or_else(|| "-".to_owned(), |share| format!("+{}", percent(share))),
-                format!("+{}", grouped(cost.octets)),
-                format!("+{}", grouped(cost.storage_bits)),
-                cost.energy_nj.map_or_else(|| "-".to_owned(), |range| format!("+{range}")),
+                more(cost.clocks_share.map(percent)),
+                more(cost.octets.map(grouped)),
+                more(cost.storage_bits.map(grouped)),
+                more(cost.energy_nj),
             ]);
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use emu::machine::preset::{PRESETS, Preset};
-use messages::{Diagnostic, Report, did_you_mean};
+use messages::{Diagnostic, Report, did_you_mean, plain};
 use serde_json::{Map, Number, Value};
 
 use super::key::{self, KEYS};
@@ -203,11 +203,11 @@ fn words(text: &str) -> Value {
 
 /// A reader's message about a value in plain words, with what is near.
 pub fn explained(message: &str) -> Diagnostic {
-    let plain = message.split(" at line ").next().unwrap_or(message);
-    let diagnostic = Diagnostic::error(plain.to_owned());
+    let first = message.split(" at line ").next().unwrap_or(message);
+    let diagnostic = Diagnostic::error(plain(first));
     // The reader quotes the wrong word first and then all that would be right.
-    let mut quoted = plain.split('`').skip(1).step_by(2);
-    let near = quoted.next().filter(|_| plain.contains("unknown")).and_then(|wrong| did_you_mean(wrong, quoted));
+    let mut quoted = first.split('`').skip(1).step_by(2);
+    let near = quoted.next().filter(|_| first.contains("unknown")).and_then(|wrong| did_you_mean(wrong, quoted));
     match near {
         Some(hint) => diagnostic.hint(hint),
         None => diagnostic,
@@ -280,6 +280,8 @@ mod tests {
             ("bounces=31", "`effort.bounces` is out of its range"),
             ("cores", "sets no key"),
             ("kernels=[1]", "--set kernels=[1]: "),
+            ("protection=ecc", "--set protection=ecc: a table is expected, not text \"ecc\""),
+            ("bus=3", "a table is expected, not text \"3\""),
         ] {
             let error = Settings::default().with(&[set.to_owned()]).expect_err(set).render(false);
             assert!(error.contains(message), "{set}: {error}");

@@ -33,8 +33,8 @@ const RESULTS: &[(&str, &str)] = &[
     ("accuracy triangle --size 4x3 --words 32,8 --timing", "lancer-accuracy-1"),
     ("formats triangle --size 4x3 --shifts 1 --check triangle", "lancer-formats-1"),
     ("stress --case normalising", "lancer-stress-1"),
-    ("inject triangle --size 4x3 --injections 40", "lancer-inject-1"),
-    ("inject triangle --size 4x3 --kind memory --number 3", "lancer-injection-1"),
+    ("inject triangle --size 4x3 --injections 40", "lancer-inject-2"),
+    ("inject triangle --size 4x3 --kind memory --number 3", "lancer-injection-2"),
     (
         concat!(
             "extension compare ",

@@ -76,6 +76,7 @@ impl FaultKind {
     pub const fn is_lasting(self) -> bool {
         matches!(self, FaultKind::Program | FaultKind::Memory)
     }
+
     /// Protections that the structure, or the part of the machine, may have; none for what no code or counter is made for.
     pub const fn protections(self) -> &'static [Protection] {
         match self {
@@ -93,19 +94,21 @@ impl FaultKind {
         [Protection::Unprotected].into_iter().chain(self.protections().iter().copied()).map(Protection::name)
     }
 
-    /// Part of the machine that a protection of it protects, in words.
-    pub const fn protected(self) -> &'static str {
+    /// Part of the machine that a protection of it protects, in words; `None` where there is no protection.
+    pub const fn protected(self) -> Option<&'static str> {
         match self {
-            FaultKind::Registers => "registers of the cores",
-            FaultKind::Buffer => "local buffers of the cores",
-            FaultKind::Program => "program stores of the cores",
-            FaultKind::Memory => "global memory, whose check bits go over the bus with each word",
-            FaultKind::Bus => "addresses, data and messages on the bus",
-            FaultKind::Results => "what elementary operations compute",
-            FaultKind::LostGrant => "requests of the bus whose grant is lost",
-            FaultKind::DoubledGrant => "transfers that are granted at once",
-            FaultKind::StuckArbiter => "the arbiter",
-            FaultKind::StoppedCore => "cores that ask for nothing any more",
+            FaultKind::Registers => Some("registers of the cores and the main processor"),
+            FaultKind::Buffer => Some("local buffers of the cores and the main processor"),
+            FaultKind::Program => Some("program stores of the cores and the main processor"),
+            FaultKind::Memory => {
+                Some("global memory, whose check bits go over the bus with each word, those of messages among them")
+            }
+            FaultKind::Bus => Some("addresses, data and messages on the bus"),
+            FaultKind::Results => Some("what elementary operations compute"),
+            FaultKind::LostGrant => Some("requests of the bus whose grant is lost"),
+            FaultKind::DoubledGrant => None,
+            FaultKind::StuckArbiter => Some("the arbiter"),
+            FaultKind::StoppedCore => Some("cores that ask for nothing any more"),
         }
     }
 }

@@ -57,10 +57,11 @@ impl Config {
         check("bus.clocks_per_beat", self.bus.clocks_per_beat, 1, MOST_CLOCKS);
         check("bus.setup_clocks", self.bus.setup_clocks, 0, MOST_CLOCKS);
         check("bus.burst_octets", self.bus.burst_octets, 0, MOST_BUFFER_OCTETS.into());
-        // A slot that holds no beat would never be granted to anybody.
-        let slot = if self.bus.arbiter == ArbiterKind::Tdma {
+        // A slot that holds no beat would never be granted to anybody; a beat out of its own range has been named already.
+        let has_beat = self.bus.clocks_per_beat.max(self.bus.setup_clocks) <= MOST_CLOCKS;
+        let slot = if self.bus.arbiter == ArbiterKind::Tdma && has_beat {
             let one = self.bus.clocks_of_words(self.protection.moved_bits()).div_ceil(u64::from(WORD_BITS));
-            self.bus.setup_clocks.saturating_add(one)
+            self.bus.setup_clocks + one
         } else {
             1
         };
@@ -171,6 +172,12 @@ mod tests {
             ("[clocks]\nmul = \"linear 2 3\"", "m.toml:2:7", "no whole number from 1"),
             ("[protection]\nmemry = \"ecc\"", "m.toml:2:1", "did you mean `memory`?"),
             ("[protection]\nmemory = \"ec\"", "m.toml:2:10", "did you mean `ecc`?"),
+            (
+                "[protection]\nmemory = \"ec\"",
+                "m.toml:2:10",
+                "unknown protection `ec`, expected one of `none`, `parity`, `ecc`\n",
+            ),
+            ("protection = \"ecc\"", "m.toml:1:14", "a table is expected, not text \"ecc\""),
             ("[protection]\nmemory = \"residue\"", "m.toml:2:10", "must be one of none, parity, ecc"),
             ("[protection]\nmemory = true", "m.toml:2:10", "a text in quotation marks is expected"),
             ("[protection]\ndoubled_grant = \"ecc\"", "m.toml:2:1", "unknown structure `doubled_grant`"),
@@ -179,6 +186,16 @@ mod tests {
                 "[bus]\narbiter = \"tdma\"\nslot_clocks = 2\n[protection]\nbus = \"parity\"",
                 "m.toml:3:15",
                 "the nearest possible value is 3",
+            ),
+            (
+                "[bus]\narbiter = \"tdma\"\nclocks_per_beat = 600000000000000000",
+                "m.toml:3:19",
+                "the nearest possible value is 1000000",
+            ),
+            (
+                "[bus]\narbiter = \"tdma\"\nsetup_clocks = 9000000000000000000",
+                "m.toml:3:16",
+                "the nearest possible value is 1000000",
             ),
             ("[energy]\nmul = \"0.2 b pJ\"", "m.toml:2:7", "a line is a figure, a unit, `;` and where it comes from"),
             ("[energy]\nmul = \"0.2 b um2; me\"", "m.toml:2:7", "it is one of aJ, fJ, pJ, nJ"),

@@ -2,9 +2,10 @@
 //! of a fault is not said here.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use messages::Diagnostic;
-use serde::de::Error;
+use serde::de::{DeserializeSeed, Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::code::quantity::Octets;
@@ -74,18 +75,9 @@ impl Protection {
     }
 }
 
-impl<'de> Deserialize<'de> for Protection {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Protection, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        let names = || Protection::ALL.map(|one| format!("`{}`", one.name())).join(", ");
-        Protection::from_name(&name)
-            .ok_or_else(|| D::Error::custom(format!("unknown protection `{name}`, expected one of {}", names())))
-    }
-}
-
 /// Protection of each structure and part of the machine, written as a table of names; what it leaves out has none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "BTreeMap<ProtectedKey, Protection>", into = "BTreeMap<&'static str, &'static str>")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(into = "BTreeMap<&'static str, &'static str>")]
 pub struct ProtectionConfig([Protection; FaultKind::ALL.len()]);
 
 impl ProtectionConfig {
@@ -150,7 +142,6 @@ impl ProtectionConfig {
 }
 
 /// Name of a structure as a key, so that a message about an unknown one has the key's place.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct ProtectedKey(FaultKind);
 
 impl<'de> Deserialize<'de> for ProtectedKey {
@@ -162,11 +153,43 @@ impl<'de> Deserialize<'de> for ProtectedKey {
     }
 }
 
-impl From<BTreeMap<ProtectedKey, Protection>> for ProtectionConfig {
-    fn from(table: BTreeMap<ProtectedKey, Protection>) -> ProtectionConfig {
+/// Reads the protection of a structure, so that a message about an unknown one names those of this structure. One of another structure is read: what
+/// it is made for is said where ranges are checked.
+struct ProtectionSeed(FaultKind);
+
+impl<'de> DeserializeSeed<'de> for ProtectionSeed {
+    type Value = Protection;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Protection, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let names = || self.0.protection_names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        Protection::from_name(&name)
+            .ok_or_else(|| D::Error::custom(format!("unknown protection `{name}`, expected one of {}", names())))
+    }
+}
+
+/// Reads the table.
+struct ProtectionTable;
+
+impl<'de> Visitor<'de> for ProtectionTable {
+    type Value = ProtectionConfig;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> Result<ProtectionConfig, A::Error> {
         let mut all = ProtectionConfig::default();
-        table.into_iter().for_each(|(ProtectedKey(kind), protection)| all.set(kind, protection));
-        all
+        while let Some(ProtectedKey(kind)) = table.next_key()? {
+            all.set(kind, table.next_value_seed(ProtectionSeed(kind))?);
+        }
+        Ok(all)
+    }
+}
+
+impl<'de> Deserialize<'de> for ProtectionConfig {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<ProtectionConfig, D::Error> {
+        deserializer.deserialize_map(ProtectionTable)
     }
 }
 

@@ -9,7 +9,7 @@ use kernels::build::{Crop, KernelOptions};
 use messages::Report;
 use scenes::cadrage::Overrides;
 use scenes::image::MemoryOptions;
-use scenes::kdtree::{BuildMethod, Depth};
+use scenes::kdtree::{BuildMethod, Depth, VISIT};
 use scenes::layout::Layout;
 use scenes::model::{Scene, View};
 
@@ -55,6 +55,8 @@ pub struct Job {
     pub kd_depth: Option<Depth>,
     /// Way to build the kd tree; `None` for that of the set of kernels.
     pub kd_method: Option<BuildMethod>,
+    /// Cost of visiting a node of the kd tree in percent of testing a triangle, for trees of the method `binned`.
+    pub kd_visit: u32,
     /// Fraction bits that the scene does not choose.
     pub formats: Overrides,
     /// The instructions that there are.
@@ -98,6 +100,7 @@ impl Job {
             layout: None,
             kd_depth: None,
             kd_method: None,
+            kd_visit: VISIT,
             formats: Overrides::default(),
             isa: Isa::base(),
             extensions: Vec::new(),
@@ -123,6 +126,7 @@ impl Job {
             layout: self.layout(),
             kd_depth: self.kd_depth(),
             kd_method: self.kd_method(),
+            kd_visit: self.kd_visit,
             formats: self.formats,
         }
     }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use scenes::kdtree::{BuildMethod, DEEPEST, Depth};
+use scenes::kdtree::{BuildMethod, DEEPEST, Depth, VISIT};
 
 use crate::settings::TreeSettings;
 
@@ -17,12 +17,16 @@ pub struct TreeArguments {
     /// found sooner and a bound on the references [default: binned; report with the report's kernels, or layout where there are none].
     #[arg(long, value_name = "METHOD", value_parser = method())]
     pub kd_build: Option<BuildMethod>,
+    /// Cost of visiting a node of the kd tree in percent of testing a triangle, 1 to 100, by which `binned` chooses planes: the lower, the more nodes and
+    /// the fewer tests.
+    #[arg(long, value_name = "PERCENT", value_parser = clap::value_parser!(u32).range(1..=i64::from(VISIT)), default_value_t = VISIT)]
+    pub kd_visit: u32,
 }
 
 impl TreeArguments {
     /// The settings that they stand for.
     pub fn settings(&self) -> TreeSettings {
-        TreeSettings { depth: self.kd_depth, build: self.kd_build }
+        TreeSettings { depth: self.kd_depth, build: self.kd_build, visit: self.kd_visit }
     }
 }
 

@@ -201,6 +201,7 @@ fn show(
         let tree = arguments.tree.settings();
         jobs[1].kd_depth = tree.depth.or(jobs[1].kd_depth);
         jobs[1].kd_method = tree.build.or(jobs[1].kd_method);
+        (jobs[0].kd_visit, jobs[1].kd_visit) = (tree.visit, tree.visit);
         jobs[0].kd_depth = jobs[1].kd_depth;
         jobs[0].kd_method = jobs[0].kd_method.or(jobs[1].kd_method);
         let (pair, drawings) =

@@ -16,12 +16,14 @@ pub struct FormatChoice {
     pub word: u32,
     /// Fraction bits of each quantity; `None` for those that scene and word choose.
     pub bits: FractionBits,
+    /// Cost of visiting a node of the kd tree in percent of testing a triangle; `None` for that of the job.
+    pub visit: Option<u32>,
 }
 
 impl FormatChoice {
     /// A word in which the scene chooses all formats.
     pub const fn uniform(word: u32) -> FormatChoice {
-        FormatChoice { word, bits: [None; 6] }
+        FormatChoice { word, bits: [None; 6], visit: None }
     }
 
     /// The choice with other fraction bits of a quantity, by its number.

@@ -93,6 +93,8 @@ pub struct UniformWord {
     pub layout: &'static str,
     /// True for the shortest that keeps the demand, with the guard.
     pub is_best: bool,
+    /// Cost of visiting a node of the kd tree that it was drawn with, in percent of testing a triangle.
+    pub visit: u32,
     /// Figures in it.
     #[serde(flatten)]
     pub figures: ChoiceFigures,
@@ -142,9 +144,14 @@ pub struct FormatsResult {
     pub found: ChoiceFigures,
     /// Their part of the octets and nanojoules of the shortest uniform word.
     pub share: UniformShare,
+    /// Cost of visiting a node of the kd tree that was found with them, in percent of testing a triangle.
+    pub visit: u32,
+    /// Their part of the octets and nanojoules of that word in the same tree: what formats save by themselves.
+    pub share_of_tree: UniformShare,
     /// Bits of the fields in memory, by scene.
     pub fields: Vec<SceneFields>,
-    /// Words in which the scenes choose all formats, longest first; then the shortest that keeps the demand in the layout `wide`.
+    /// Words in which the scenes choose all formats, longest first; then the shortest that keeps the demand once more, in the tree that was found and in the
+    /// layout `wide`.
     pub uniform: Vec<UniformWord>,
     /// The scenes that were searched with, at other shifts.
     pub seen: Vec<TrialFigures>,
@@ -202,14 +209,16 @@ pub fn find(
     let layout = job.layout().name();
     let uniform = words.into_iter().map(|word| {
         let figures = measure(FormatChoice::uniform(word))?;
-        Ok(UniformWord { word, layout, is_best: best == word, figures })
+        Ok(UniformWord { word, layout, is_best: best == word, visit: job.kd_visit, figures })
     });
     let mut uniform = uniform.collect::<Result<Vec<_>, Failure>>()?;
-    let best_figures = measure(FormatChoice::uniform(best))?;
-    let share = UniformShare {
-        octets: figures.octets / best_figures.octets,
-        nj: [figures.pixel_nj.least / best_figures.pixel_nj.least, figures.pixel_nj.most / best_figures.pixel_nj.most],
-    };
+    let share = UniformShare::new(&figures, &measure(FormatChoice::uniform(best))?);
+    let visit = found.visit.unwrap_or(job.kd_visit);
+    let in_tree = measure(FormatChoice { visit: found.visit, ..FormatChoice::uniform(best) })?;
+    let share_of_tree = UniformShare::new(&figures, &in_tree);
+    if visit != job.kd_visit {
+        uniform.push(UniformWord { word: best, layout, is_best: false, visit, figures: in_tree });
+    }
     // What each bit buys: one fewer, and one more.
     let mut bits = Vec::new();
     for (at, quantity) in quantities.iter().enumerate() {
@@ -250,7 +259,8 @@ pub fn find(
         let figures = ChoiceFigures::of(trials.measure(FormatChoice::uniform(best))?);
         drawn += trials.drawn;
         reused += trials.reused;
-        uniform.push(UniformWord { word: best, layout: Layout::Wide.name(), is_best: true, figures });
+        let layout = Layout::Wide.name();
+        uniform.push(UniformWord { word: best, layout, is_best: true, visit: job.kd_visit, figures });
     }
     // What the search did not see.
     let mut checked = |scenes: &NamedScenes| -> Result<Vec<TrialFigures>, Failure> {
@@ -274,6 +284,8 @@ pub fn find(
         quantities: bits,
         found: figures,
         share,
+        visit,
+        share_of_tree,
         fields,
         uniform,
         seen,
@@ -283,6 +295,14 @@ pub fn find(
     }))
 }
 
+impl UniformShare {
+    /// The share that figures have in those of a word.
+    fn new(found: &ChoiceFigures, word: &ChoiceFigures) -> UniformShare {
+        let nj = [found.pixel_nj.least / word.pixel_nj.least, found.pixel_nj.most / word.pixel_nj.most];
+        UniformShare { octets: found.octets / word.octets, nj }
+    }
+}
+
 /// Figures of a choice that fits all scenes.
 fn fitting(figures: ChoiceFigures) -> Option<ChoiceFigures> {
     figures.scenes.iter().all(|scene| scene.refused.is_none()).then_some(figures)
@@ -290,7 +310,8 @@ fn fitting(figures: ChoiceFigures) -> Option<ChoiceFigures> {
 
 /// Bits of the fields of each scene in memory.
 fn fields(job: &Job, scenes: &NamedScenes, choice: &FormatChoice) -> Vec<SceneFields> {
-    let options = MemoryOptions { word: choice.word, formats: choice.overrides(), ..job.memory() };
+    let kd_visit = choice.visit.unwrap_or(job.kd_visit);
+    let options = MemoryOptions { word: choice.word, formats: choice.overrides(), kd_visit, ..job.memory() };
     let of_scene = |(name, scene): &(String, Scene)| {
         let view = View { shift: SEARCHED_SHIFTS[0], ..job.view.clone() };
         let image = scenes::image::build(scene, &view, &options).ok()?;

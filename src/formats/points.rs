@@ -12,18 +12,18 @@ impl FormatsResult {
     pub fn study(&self, name: &str, machine: &MachineSettings, scenes: &[String]) -> Study {
         let one = |key: &str, value: Value| vec![(key.to_owned(), value)];
         // Quantities have fraction bits, or none where the scene chooses; the last is the word.
-        let choice = |word: Value, layout: &str, bits: &dyn Fn(usize) -> Value| -> Assignments {
+        let choice = |word: Value, layout: &str, visit: u32, bits: &dyn Fn(usize) -> Value| -> Assignments {
             let quantities = self.quantities.iter().enumerate().filter(|(_, one)| one.integer.is_some());
             let formats = quantities.map(|(at, one)| (format!("formats.{}", one.quantity), bits(at)));
-            let others = [("layout", json!(layout)), ("machine.arithmetic.word", word)];
+            let others = [("layout", json!(layout)), ("tree.visit", json!(visit)), ("machine.arithmetic.word", word)];
             others.map(|(key, value)| (key.to_owned(), value)).into_iter().chain(formats).collect()
         };
         let word = self.quantities.last().map_or(Value::Null, |word| json!(word.bits));
-        let found = choice(word, self.layout, &|at| {
+        let found = choice(word, self.layout, self.visit, &|at| {
             let one = &self.quantities[at];
             if one.is_given { json!(one.bits) } else { Value::Null }
         });
-        let uniform = self.uniform.iter().map(|one| choice(json!(one.word), one.layout, &|_| Value::Null));
+        let uniform = self.uniform.iter().map(|one| choice(json!(one.word), one.layout, one.visit, &|_| Value::Null));
         let base = Settings {
             view: ViewSettings { size: Some([self.width, self.height]), ..ViewSettings::default() },
             machine: machine.clone(),

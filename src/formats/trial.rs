@@ -74,7 +74,8 @@ pub struct TrialFigures {
 
 /// Pictures of scenes, drawn when they are asked for.
 pub struct FormatTrials<'a> {
-    job: &'a Job,
+    /// The job that chooses all but formats and the tree.
+    pub job: &'a Job,
     demand: DemandedError,
     scenes: Vec<TrialScene>,
     /// Places of the scenes in the order in which they are tried: what failed last comes first.
@@ -117,6 +118,7 @@ impl<'a> FormatTrials<'a> {
         job.view = view.clone();
         job.formats = choice.overrides();
         job.machine.arithmetic.word = choice.word;
+        job.kd_visit = choice.visit.unwrap_or(job.kd_visit);
         job
     }
 

@@ -7,6 +7,7 @@ use kernels::build::{Crop, KernelOptions};
 use kernels::{Function, KernelSet};
 use messages::{Diagnostic, Report, Source};
 use scenes::cadrage::Overrides;
+use scenes::kdtree::VISIT;
 use scenes::model::{Camera, View};
 use scenes::read::Loaded;
 
@@ -38,7 +39,7 @@ impl TreeSettings {
 
     /// Puts the choices into a job.
     pub fn choose(&self, job: &mut Job) {
-        (job.kd_depth, job.kd_method) = (self.depth, self.build);
+        (job.kd_depth, job.kd_method, job.kd_visit) = (self.depth, self.build, self.visit);
     }
 }
 
@@ -53,6 +54,7 @@ impl Settings {
             layout: _,
             kd_depth: _,
             kd_method: _,
+            kd_visit,
             formats,
             isa: _,
             extensions,
@@ -111,7 +113,7 @@ impl Settings {
                 skips: *skips,
                 interpolate: *interpolate,
             },
-            tree: TreeSettings { depth: Some(job.kd_depth()), build: Some(job.kd_method()) },
+            tree: TreeSettings { depth: Some(job.kd_depth()), build: Some(job.kd_method()), visit: *kd_visit },
             layout: Some(job.layout()),
             formats: FormatSettings::from(formats),
             machine: MachineSettings { name: machine_name.clone(), config: machine.clone() },
@@ -240,6 +242,7 @@ impl Settings {
         check("view.size", is_size, &format!("width and height lie in 1 to {LONGEST}"));
         check("view.ambient", *ambient >= 0.0 && ambient.is_finite(), "an intensity is at least 0");
         check("view.background", background.iter().all(in_one), "the components of a colour lie in 0 to 1");
+        check("tree.visit", (1..=VISIT).contains(&self.tree.visit), &format!("1 to {VISIT} percent of a test"));
         let levels = format!("0 to {MOST_BOUNCES} levels");
         check("effort.bounces", self.effort.bounces <= MOST_BOUNCES, &levels);
         let bounces = self.results.reference_bounces;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::{FROM, Settings};
 
 /// Options of the command line with the keys that they set; an option of several values sets what is below its key.
-pub const OPTIONS: [(&str, &str); 33] = [
+pub const OPTIONS: [(&str, &str); 34] = [
     ("scene", "scene.name"),
     ("mesh", "scene.mesh"),
     ("camera", "view.camera"),
@@ -41,6 +41,7 @@ pub const OPTIONS: [(&str, &str); 33] = [
     ("interpolate", "effort.interpolate"),
     ("kd-depth", "tree.depth"),
     ("kd-build", "tree.build"),
+    ("kd-visit", "tree.visit"),
     ("flags", "results.flags"),
     ("energy", "results.energy"),
     ("shadow", "results.shadow"),

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use emu::engine::EngineKind;
 use kernels::{KernelSet, Skips};
-use scenes::kdtree::{BuildMethod, Depth};
+use scenes::kdtree::{BuildMethod, Depth, VISIT};
 use scenes::layout::Layout;
 use scenes::model::View;
 use schemars::JsonSchema;
@@ -164,7 +164,7 @@ pub struct EffortSettings {
 }
 
 /// The kd tree.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TreeSettings {
     /// Levels below the root, or `auto`; results have those of the kernels where none were chosen.
@@ -175,6 +175,14 @@ pub struct TreeSettings {
     #[serde(with = "named::option")]
     #[schemars(with = "Option<String>")]
     pub build: Option<BuildMethod>,
+    /// Cost of visiting a node in percent of testing a triangle, 1 to 100, by which the method binned chooses planes.
+    pub visit: u32,
+}
+
+impl Default for TreeSettings {
+    fn default() -> TreeSettings {
+        TreeSettings { depth: None, build: None, visit: VISIT }
+    }
 }
 
 fn levels(_: &mut schemars::SchemaGenerator) -> schemars::Schema {

@@ -212,6 +212,7 @@ mod tests {
             ("effort.skips", _) => serde_json::json!(["unlit"]),
             ("tree.build", _) => "exact".into(),
             ("tree.depth", _) => 3.into(),
+            ("tree.visit", _) => 50.into(),
             ("layout", _) => "report".into(),
             ("engine", _) => "checked".into(),
             ("machine.arithmetic.quantization", _) => "TRN".into(),

@@ -45,7 +45,7 @@ const NO_SETTINGS: [&str; 19] = [
 ];
 
 /// A value of each option that is not its default.
-const SAMPLES: [(&str, &str); 33] = [
+const SAMPLES: [(&str, &str); 34] = [
     ("scene", "cornell"),
     ("mesh", "one.off"),
     ("camera", "perspective"),
@@ -76,6 +76,7 @@ const SAMPLES: [(&str, &str); 33] = [
     ("interpolate", "0.01"),
     ("kd-depth", "3"),
     ("kd-build", "exact"),
+    ("kd-visit", "50"),
     ("flags", ""),
     ("energy", ""),
     ("shadow", ""),
@@ -274,6 +275,7 @@ fn random_settings(lot: &mut SplitMix64) -> Settings {
     }
     settings.tree.depth = Some(one(lot, &[Depth::Auto, Depth::Levels(0), Depth::Levels(7), Depth::default()]));
     settings.tree.build = Some(one(lot, &BuildMethod::ALL));
+    settings.tree.visit = one(lot, &[100, 100, 25]);
     settings.formats.dir = one(lot, &[None, None, Some(14)]);
     settings.formats.colour = one(lot, &[None, None, None, Some(9)]);
     settings.machine = MachineSettings::find(one(lot, PRESETS).name).unwrap();

@@ -249,7 +249,7 @@ const SHOWING: [&str; 22] = [
 ];
 
 /// A value of each other option that is not its default.
-const SAMPLES: [(&str, &str); 38] = [
+const SAMPLES: [(&str, &str); 39] = [
     ("mesh", "triangle.off"),
     ("words", "17,18"),
     ("profiles", "vector,ray"),
@@ -261,6 +261,7 @@ const SAMPLES: [(&str, &str); 38] = [
     ("shifts", "3"),
     ("kd-depth", "3"),
     ("kd-build", "exact"),
+    ("kd-visit", "50"),
     ("camera", "perspective"),
     ("eye", "0,0,5"),
     ("look", "0,0.1,0"),

@@ -8,6 +8,7 @@ use kernels::{KernelOptions, KernelSet, build};
 use scenes::cadrage::Overrides;
 use scenes::generate::SCENES;
 use scenes::image::{self, MemoryImage, MemoryKind, MemoryOptions};
+use scenes::kdtree::VISIT;
 use scenes::layout::Layout;
 use scenes::model::{Camera, Scene, View};
 
@@ -25,12 +26,24 @@ struct Frame<'a> {
     set: KernelSet,
     modes: Modes,
     formats: Overrides,
+    /// Cost of visiting a node of the tree, in percent of a test.
+    visit: u32,
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    fn plain(scene: &'a Scene, view: &'a View, set: KernelSet, word: u32) -> Frame<'a> {
+        Frame { scene, view, set, modes: rounded(word), formats: Overrides::default(), visit: VISIT }
+    }
+
     fn image(&self, layout: Layout) -> Option<MemoryImage> {
-        let options =
-            MemoryOptions { word: self.modes.word, layout, formats: self.formats, ..MemoryOptions::default() };
+        let options = MemoryOptions {
+            word: self.modes.word,
+            layout,
+            kd_depth: self.set.kd_depth(),
+            kd_method: self.set.kd_method(),
+            kd_visit: self.visit,
+            formats: self.formats,
+        };
         image::build(self.scene, self.view, &options).ok()
     }
 
@@ -90,6 +103,7 @@ fn packed_scenes_are_drawn_as_wide_ones() {
                 set: SETS[turn % 3],
                 modes: Modes { word, quantization, overflow },
                 formats: Overrides { position, ..Overrides::default() },
+                visit: [VISIT, 20][turn % 5 % 2],
             };
             let Some(expected) = frame.pixels(Layout::Wide) else { continue };
             let found = frame.pixels(Layout::Packed);
@@ -108,8 +122,7 @@ fn packed_scenes_move_few_octets() {
         let scene = coarse(number, 2_000, SIZE);
         for set in SETS {
             let moved = |word, layout| {
-                let frame =
-                    Frame { scene: &scene, view: &view, set, modes: rounded(word), formats: Overrides::default() };
+                let frame = Frame::plain(&scene, &view, set, word);
                 let (_, frame) = frame.run(layout).expect("the scene fits");
                 frame.processors.iter().map(|processor| processor.octets.0).sum::<u64>()
             };
@@ -122,12 +135,31 @@ fn packed_scenes_move_few_octets() {
     }
 }
 
+/// The tree decides where a walk goes and which triangles it meets, and not what the picture is.
+#[test]
+fn trees_for_cheap_visits_give_the_same_pictures() {
+    let view = View { shift: [0.137, 0.071], ..View::new(SIZE) };
+    for number in 0..5 {
+        let scene = coarse(number, 2_000, SIZE);
+        for (set, layout) in
+            [(KernelSet::Ray, Layout::Packed), (KernelSet::Vector, Layout::Wide), (KernelSet::Packet, Layout::Packet)]
+        {
+            let drawn = |visit| {
+                let frame = Frame { visit, ..Frame::plain(&scene, &view, set, 22) };
+                let nodes = frame.image(layout).expect("the scene fits").tree.nodes;
+                (nodes, frame.pixels(layout))
+            };
+            let ((nodes, pixels), (more, same)) = (drawn(VISIT), drawn(25));
+            assert!(more > nodes && same == pixels, "{} by {set}: {nodes} and {more} nodes", scene.name);
+        }
+    }
+}
+
 #[test]
 fn the_reports_kernels_refuse_packed_structures() {
     let scene = coarse(0, 200, SIZE);
     let view = View::new(SIZE);
-    let frame =
-        Frame { scene: &scene, view: &view, set: KernelSet::Report, modes: rounded(16), formats: Overrides::default() };
+    let frame = Frame::plain(&scene, &view, KernelSet::Report, 16);
     let image = frame.image(Layout::Packed).expect("the scene fits");
     let options = KernelOptions { profile: KernelSet::Report, ..KernelOptions::default() };
     let refusal = build(&scene, &view, &image, &Isa::base(), &options).unwrap_err().render(false);

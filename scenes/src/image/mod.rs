@@ -34,6 +34,8 @@ pub struct MemoryOptions {
     pub kd_depth: kdtree::Depth,
     /// The method by which the kd tree is built.
     pub kd_method: kdtree::BuildMethod,
+    /// Cost of visiting a node of the kd tree in percent of testing a triangle, 1 to [`kdtree::VISIT`]; trees of [`kdtree::BuildMethod::Binned`] go by it.
+    pub kd_visit: u32,
     /// Fraction bits set by the user.
     pub formats: Overrides,
 }
@@ -45,6 +47,7 @@ impl Default for MemoryOptions {
             layout: Layout::Wide,
             kd_depth: kdtree::Depth::default(),
             kd_method: kdtree::BuildMethod::default(),
+            kd_visit: kdtree::VISIT,
             formats: Overrides::default(),
         }
     }
@@ -194,7 +197,7 @@ pub fn build(scene: &Scene, view: &View, options: &MemoryOptions) -> Result<Memo
     };
     let ambient = colour("the ambient intensity", view.ambient)?;
     let background = three(view.background, |x| colour("the background", x))?;
-    let tree = kdtree::build_in_order(&mesh, bounds, options.kd_depth, options.kd_method)?;
+    let tree = kdtree::build_in_order(&mesh, bounds, options.kd_depth, options.kd_method, options.kd_visit)?;
     let tables = encode::Tables::new(scene, &grid, &formats, layout)?;
     let parts =
         arrange::ImageParts { tree: &tree, scene, triangles: &mesh, tables: &tables, layout, shift, size: view.size };

@@ -8,24 +8,30 @@ use super::built::{BuildNode, BuiltTree, Subtree};
 use super::cut::halves;
 use super::membership::Part;
 use super::split::{Division, Side};
-use super::{Bounds, MOST_REFERENCES, Triangles};
+use super::{Bounds, MOST_REFERENCES, Triangles, VISIT};
 
 /// Triangles of a packet from which its two sides are worth a thread each.
 const WORTH_A_THREAD: usize = 4096;
 
-/// Triangles that stay in one leaf: dividing two gains next to nothing.
+/// Triangles that stay in one leaf where a visit costs as much as a test: dividing two gains next to nothing.
 const UNDIVIDED: usize = 2;
 
 /// Most references of a tree, in triangles of its scene. Ordinary scenes have one to four; a round cap cut into thin triangles would have
 /// thousands, and with this bound is still met at a tenth of the cost of boxes.
 pub(super) const MOST_COPIES: usize = 64;
 
-/// Builds the tree of `packet`, the whole triangles, in the box `root`, at most `depth` levels high. Its leaves hold at most [`MOST_COPIES`]
+/// Builds the tree of `packet`, the whole triangles, in the box `root`, at most `depth` levels high, for visits of nodes that cost `visit` percent of a test
+/// of a triangle. Its leaves hold at most [`MOST_COPIES`]
 /// references a triangle and [`MOST_REFERENCES`] together (or each triangle once, if those are more).
-pub(super) fn build<T: Triangles + ?Sized>(triangles: &T, packet: Vec<Part>, root: Bounds, depth: u32) -> BuiltTree {
+pub(super) fn build<T: Triangles + ?Sized>(
+    triangles: &T,
+    packet: Vec<Part>,
+    root: Bounds,
+    (depth, visit): (u32, u32),
+) -> BuiltTree {
     let most = MOST_REFERENCES as f64 / packet.len() as f64;
     let place = NodePlace { bounds: root, levels: depth, room: most.clamp(1.0, MOST_COPIES as f64) };
-    BuiltTree::new(root, BinnedBuilder { triangles }.large(packet, place))
+    BuiltTree::new(root, BinnedBuilder { triangles, visit }.large(packet, place))
 }
 
 /// A node to build.
@@ -53,6 +59,8 @@ impl NodePlace {
 
 struct BinnedBuilder<'a, T: ?Sized> {
     triangles: &'a T,
+    /// Cost of visiting a node in percent of a test.
+    visit: u32,
 }
 
 impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
@@ -68,7 +76,7 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
             subtree.triangles.shrink_to_fit();
             return vec![subtree];
         }
-        let Some(division) = plane(&place, &packet, &mut space.search) else {
+        let Some(division) = self.plane(&place, &packet, &mut space.search) else {
             leaf(packet.iter(), &mut subtree);
             return vec![subtree];
         };
@@ -100,7 +108,7 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
         loop {
             let count = end - start;
             let packet = &space.parts[start..end];
-            let Some(division) = plane(&place, packet, &mut space.search) else {
+            let Some(division) = self.plane(&place, packet, &mut space.search) else {
                 leaf(packet.iter(), subtree);
                 return;
             };
@@ -118,6 +126,13 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
             self.small(space, end..end + go, lower, subtree);
             (end, place) = (start + stay, upper);
         }
+    }
+
+    /// The plane that divides a node, if one may and does pay.
+    fn plane(&self, place: &NodePlace, packet: &[Part], search: &mut PlaneSearch) -> Option<Division> {
+        let undivided = if self.visit < VISIT { 1 } else { UNDIVIDED };
+        let may_divide = place.levels > 0 && packet.len() > undivided;
+        may_divide.then(|| search.plane(&place.bounds, packet, f64::from(self.visit) / f64::from(VISIT))).flatten()
     }
 
     /// Divides a packet: what is on the side `kept` stays, closed up, the rest goes to the front of `moved`, both in their order. Returns the numbers of both.
@@ -185,12 +200,6 @@ fn closed_up(parts: &mut [Part]) -> usize {
         kept += usize::from(!part.bounds.is_empty());
     }
     kept
-}
-
-/// The plane that divides a node, if one may and does pay.
-fn plane(place: &NodePlace, packet: &[Part], search: &mut PlaneSearch) -> Option<Division> {
-    let may_divide = place.levels > 0 && packet.len() > UNDIVIDED;
-    may_divide.then(|| search.plane(&place.bounds, packet)).flatten()
 }
 
 fn leaf<'a>(packet: impl ExactSizeIterator<Item = &'a Part>, subtree: &mut Subtree) {

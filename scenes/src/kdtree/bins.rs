@@ -24,16 +24,16 @@ pub(super) struct PlaneSearch {
 }
 
 impl PlaneSearch {
-    /// A good plane of a node, in which all of the parts lie; `None` when no plane pays.
-    pub(super) fn plane(&mut self, node: &Bounds, packet: &[Part]) -> Option<Division> {
+    /// A good plane of a node, in which all of the parts lie, where a visit costs `visit` tests, at most 1; `None` when no plane pays.
+    pub(super) fn plane(&mut self, node: &Bounds, packet: &[Part], visit: f64) -> Option<Division> {
         let found = match packet.len() {
             0 | 1 => return None,
-            2..=4 => return best_of_few::<4>(node, packet),
-            5..=8 => return best_of_few::<8>(node, packet),
-            9..64 => self.near_cheapest::<8>(node, packet.iter()),
-            64..256 => self.near_cheapest::<16>(node, packet.iter()),
-            count if count < 2 * SAMPLE => self.near_cheapest::<32>(node, packet.iter()),
-            count => self.near_cheapest::<32>(node, packet.iter().step_by(count / SAMPLE)),
+            2..=4 => return best_of_few::<4>(node, packet, visit),
+            5..=8 => return best_of_few::<8>(node, packet, visit),
+            9..64 => self.near_cheapest::<8>(node, packet.iter(), visit),
+            64..256 => self.near_cheapest::<16>(node, packet.iter(), visit),
+            count if count < 2 * SAMPLE => self.near_cheapest::<32>(node, packet.iter(), visit),
+            count => self.near_cheapest::<32>(node, packet.iter().step_by(count / SAMPLE), visit),
         };
         // It is rare that none pays there, and only then are all bounds sorted.
         found.or_else(|| {
@@ -48,13 +48,14 @@ impl PlaneSearch {
         &mut self,
         node: &Bounds,
         packet: impl ExactSizeIterator<Item = &'a Part> + Clone,
+        visit: f64,
     ) -> Option<Division> {
         let bins = Bins::<N>::new(node, packet.clone());
         let Cheapest { axis, bin, mut left, mut right } = bins.cheapest(node);
         self.gather(node, axis, bins.places[axis].two_bins(bin), packet);
         let PlaneSearch { lows, highs, flats, .. } = self;
         let slice = ChildCosts::new(node, axis);
-        let mut lowest = slice.undivided(bins.count);
+        let mut lowest = slice.undivided(bins.count, visit);
         let mut found = None;
         let [mut low, mut high, mut flat] = [0; 3];
         loop {
@@ -245,9 +246,9 @@ impl ChildCosts {
         ChildCosts { axis, low: node.low[axis].into(), side: f64::from(node.side(axis)), slope: a + b, face: a * b }
     }
 
-    /// Cost above which a plane does not pay: a visit of the node costs as much as a triangle.
-    fn undivided(&self, count: u32) -> f64 {
-        (self.slope * self.side + self.face) * (f64::from(count) - 1.0)
+    /// Cost above which a plane does not pay: a visit of the node costs as much as `visit` triangles.
+    fn undivided(&self, count: u32, visit: f64) -> f64 {
+        (self.slope * self.side + self.face) * (f64::from(count) - visit)
     }
 
     /// Cost of a plane `length` units above the node's lower face, with so many triangles left and right of it and in it.
@@ -301,10 +302,10 @@ const FEW_PLANES: usize = 16;
 
 /// The best plane of a node that holds at most `N` triangles, of equal ones the first axis by axis, lower bounds first: nothing is sorted, each plane is
 /// compared with each bound, [`TOGETHER`] at a time.
-fn best_of_few<const N: usize>(node: &Bounds, packet: &[Part]) -> Option<Division> {
+fn best_of_few<const N: usize>(node: &Bounds, packet: &[Part], visit: f64) -> Option<Division> {
     const { assert!(2 * N <= FEW_PLANES) };
     let slices = [0, 1, 2].map(|axis| ChildCosts::new(node, axis));
-    let undivided = slices[0].undivided(packet.len() as u32);
+    let undivided = slices[0].undivided(packet.len() as u32, visit);
     // The lowest costs so far in each place of a group, and the numbers of the planes that have them.
     let (mut lowest, mut cheapest) = (f64x4::splat(undivided), f64x4::ZERO);
     let mut planes = [[0; FEW_PLANES]; 3];

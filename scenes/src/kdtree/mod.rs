@@ -34,6 +34,9 @@ pub const DEPTH: u32 = 16;
 /// Deepest tree that can be asked for: beyond it a node would be divided more often than a coordinate has bits.
 pub const DEEPEST: u32 = 40;
 
+/// Cost of visiting a node in percent of that of testing a triangle, as the report has it.
+pub const VISIT: u32 = 100;
+
 /// References to triangles, over all leaves, beyond which a tree is refused (2^27, half a gibioctet of them).
 pub const MOST_REFERENCES: usize = 1 << 27;
 
@@ -186,16 +189,24 @@ pub fn build(
     depth: Depth,
     method: BuildMethod,
 ) -> Result<KdTree, Report> {
-    build_in_order(triangles, root, depth, method).map(|tree| tree.by_levels())
+    build_in_order(triangles, root, depth, method, VISIT).map(|tree| tree.by_levels())
 }
 
-/// The tree of [`build`] in the order of a walk, from which the memory image is written.
+/// The tree of [`build`] in the order of a walk, from which the memory image is written, for visits of nodes that cost so many percent of a test of a
+/// triangle, 1 to [`VISIT`]; other costs than that are for [`BuildMethod::Binned`].
 pub(crate) fn build_in_order(
     triangles: &(impl Triangles + ?Sized),
     root: Bounds,
     depth: Depth,
     method: BuildMethod,
+    visit: u32,
 ) -> Result<BuiltTree, Report> {
+    if visit != VISIT && method != BuildMethod::Binned {
+        let message =
+            format!("visits of nodes cost {visit} % of a test, but the kd tree is built by `{}`", method.name());
+        let hint = "only `--kd-build binned` goes by `--kd-visit`";
+        return Err(Diagnostic::error(message).hint(hint).into());
+    }
     let count = triangles.count();
     let levels = depth.levels(count);
     let tree = match method {
@@ -210,7 +221,7 @@ pub(crate) fn build_in_order(
         }
         BuildMethod::Binned => {
             let membership = ByPart { triangles };
-            Ok(binned::build(triangles, membership.whole(), root, levels))
+            Ok(binned::build(triangles, membership.whole(), root, (levels, visit)))
         }
         BuildMethod::Exact => {
             // Parts are cut from the triangles themselves, so no list of boxes is kept.

@@ -345,6 +345,35 @@ fn parts_make_a_better_tree_than_boxes() {
     assert!(parts < 0.95 * boxes, "{parts} by parts, {boxes} by boxes");
 }
 
+#[test]
+fn cheaper_visits_make_more_nodes_and_smaller_leaves() {
+    let triangles = terrain(30);
+    let tree = |visit| {
+        let tree = build_in_order(&triangles, root(&triangles), Depth::Auto, BuildMethod::Binned, visit).unwrap();
+        let statistics = tree.by_levels().statistics();
+        // Of n nodes (n + 1) / 2 are leaves.
+        (statistics.nodes, statistics.references as f64 / statistics.nodes.div_ceil(2) as f64)
+    };
+    let trees = [VISIT, 50, 25, 6].map(tree);
+    for pair in trees.windows(2) {
+        assert!(pair[0].0 < pair[1].0 && pair[0].1 > pair[1].1, "{trees:?}");
+    }
+}
+
+#[test]
+fn other_costs_of_visits_are_for_bins_alone() {
+    let triangles = terrain(3);
+    for method in [BuildMethod::Report, BuildMethod::Exact] {
+        let tree = |visit| build_in_order(&triangles, root(&triangles), Depth::Auto, method, visit);
+        assert!(tree(VISIT).is_ok());
+        let refused = tree(25).map(drop).expect_err("it has no such cost");
+        assert_eq!(
+            refused.0[0].message,
+            format!("visits of nodes cost 25 % of a test, but the kd tree is built by `{}`", method.name())
+        );
+    }
+}
+
 /// A round cap as drawing programs export it: `n` thin triangles around a point of the rim.
 fn cap(n: u32) -> Vec<[[i32; 3]; 3]> {
     let corner = |k: u32| {
@@ -386,11 +415,14 @@ proptest! {
     fn a_leaf_holds_every_triangle_of_which_a_part_is_in_it(
         triangles in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-200..200)), 1..40),
         scale in 0u32..23,
+        visit in 1..VISIT,
     ) {
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|v| v.map(|x| x << scale))).collect();
         let trees = [BuildMethod::Exact, BuildMethod::Binned]
             .map(|method| build(&triangles, root(&triangles), Depth::Levels(10), method).unwrap());
-        for node in trees.iter().flat_map(|tree| tree.nodes()) {
+        let cheap = build_in_order(&triangles, root(&triangles), Depth::Levels(10), BuildMethod::Binned, visit);
+        let cheap = cheap.unwrap().by_levels();
+        for node in trees.iter().chain([&cheap]).flat_map(|tree| tree.nodes()) {
             let Content::Leaf { triangles: packet } = node.content else { continue };
             prop_assert!(packet.is_sorted());
             for (index, triangle) in (0..).zip(&triangles) {

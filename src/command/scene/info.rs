@@ -80,6 +80,7 @@ pub(super) fn execute(
         layout: arguments.layout,
         kd_depth: arguments.tree.kd_depth.unwrap_or(kernels.kd_depth()),
         kd_method: arguments.tree.kd_build.unwrap_or(kernels.kd_method()),
+        kd_visit: arguments.tree.kd_visit,
         formats: overrides::collect(&arguments.formats),
     };
     let size = arguments.size.unwrap_or(loaded.scene.size);

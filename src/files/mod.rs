@@ -35,6 +35,14 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Report> {
     read_up_to(LARGEST, path)
 }
 
+/// Opens a file that a user names, to be read a piece at a time.
+///
+/// # Errors
+/// Those of the system.
+pub fn open(path: &Path) -> io::Result<fs::File> {
+    fs::File::open(path)
+}
+
 /// All octets of a file that may have no more than `largest`.
 ///
 /// # Errors

@@ -2,7 +2,6 @@
 //! short or changed is none.
 
 use std::collections::{BTreeSet, HashSet};
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -66,7 +65,7 @@ impl StudyPart {
     /// A file that has gone or changed since.
     pub fn row(&self, row: &IndexedRow) -> Result<PointRow, Report> {
         let read = || -> io::Result<PointRow> {
-            let mut file = File::open(&self.path)?;
+            let mut file = files::open(&self.path)?;
             file.seek(SeekFrom::Start(row.start))?;
             let mut line = Vec::new();
             file.take(row.length).read_to_end(&mut line)?;
@@ -155,7 +154,7 @@ pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Rep
 }
 
 fn read(path: &Path) -> Result<StudyPart, String> {
-    let file = File::open(path).map_err(|error| format!("it cannot be read: {error}"))?;
+    let file = files::open(path).map_err(|error| format!("it cannot be read: {error}"))?;
     index(BufReader::new(file), path)
 }
 

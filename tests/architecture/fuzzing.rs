@@ -30,9 +30,10 @@ const DOORS: [(&str, &[&str]); 20] = [
 ];
 
 /// Calls that open a file, or read a command line.
-const OPENING: [&str; 7] = [
+const OPENING: [&str; 8] = [
     "files::source(",
     "files::source_of(",
+    "files::open(",
     "files::read(",
     "files::read_up_to(",
     "read::load(",

@@ -24,8 +24,8 @@ pub struct ProtectionCost {
     pub storage_bits: Option<u64>,
     /// Octets that go over the bus in addition, in a frame.
     pub octets: Option<u64>,
-    /// Clocks that a frame takes in addition, rounded down.
-    pub clocks: Option<u64>,
+    /// Clocks that a frame takes in addition; less than 0 where longer bursts come in an order that happens to be better.
+    pub clocks: Option<i64>,
     /// Those as a share of the frame without protections.
     pub clocks_share: Option<f64>,
     /// Nanojoules that a frame takes in addition; null where nobody has a figure for the structure, neither a table nor the machine.
@@ -62,7 +62,7 @@ pub fn costs(job: &Job, kinds: &[FaultKind]) -> Result<BTreeMap<(FaultKind, Prot
                 clocks
             }
         };
-        let more = clocks.saturating_sub(plain_clocks);
+        let more = clocks as i64 - plain_clocks as i64;
         let cost = ProtectionCost {
             storage_bits: Some(check_bits(&machine, plain.stored_words(), kind, protection)),
             octets: Some(machine.protection.check_octets(plain.frame.bus.moved).0),

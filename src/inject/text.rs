@@ -146,9 +146,9 @@ fn left_unprotected(result: &InjectResult) -> String {
     format!("\nBits that may be left unprotected for a picture within 1/255:\n{}", table(rows))
 }
 
-/// Cost in addition, as `+5`; a dash where it is not known.
+/// Cost in addition, as `+5` or `-5`; a dash where it is not known.
 fn more(cost: Option<impl Display>) -> String {
-    cost.map_or_else(|| "-".to_owned(), |cost| format!("+{cost}"))
+    cost.map_or_else(|| "-".to_owned(), |cost| format!("+{cost}").replace("+-", "-"))
 }
 
 fn protections(kinds: &[KindVulnerability]) -> String {

@@ -67,10 +67,7 @@ const PARTS: &[Part] = &[
         name: "trees",
         title: "Trees",
         about: "Building kd trees: the default one beside the report's, and landscapes by method.",
-        commands: &[
-            "cargo bench --workspace --bench kdtree -- default",
-            "cargo bench --workspace --bench kdtree -- kdtree",
-        ],
+        commands: &["cargo bench --workspace --bench kdtree -- default", "cargo bench --workspace --bench kdtree"],
     },
     Part {
         name: "fuzzing",

@@ -1,5 +1,5 @@
-//! Time to build a kd tree, by size, depth and method: `cargo bench -p lancer-scenes --bench kdtree`; with `-- default` only that of the default tree, in
-//! times of the report's.
+//! Time to build a kd tree, by size, depth and method: `cargo bench -p lancer-scenes --bench kdtree`; with `-- default` that of the default tree instead,
+//! in times of the report's.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -72,11 +72,10 @@ fn trees(criterion: &mut Criterion) {
 criterion_group!(benches, trees);
 
 fn main() {
-    let filter = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
-    if filter.is_none_or(|filter| filter == "default") {
+    if std::env::args().any(|argument| argument == "default") {
         // On the pool's only thread, so that none waits for another one.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
-        pool.install(default_tree);
+        return pool.install(default_tree);
     }
     benches();
     Criterion::default().configure_from_args().final_summary();

@@ -23,5 +23,4 @@ pub use item::FlipHit;
 pub use link::{BusWord, ItemTraffic};
 pub use protection::{RETRY_CLOCKS, SeenFlip};
 
-pub use crate::machine::FaultKind;
-pub use crate::machine::config::protection::Protection;
+pub use crate::machine::{FaultKind, Protection};

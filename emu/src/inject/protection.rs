@@ -1,6 +1,6 @@
 //! Protections of words, and what each sees of flipped bits. The codes are computed, not assumed: three flipped bits may look like another one.
 
-use crate::machine::config::protection::Protection;
+use crate::machine::Protection;
 
 /// Clocks after which a request is made again, or a watchdog finds that nothing happens.
 pub const RETRY_CLOCKS: u64 = 4_096;

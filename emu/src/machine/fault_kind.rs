@@ -1,7 +1,5 @@
-//! Structures and parts of the machine in which faults happen, by their names: those that faults are put into, and those that a machine protects.
-//! How a fault is drawn, and what comes of it, is not said here.
-
-use super::config::protection::Protection;
+//! Structures and parts of the machine in which faults happen, and protections of them, by their names. Faults are drawn in `inject/`, and what a
+//! protection costs is counted in `config/protection.rs`.
 
 /// Structure in which bits flip, all of them rows of words of 32 bits, or part of the machine that goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -110,5 +108,66 @@ impl FaultKind {
             FaultKind::StuckArbiter => Some("the arbiter"),
             FaultKind::StoppedCore => Some("cores that ask for nothing any more"),
         }
+    }
+}
+
+/// Protection of a structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Protection {
+    /// None at all.
+    #[default]
+    Unprotected,
+    /// A bit of parity a word: finds an odd number of flipped bits.
+    Parity,
+    /// Seven check bits a word of 32 (an extended Hamming code): mends one flipped bit, finds two.
+    Secded,
+    /// Each instruction that computes is executed twice, and the results compared.
+    Duplicated,
+    /// Results are computed a second time modulo 3, and the remainders compared.
+    Residue,
+    /// A core whose request is not granted for [`RETRY_CLOCKS`](crate::inject::RETRY_CLOCKS) makes it again.
+    Retry,
+    /// The machine stops when nobody has been granted the bus, and nobody computes, for as long.
+    Watchdog,
+}
+
+impl Protection {
+    /// All of them.
+    pub const ALL: [Protection; 7] = [
+        Protection::Unprotected,
+        Protection::Parity,
+        Protection::Secded,
+        Protection::Duplicated,
+        Protection::Residue,
+        Protection::Retry,
+        Protection::Watchdog,
+    ];
+
+    /// Name in machine files, options and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Protection::Unprotected => "none",
+            Protection::Parity => "parity",
+            Protection::Secded => "ecc",
+            Protection::Duplicated => "duplicated",
+            Protection::Residue => "residue",
+            Protection::Retry => "retry",
+            Protection::Watchdog => "watchdog",
+        }
+    }
+
+    /// Bits that a word of 32 bits has beside its own.
+    pub const fn check_bits(self) -> u32 {
+        match self {
+            Protection::Unprotected | Protection::Duplicated | Protection::Retry | Protection::Watchdog => 0,
+            Protection::Parity => 1,
+            Protection::Secded => 7,
+            Protection::Residue => 2,
+        }
+    }
+
+    /// The protection of a name; `None` for a name of none.
+    pub fn from_name(name: &str) -> Option<Protection> {
+        Protection::ALL.into_iter().find(|one| one.name() == name)
     }
 }

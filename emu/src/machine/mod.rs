@@ -31,7 +31,7 @@ use isa::{Isa, Program};
 use messages::{Diagnostic, Report, did_you_mean};
 
 pub use config::Config;
-pub use fault_kind::FaultKind;
+pub use fault_kind::{FaultKind, Protection};
 pub use grant_fault::{GrantFault, GrantFaultKind};
 pub use outcome::{Item, KindUse, Method, ProcessorUse, RunOutcome};
 

@@ -116,10 +116,9 @@ mod tests {
     use isa::number::Quantization;
 
     use super::super::law::Growth;
-    use super::super::protection::Protection;
     use super::*;
     use crate::code::quantity::{Clocks, Octets};
-    use crate::machine::FaultKind;
+    use crate::machine::{FaultKind, Protection};
 
     fn parse(text: &str) -> Result<Config, String> {
         Config::parse(&Source::new("m.toml", text)).map_err(|report| report.render(false))

@@ -9,71 +9,10 @@ use serde::de::{DeserializeSeed, Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::code::quantity::Octets;
-use crate::machine::FaultKind;
+use crate::machine::{FaultKind, Protection};
 
 /// Bits of a word that has check bits, whatever the machine's word length.
 pub const WORD_BITS: u32 = 32;
-
-/// Protection of a structure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Protection {
-    /// None at all.
-    #[default]
-    Unprotected,
-    /// A bit of parity a word: finds an odd number of flipped bits.
-    Parity,
-    /// Seven check bits a word of 32 (an extended Hamming code): mends one flipped bit, finds two.
-    Secded,
-    /// Each instruction that computes is executed twice, and the results compared.
-    Duplicated,
-    /// Results are computed a second time modulo 3, and the remainders compared.
-    Residue,
-    /// A core whose request is not granted for [`RETRY_CLOCKS`](crate::inject::RETRY_CLOCKS) makes it again.
-    Retry,
-    /// The machine stops when nobody has been granted the bus, and nobody computes, for as long.
-    Watchdog,
-}
-
-impl Protection {
-    /// All of them.
-    pub const ALL: [Protection; 7] = [
-        Protection::Unprotected,
-        Protection::Parity,
-        Protection::Secded,
-        Protection::Duplicated,
-        Protection::Residue,
-        Protection::Retry,
-        Protection::Watchdog,
-    ];
-
-    /// Name in machine files, options and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Protection::Unprotected => "none",
-            Protection::Parity => "parity",
-            Protection::Secded => "ecc",
-            Protection::Duplicated => "duplicated",
-            Protection::Residue => "residue",
-            Protection::Retry => "retry",
-            Protection::Watchdog => "watchdog",
-        }
-    }
-
-    /// Bits that a word of 32 bits has beside its own.
-    pub const fn check_bits(self) -> u32 {
-        match self {
-            Protection::Unprotected | Protection::Duplicated | Protection::Retry | Protection::Watchdog => 0,
-            Protection::Parity => 1,
-            Protection::Secded => 7,
-            Protection::Residue => 2,
-        }
-    }
-
-    /// The protection of a name; `None` for a name of none.
-    pub fn from_name(name: &str) -> Option<Protection> {
-        Protection::ALL.into_iter().find(|one| one.name() == name)
-    }
-}
 
 /// Protection of each structure and part of the machine, written as a table of names; what it leaves out has none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

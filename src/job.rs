@@ -148,7 +148,12 @@ impl Job {
 
     /// The view of the picture in double precision.
     pub fn reference_view(&self) -> View {
-        View { bounces: self.reference_bounces.unwrap_or(self.view.bounces), ..self.view.clone() }
+        self.view_of(self.reference_bounces)
+    }
+
+    /// The view of a picture with so many levels of secondary rays, or as many as the job's has.
+    pub fn view_of(&self, bounces: Option<u32>) -> View {
+        View { bounces: bounces.unwrap_or(self.view.bounces), ..self.view.clone() }
     }
 
     /// The part of the picture that is drawn: all of it unless the user chose one.

@@ -135,8 +135,7 @@ pub fn run(
 /// kernels do.
 fn in_double_precision(job: &Job, bounces: Option<u32>, image: &MemoryImage, crop: &Crop) -> Result<Picture, Failure> {
     let samples = Samples::new(&job.scene, image, job.kernels.profile, job.machine.arithmetic.modes());
-    let view = Job { reference_bounces: bounces, ..job.clone() }.reference_view();
-    let reference = Reference::new(&job.scene, &view, SearchMethod::Hierarchy)?;
+    let reference = Reference::new(&job.scene, &job.view_of(bounces), SearchMethod::Hierarchy)?;
     Ok(part(&reference, &samples, crop))
 }
 

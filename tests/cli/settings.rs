@@ -44,8 +44,8 @@ const NO_SETTINGS: [&str; 19] = [
     "message-format",
 ];
 
-/// A value of each option that is not its default.
-const SAMPLES: [(&str, &str); 34] = [
+/// A value of each option of a picture that is not its default.
+pub(super) const SAMPLES: [(&str, &str); 34] = [
     ("scene", "cornell"),
     ("mesh", "one.off"),
     ("camera", "perspective"),

@@ -13,7 +13,7 @@ use crate::files;
 /// Adds the instructions of a file to an instruction set; gives what was loaded, and the texts of the file and of all that it includes.
 ///
 /// # Errors
-/// A file that cannot be read, or what is wrong in it.
+/// A file that cannot be read, or mistakes in it.
 pub fn extend(isa: &mut Isa, path: &Path) -> Result<(Vec<LoadedInstruction>, Vec<Arc<Source>>), Report> {
     extend_by(isa, path, files::read(path)?)
 }
@@ -21,7 +21,7 @@ pub fn extend(isa: &mut Isa, path: &Path) -> Result<(Vec<LoadedInstruction>, Vec
 /// Adds the instructions of a file that has been read; see [`extend`].
 ///
 /// # Errors
-/// What is wrong in it.
+/// Mistakes in the file or in one that it includes.
 pub fn extend_by(
     isa: &mut Isa,
     path: &Path,

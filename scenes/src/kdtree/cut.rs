@@ -1,4 +1,4 @@
-//! Both halves of a triangle that a plane cuts, as boxes. It looks at one plane only, so it takes a tenth of the time of [`super::clip`], and its boxes are
+//! Both halves of a triangle that a plane cuts, as boxes. It looks at one plane only, so it computes far less than [`super::clip`], and its boxes are
 //! hardly larger.
 
 use wide::f64x4;
@@ -62,7 +62,7 @@ fn on_grid(low: f64x4, high: f64x4, part: &Bounds) -> Bounds {
 }
 
 /// A number so large that it has no fraction bits, so adding it rounds to the nearest whole number, which its lowest bits then are.
-const LARGE: f64 = 6_755_399_441_055_744.0;
+const LARGE: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// The next whole numbers below, of some with at most 33 bits; `f64::floor` is a call where the host is not known to round.
 #[inline]

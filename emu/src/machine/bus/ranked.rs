@@ -34,7 +34,6 @@ impl Bus {
         // What decides among those that wait, their rank or since when they do; and whether the rank depends on who came last.
         let by_rank = if ranking == Some(Ranking::Arrival) { 0 } else { u64::MAX };
         let is_circle = matches!(ranking, Some(Ranking::Circle(_)));
-        let in_turn = if is_circle { usize::MAX } else { 0 };
         let (mut free, mut used) = (self.free_at, self.used);
         // Where nobody asks, the smallest number is beyond every clock.
         let until = until.min(Clocks(NEVER.0 >> RANK));
@@ -62,7 +61,7 @@ impl Bus {
             if start >= until {
                 break None;
             }
-            first = if master + 1 == masters { 0 } else { master + 1 } & in_turn;
+            first = if is_circle && master + 1 != masters { master + 1 } else { 0 };
             // Grant the burst
             let (burst, one) = (&mut bursts[master], &mut all_masters[master]);
             let (waited, end) = (start - Clocks(arrivals[master]), start + burst.length);

@@ -20,6 +20,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use cranelift_codegen::control::ControlPlane;
+use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable, Flags};
 
 use super::host::HostSimd;
@@ -283,11 +284,16 @@ impl Compiled {
     }
 }
 
-/// Cranelift for this host.
+/// Cranelift for this host, found once.
 ///
 /// # Errors
 /// The host is one for which it does not know how to compile.
-fn host() -> Result<cranelift_codegen::isa::OwnedTargetIsa, Refusal> {
+fn host() -> Result<OwnedTargetIsa, Refusal> {
+    static HOST: OnceLock<Result<OwnedTargetIsa, Refusal>> = OnceLock::new();
+    HOST.get_or_init(find_host).clone()
+}
+
+fn find_host() -> Result<OwnedTargetIsa, Refusal> {
     const UNKNOWN: Refusal = "no compiler knows this host";
     let mut flags = settings::builder();
     let verifies = if cfg!(debug_assertions) { "true" } else { "false" };

@@ -2,7 +2,7 @@
 
 use crate::code::octets::Memory;
 use crate::engine::Task;
-use crate::machine::schedule;
+use crate::machine::stepped::StepTask;
 use crate::machine::{Config, RunFailure, RunOutcome, Setup, check, on_arithmetic};
 use crate::profile::Observer;
 use crate::replay;
@@ -29,7 +29,7 @@ pub fn run(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Resu
 /// As [`run`].
 pub fn step(setup: &Setup, memory: Memory, progress: &mut dyn FnMut(u64)) -> Result<RunOutcome, RunFailure> {
     check(setup)?;
-    on_arithmetic(setup, StepTask { setup, memory, progress })
+    on_arithmetic(setup, StepTask { setup, codes: &setup.codes(), memory, progress })
 }
 
 /// Runs the same frame on several machines. Those that compute alike (in the same clocks, with the same arithmetic and
@@ -75,20 +75,6 @@ pub fn machines_at_once(memory: &Memory) -> usize {
 fn run_alike(setups: &[Setup], memory: &Memory, progress: &mut dyn FnMut(u64)) -> Vec<Result<RunOutcome, RunFailure>> {
     let Some(first) = setups.first() else { return Vec::new() };
     on_arithmetic(first, RunTask { setups, memory, progress })
-}
-
-struct StepTask<'a> {
-    setup: &'a Setup<'a>,
-    memory: Memory,
-    progress: &'a mut dyn FnMut(u64),
-}
-
-impl Task for StepTask<'_> {
-    type Result = Result<RunOutcome, RunFailure>;
-
-    fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
-        schedule::run::<T, O>(self.setup, self.memory, arithmetic, self.progress)
-    }
 }
 
 struct RunTask<'a> {

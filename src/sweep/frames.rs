@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use emu::machine::outcome::Method;
-use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
+use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup, SteppedFrames};
 use emu::replay::{Reason, Recorded};
 use kernels::build::Crop;
 use rayon::prelude::*;
@@ -87,8 +87,10 @@ impl<'a> PictureFrames<'a> {
     /// Frames of machines that compute alike, of a recording that is kept.
     fn replays(&mut self, machines: &[Config]) -> Vec<FrameResult> {
         let recorded = self.recorded(&machines[0]);
-        let step = |config: &Config| emu::step(&self.setup(config), self.load.memory.clone(), &mut |_| {});
-        let replays = recorded.as_ref().map(|recorded| recorded.replays(&self.setup(&machines[0])));
+        let setup = self.setup(&machines[0]);
+        let stepped = SteppedFrames::new(&setup);
+        let step = |config: &Config| stepped.step(config, self.load.memory.clone());
+        let replays = recorded.as_ref().map(|recorded| recorded.replays(&setup));
         let one = |config: &Config| match &replays {
             Ok(replays) => replays.replay(config, self.load.memory.clone())?.or_else(|_| step(config)),
             Err(_) => step(config),

@@ -19,6 +19,7 @@ pub mod preset;
 mod processor;
 pub(crate) mod request;
 pub(crate) mod schedule;
+pub(crate) mod stepped;
 mod sync;
 pub mod trace;
 pub mod waits;
@@ -34,6 +35,7 @@ pub use config::Config;
 pub use fault_kind::{FaultKind, Protection};
 pub use grant_fault::{GrantFault, GrantFaultKind};
 pub use outcome::{Item, KindUse, Method, ProcessorUse, RunOutcome};
+pub use stepped::SteppedFrames;
 
 use trace::Window;
 
@@ -60,7 +62,12 @@ pub struct Setup<'a> {
     pub options: RunOptions,
 }
 
-impl Setup<'_> {
+impl<'a> Setup<'a> {
+    /// The programs of the cores and of the main processor, decoded for machines that compute alike, which then share what is made of them.
+    pub(crate) fn codes(&self) -> [Code<'a>; 2] {
+        [self.core, self.main].map(|program| Code::new(program, self.isa, self.config.timing()))
+    }
+
     /// Number and step limit of the main processor.
     pub(crate) fn main_id(&self) -> CoreId {
         let cores = self.config.cores;
@@ -87,7 +94,7 @@ impl Setup<'_> {
         runner.choice()
     }
 
-    fn demand<'a>(&self, code: &'a Code<'a>) -> Demand<'a> {
+    fn demand<'c>(&self, code: &'c Code<'c>) -> Demand<'c> {
         let watching = self.config.arithmetic.watching(self.options.has_losses);
         let computes = watching.map_or(Computes::default(), |watching| watching.computes());
         let demand = Demand::new(code, self.options.wish(), computes, self.config.buffer_octets);

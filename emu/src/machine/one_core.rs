@@ -91,15 +91,38 @@ pub fn run(one_core: &OneCore, memory: Memory) -> Result<OneCoreRun, Report> {
 /// # Errors
 /// As [`run`].
 pub fn run_with(one_core: &OneCore, memory: Memory, wish: Wish) -> Result<OneCoreRun, Report> {
-    one_core.config.check()?;
-    check_buffer("a core", one_core.program, one_core.config.buffer_octets)?;
-    check_bodies(one_core.program, one_core.isa).map_err(Diagnostic::from)?;
-    let watching = one_core.config.arithmetic.watching(one_core.has_losses);
-    Ok(dispatch(watching, one_core.profile, OneCoreTask { one_core, memory, wish }))
+    Ok(LoadedCore::new(one_core)?.run(&one_core.registers, memory, wish))
+}
+
+/// A program on one core that runs more than once: it is decoded once, and native code that one run generates serves the next ones.
+pub struct LoadedCore<'a> {
+    one_core: &'a OneCore<'a>,
+    code: Code<'a>,
+}
+
+impl<'a> LoadedCore<'a> {
+    /// A program that has not run yet.
+    ///
+    /// # Errors
+    /// As [`run`].
+    pub fn new(one_core: &'a OneCore<'a>) -> Result<LoadedCore<'a>, Report> {
+        let OneCore { config, isa, program, .. } = *one_core;
+        config.check()?;
+        check_buffer("a core", program, config.buffer_octets)?;
+        check_bodies(program, isa).map_err(Diagnostic::from)?;
+        Ok(LoadedCore { one_core, code: Code::new(program, isa, config.timing()) })
+    }
+
+    /// Run from registers and memory of its own, with an engine that is wanted.
+    pub fn run(&self, registers: &Registers, memory: Memory, wish: Wish) -> OneCoreRun {
+        let OneCore { config, has_losses, profile, .. } = *self.one_core;
+        dispatch(config.arithmetic.watching(has_losses), profile, OneCoreTask { core: self, registers, memory, wish })
+    }
 }
 
 struct OneCoreTask<'a> {
-    one_core: &'a OneCore<'a>,
+    core: &'a LoadedCore<'a>,
+    registers: &'a Registers,
     memory: Memory,
     wish: Wish,
 }
@@ -108,21 +131,21 @@ impl Task for OneCoreTask<'_> {
     type Result = OneCoreRun;
 
     fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> OneCoreRun {
-        run_on::<T, O>(self.one_core, self.memory, arithmetic, self.wish)
+        run_on::<T, O>(self, arithmetic)
     }
 }
 
-fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic: &T, wish: Wish) -> OneCoreRun {
-    let code = Code::new(one_core.program, one_core.isa, one_core.config.timing());
+fn run_on<T: Watch, O: Observer>(task: OneCoreTask, arithmetic: &T) -> OneCoreRun {
+    let OneCoreTask { core: &LoadedCore { one_core, ref code }, registers, memory, wish } = task;
     let core = CoreId { core: 0, cores: 1, step_limit: one_core.step_limit };
     let buffer_octets = one_core.config.buffer_octets;
-    let demand = Demand::new(&code, wish, arithmetic.computes(), buffer_octets);
+    let demand = Demand::new(code, wish, arithmetic.computes(), buffer_octets);
     let runner = choose(&Demand { profile: one_core.profile, ..demand });
     let initial = Arc::new(Buffer::new(&one_core.program.buffer, buffer_octets));
-    let mut worker: Executor<T, O> = Executor::new(&code, core, initial, runner, arithmetic, one_core.profile);
+    let mut worker: Executor<T, O> = Executor::new(code, core, initial, runner, arithmetic, one_core.profile);
     worker.restart();
-    worker.state.registers = one_core.registers.clone();
-    let mut processor = Processor::new(&code, core, worker);
+    worker.state.registers = registers.clone();
+    let mut processor = Processor::new(code, core, worker);
     let mut shared = Shared::new(memory, 1);
     let (kinds, mut is_permitted) = (Kinds::new(&[]), false);
     let fault = loop {
@@ -151,11 +174,11 @@ fn run_on<T: Watch, O: Observer>(one_core: &OneCore, memory: Memory, arithmetic:
     };
     let Processor { mut worker, clock, used, .. } = processor;
     worker.observer.end();
-    let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, &code));
+    let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, code));
     let (engine, state) = (worker.engine(), worker.state.clone());
     let WorkerCounts { tally, mut profile, clocks: log, keys } = worker.into_counts();
     if let (Some(log), Some(keys)) = (log, keys) {
-        add_clocks(&log, &[keys], &code, &mut profile);
+        add_clocks(&log, &[keys], code, &mut profile);
     }
     OneCoreRun { engine, profile, state, memory: shared.memory, clocks: clock, waiting: used.waiting, tally, trap }
 }

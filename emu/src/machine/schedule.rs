@@ -16,7 +16,7 @@ use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, HandOver, Worker};
-use super::{RunFailure, Setup};
+use super::{RunFailure, Setup, stepped};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::{Clocks, Octets};
@@ -35,19 +35,11 @@ pub fn run<T: Watch, O: Observer>(
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
 ) -> Result<RunOutcome, RunFailure> {
-    let timing = setup.config.timing();
-    let [core_code, main_code] = [setup.core, setup.main].map(|program| Code::new(program, setup.isa, timing));
-    let runner = runner_of::<T, O>(setup, &core_code, arithmetic, setup.config.buffer_octets);
-    let initial = Arc::new(Buffer::new(&setup.core.buffer, setup.config.buffer_octets));
-    let core = |core: CoreId| {
-        Executor::<T, O>::new(&core_code, core, initial.clone(), runner.clone(), arithmetic, setup.level::<O>())
-    };
-    let main = main_worker(setup, &main_code, arithmetic);
-    Ok(Machine::new(setup, memory, [&core_code, &main_code], core, main, progress).run()?.frame)
+    stepped::run_decoded::<T, O>(setup, &setup.codes(), memory, arithmetic, progress)
 }
 
 /// Runner of a program on a machine.
-fn runner_of<'a, T: Watch, O: Observer>(
+pub(super) fn runner_of<'a, T: Watch, O: Observer>(
     setup: &Setup,
     code: &'a Code<'a>,
     arithmetic: &T,

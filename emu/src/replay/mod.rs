@@ -85,7 +85,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 
 /// The programs of the cores and of the main processor, decoded for machines that compute alike, which then share what is made of them.
 fn codes<'a>(setup: &Setup<'a>) -> [Code<'a>; 2] {
-    [setup.core, setup.main].map(|program| Code::new(program, setup.isa, setup.config.timing()))
+    setup.codes()
 }
 
 /// Outcome of one machine, or the reason for which it has to be stepped.

@@ -1,5 +1,6 @@
 //! Programs on the machine, and what they must do, take and count.
 
+mod again;
 mod alike;
 mod bus;
 mod clocks;

@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, CommandFactory};
@@ -48,6 +49,9 @@ const NO_SETTINGS: [&str; 23] = [
 /// Arguments that say together which machine there is.
 const MACHINE: [&str; 7] = ["machine", "cores", "arbiter", "word", "rounding", "overflow", "set"];
 
+/// All commands with their arguments, as they are before anything is parsed.
+pub(super) static COMMAND_LINE: LazyLock<Command> = LazyLock::new(Lancer::command);
+
 /// Options of a command that draws no single picture, as its results carry them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
@@ -69,7 +73,7 @@ impl JsonSchema for CommandSettings {
 impl CommandSettings {
     /// The options of the innermost command of a command line.
     pub fn new(matches: &ArgMatches) -> CommandSettings {
-        let (path, command, matches) = innermost(Lancer::command(), matches);
+        let (path, command, matches) = innermost(&COMMAND_LINE, matches);
         let mut keys = Map::from_iter([(COMMAND.to_owned(), Value::from(path))]);
         for argument in command.get_arguments() {
             let name = name(argument);
@@ -137,14 +141,15 @@ pub fn expanded(mut line: Vec<OsString>) -> Result<Vec<OsString>, Report> {
         return Ok(line);
     }
     // Whatever else is wrong with the command line is said when it is read for good.
-    let Ok(matches) = Lancer::command().ignore_errors(true).try_get_matches_from(&line) else { return Ok(line) };
-    let (path, command, matches) = innermost(Lancer::command(), &matches);
+    let parser = COMMAND_LINE.clone().ignore_errors(true);
+    let Ok(matches) = parser.try_get_matches_from(&line) else { return Ok(line) };
+    let (path, command, matches) = innermost(&COMMAND_LINE, &matches);
     let Ok(Some(file)) = matches.try_get_one::<std::path::PathBuf>("settings") else { return Ok(line) };
     let stored = read::read(file)?;
-    let options = match takes_pictures(&command) {
+    let options = match takes_pictures(command) {
         true => picture(&stored)?,
-        false if is_varied(&stored, &command) => varied(&stored)?,
-        false => others(&stored, &path, &command, file)?,
+        false if is_varied(&stored, command) => varied(&stored)?,
+        false => others(&stored, &path, command, file)?,
     };
     let is_given = |argument: &Arg| matches.value_source(argument.get_id().as_str()) == Some(ValueSource::CommandLine);
     let given: Vec<String> = command.get_arguments().filter(|argument| is_given(argument)).map(name).collect();
@@ -186,12 +191,11 @@ fn words(argument: &Arg, option: &str, value: Option<String>) -> Vec<OsString> {
 }
 
 /// The innermost command of a command line, with its name and its arguments.
-fn innermost(mut command: Command, matches: &ArgMatches) -> (String, Command, ArgMatches) {
-    let (mut path, mut matches) = (Vec::new(), matches.clone());
+fn innermost<'c>(mut command: &'c Command, mut matches: &'c ArgMatches) -> (String, &'c Command, &'c ArgMatches) {
+    let mut path = Vec::new();
     while let Some((name, inner)) = matches.subcommand() {
-        let Some(found) = command.find_subcommand(name).cloned() else { break };
-        path.push(name.to_owned());
-        let inner = inner.clone();
+        let Some(found) = command.find_subcommand(name) else { break };
+        path.push(name);
         (command, matches) = (found, inner);
     }
     (path.join(" "), command, matches)

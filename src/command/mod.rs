@@ -40,8 +40,8 @@ use std::ffi::OsString;
 
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use invocation::CommandSettings;
+use clap::{FromArgMatches, Parser, Subcommand};
+use invocation::{COMMAND_LINE, CommandSettings};
 use messages::Diagnostic;
 
 use crate::arguments::{self, Size};
@@ -141,9 +141,24 @@ impl Lancer {
     /// # Errors
     /// Arguments that the parser refuses; help and version, which are asked for, come the same way.
     pub fn parsed(words: Vec<OsString>, streams: StreamArguments) -> Result<(Lancer, CommandSettings), clap::Error> {
+        Lancer::parsed_by(&mut Lancer::parser(streams), words)
+    }
+
+    /// The parser of command lines, for a terminal and its colours.
+    pub fn parser(streams: StreamArguments) -> clap::Command {
         let columns = terminal::width();
-        let command = with_short_help(Lancer::command(), columns);
-        let mut command = command.color(streams.colour_choice()).term_width(columns);
+        let command = with_short_help(COMMAND_LINE.clone(), columns);
+        command.color(streams.colour_choice()).term_width(columns)
+    }
+
+    /// As [`Lancer::parsed`], by a parser that may have parsed others.
+    ///
+    /// # Errors
+    /// See [`Lancer::parsed`].
+    pub fn parsed_by(
+        command: &mut clap::Command,
+        words: Vec<OsString>,
+    ) -> Result<(Lancer, CommandSettings), clap::Error> {
         let matches = command.try_get_matches_from_mut(words)?;
         if let Some(name) = matches.subcommand_name()
             && matches.value_source("size") == Some(ValueSource::CommandLine)
@@ -151,7 +166,7 @@ impl Lancer {
             let message = format!("a size before `{name}` is the demo's: write `--size` behind it");
             return Err(command.error(ErrorKind::ArgumentConflict, message));
         }
-        let arguments = Lancer::from_arg_matches(&matches).map_err(|error| error.format(&mut command))?;
+        let arguments = Lancer::from_arg_matches(&matches).map_err(|error| error.format(command))?;
         Ok((arguments, CommandSettings::new(&matches)))
     }
 }

@@ -11,7 +11,7 @@ pub struct Find {
     pub target: String,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// Number of the run, from 0.
+    /// Number of the input among those of the seed, from 0.
     pub run: u64,
     /// Description of what went wrong.
     pub why: String,

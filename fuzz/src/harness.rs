@@ -14,8 +14,14 @@ use crate::seen::{Seen, hash};
 use crate::surface::{InputForm, Surface};
 use crate::watch::RunWatch;
 
-/// Runs between two looks at the clock.
+/// Inputs between two looks at the clock.
 const LOOK: u64 = 32;
+
+/// Most inputs that are kept of a surface. Beyond that a new one takes the place of any other.
+const MOST_KEPT: usize = 20_000;
+
+/// Most places that are told apart; beyond that nothing is new.
+const MOST_PLACES: usize = 1 << 20;
 
 /// The last panic: what it said and where.
 static PANIC: Mutex<String> = Mutex::new(String::new());
@@ -62,12 +68,31 @@ pub fn attempt(surface: &Surface, input: &[u8], seen: &mut Seen) -> Result<(), S
         .map_err(|_| PANIC.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone())
 }
 
-/// Inputs of a folder, in the order of their names.
+/// Inputs of a folder, in the order of their names, which follow from what they hold; no more than are kept.
 fn kept_in(folder: &Path) -> Vec<Vec<u8>> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
-    paths.iter().filter_map(|path| std::fs::read(path).ok()).collect()
+    paths.iter().take(MOST_KEPT).filter_map(|path| std::fs::read(path).ok()).collect()
+}
+
+/// Name of the file of a kept input.
+fn file_name(input: &[u8]) -> String {
+    format!("{:016x}", hash(input.iter().copied()))
+}
+
+/// Writes kept inputs into a folder, and removes those of the tried seeds that lead nowhere new.
+fn keep(folder: &Path, kept: &[Vec<u8>], tried: &[String]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let names: HashSet<String> = kept.iter().map(|input| file_name(input)).collect();
+    for input in kept {
+        std::fs::write(folder.join(file_name(input)), input)?;
+    }
+    for name in tried.iter().filter(|name| !names.contains(*name)) {
+        // Another process may have removed it.
+        let _ = std::fs::remove_file(folder.join(name));
+    }
+    Ok(())
 }
 
 /// Fuzzes a surface; `current` is the file of the input that is tried.
@@ -86,19 +111,22 @@ pub fn run(surface: &Surface, wishes: &Wishes, current: &Path) -> std::io::Resul
     };
     let (mut kept, mut known): (Vec<Vec<u8>>, HashSet<u64>) = Default::default();
     let mut watch = RunWatch::new(current, wishes.longest, surface.memory)?;
-    let mut runs = 0;
+    let (mut runs, mut inputs) = (0, 0);
     let seeds_read = seeds.len();
-    let mut seeds = seeds.into_iter();
+    let (mut seeds, mut tried) = (seeds.into_iter(), Vec::new());
     while runs < wishes.runs {
-        if runs % LOOK == 0 && start.elapsed() >= wishes.time {
+        if inputs % LOOK == 0 && start.elapsed() >= wishes.time {
             break;
         }
         let seed = seeds.next();
         let is_seed = seed.is_some();
         let input = seed.unwrap_or_else(|| mutator.next(&mut random, &kept));
-        watch.begin(runs, &input)?;
+        if is_seed {
+            tried.push(file_name(&input));
+        }
+        watch.begin(inputs, &input)?;
         // Planted faults are for the harness to find, not for the seeds.
-        let mut seen = Seen::new(wishes.has_planted && !is_seed);
+        let mut seen = Seen::new(&input, wishes.has_planted && !is_seed);
         let result = attempt(surface, &input, &mut seen);
         let octets = watch.end();
         let why = match result {
@@ -110,27 +138,28 @@ pub fn run(surface: &Surface, wishes: &Wishes, current: &Path) -> std::io::Resul
         };
         if let Some(why) = why {
             watch.finish()?;
-            return Ok(End::Found(Find { target: surface.name.to_owned(), seed: wishes.seed, run: runs, why, input }));
+            return Ok(End::Found(Find { target: surface.name.to_owned(), seed: wishes.seed, run: inputs, why, input }));
         }
-        runs += 1;
+        runs += seen.runs();
+        inputs += 1;
         let mut is_new = false;
         for &mark in seen.marks() {
-            is_new |= known.insert(mark);
+            is_new |= known.len() < MOST_PLACES && known.insert(mark);
         }
         if is_new && surface.form != InputForm::Number {
+            if kept.len() == MOST_KEPT {
+                kept.swap_remove(random.below(MOST_KEPT as u64) as usize);
+            }
             kept.push(input);
         }
     }
     watch.finish()?;
-    if let Some(folder) = &folder {
-        std::fs::create_dir_all(folder)?;
-        for input in &kept {
-            std::fs::write(folder.join(format!("{:016x}", hash(input.iter().copied()))), input)?;
-        }
+    if let Some(folder) = folder.filter(|_| surface.form != InputForm::Number) {
+        keep(&folder, &kept, &tried)?;
     }
     let seconds = start.elapsed().as_secs_f64();
     println!(
-        "{:<10} {runs:>10} runs {seconds:>7.1} s {:>8.0} a second, seed {}, {from_project} + {} seeds, {} places, {} kept, no find",
+        "{:<11} {runs:>10} runs of {inputs} inputs {seconds:>7.1} s {:>8.0} a second, seed {}, {from_project} + {} seeds, {} places, {} kept, no find",
         surface.name,
         runs as f64 / seconds,
         wishes.seed,

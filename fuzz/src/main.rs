@@ -30,7 +30,7 @@ struct FuzzArguments {
     /// Seed of the random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Runs of each surface at most.
+    /// Runs of each surface, of which the engines' surfaces make several of an input: no further input is tried once there are so many.
     #[arg(long, value_name = "N", default_value_t = u64::MAX, hide_default_value = true)]
     runs: u64,
     /// Seconds for each surface.
@@ -72,12 +72,6 @@ fn main() -> ExitCode {
 
 /// True where all went as it should.
 fn execute(arguments: &FuzzArguments) -> Result<bool, String> {
-    if arguments.list {
-        for surface in SURFACES {
-            println!("{} {}", surface.name, surface.reader.join(" "));
-        }
-        return Ok(true);
-    }
     if let Some(path) = &arguments.replay {
         return replay(path);
     }
@@ -85,6 +79,10 @@ fn execute(arguments: &FuzzArguments) -> Result<bool, String> {
         true => SURFACES.iter().collect(),
         false => arguments.target.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
     };
+    if arguments.list {
+        surfaces.iter().for_each(|surface| println!("{} {}", surface.name, surface.reader.join(" ")));
+        return Ok(true);
+    }
     if arguments.worker {
         return work(surfaces[0], arguments);
     }
@@ -123,7 +121,7 @@ fn work(surface: &Surface, arguments: &FuzzArguments) -> Result<bool, String> {
 
 fn tell(find: &Find, folder: &Path) -> Result<(), String> {
     let path = find.write(folder).map_err(|error| error.to_string())?;
-    println!("{:<10} run {} of seed {}: {}\n{:10} {}", find.target, find.run, find.seed, find.why, "", path.display());
+    println!("{:<11} input {} of seed {}: {}\n{:11} {}", find.target, find.run, find.seed, find.why, "", path.display());
     Ok(())
 }
 
@@ -161,8 +159,8 @@ fn supervise(surface: &Surface, arguments: &FuzzArguments) -> Result<bool, Strin
         }
     };
     match arguments.self_check {
-        true if is_clean => println!("{:<10} the planted fault was not found", surface.name),
-        true => println!("{:<10} the planted fault was found", surface.name),
+        true if is_clean => println!("{:<11} the planted fault was not found", surface.name),
+        true => println!("{:<11} the planted fault was found", surface.name),
         false => {}
     }
     Ok(is_clean != arguments.self_check)
@@ -172,7 +170,7 @@ fn supervise(surface: &Surface, arguments: &FuzzArguments) -> Result<bool, Strin
 fn replay(path: &Path) -> Result<bool, String> {
     let find = Find::read(path)?;
     let surface = named(&find.target)?;
-    let mut seen = Seen::new(false);
+    let mut seen = Seen::new(&find.input, false);
     harness::hold_panics();
     match harness::attempt(surface, &find.input, &mut seen) {
         Ok(()) => println!("{}: nothing goes wrong; then it was: {}", find.target, find.why),

@@ -15,17 +15,24 @@ pub enum PlantedFault {
     Abort,
 }
 
-/// Marks of a run.
+/// Marks of an input, and the number of runs that it was.
 #[derive(Debug, Default)]
 pub struct Seen {
     marks: Vec<u64>,
     has_planted: bool,
+    runs: u64,
+    input: Vec<u8>,
+    /// Hashes of words that are left out of messages, sorted.
+    left_out: Vec<u64>,
 }
 
+/// Words of a message that tell it from others, on each side of what is quoted.
+const MARKED_WORDS: usize = 8;
+
 impl Seen {
-    /// An empty list; with `has_planted` planted faults happen.
-    pub fn new(has_planted: bool) -> Seen {
-        Seen { marks: Vec::new(), has_planted }
+    /// An empty list for an input; with `has_planted` planted faults happen.
+    pub fn new(input: &[u8], has_planted: bool) -> Seen {
+        Seen { has_planted, input: input.to_vec(), ..Seen::default() }
     }
 
     /// True where planted faults happen.
@@ -38,25 +45,51 @@ impl Seen {
         &self.marks
     }
 
+    /// Number of runs: one, unless the surface has made several of the input.
+    pub fn runs(&self) -> u64 {
+        self.runs.max(1)
+    }
+
+    /// Counts a run, where a surface makes several of an input.
+    pub fn run(&mut self) {
+        self.runs += 1;
+    }
+
     /// Marks a number of something by its order of magnitude.
     pub fn count(&mut self, what: &str, number: usize) {
         self.marks.push(hash(what.bytes().chain([number.min(3) as u8, (usize::BITS - number.leading_zeros()) as u8])));
     }
 
-    /// Marks a text by its letters in front of and behind all that is quoted in it.
+    /// Marks a name of ours, or a text that has no part of the input and no number.
+    pub fn name(&mut self, name: &str) {
+        self.marks.push(hash(name.bytes()));
+    }
+
+    /// Leaves out of messages what the input has as well, for a reader that repeats it outside of quotation marks, too.
+    pub fn leave_out_input(&mut self) {
+        let mut words: Vec<u64> = words(&self.input).collect();
+        words.sort_unstable();
+        self.left_out = words;
+    }
+
+    /// Marks a text by its first words in front of and behind all that is quoted in it.
     pub fn text(&mut self, text: &str) {
         let is_mark = |letter: char| "`\"'".contains(letter);
         let (before, rest) = text.split_once(is_mark).unwrap_or((text, ""));
         let behind = rest.rsplit(is_mark).next().unwrap_or_default();
-        let letters = |text: &str| text.bytes().filter(u8::is_ascii_alphabetic).take(40).collect::<Vec<u8>>();
-        self.marks.push(hash([letters(before), letters(behind)].concat()));
+        let is_left = |word: &u64| self.left_out.binary_search(word).is_err();
+        let marked = [before, behind]
+            .into_iter()
+            .flat_map(|side| words(side.as_bytes()).filter(is_left).take(MARKED_WORDS).chain([0]));
+        let mark = hash(marked.flat_map(u64::to_le_bytes));
+        self.marks.push(mark);
     }
 
     /// Marks all messages of a report, and shows it as a person would see it for one input in sixteen.
     pub fn report(&mut self, report: &Report, input: &[u8]) {
         for Diagnostic { message, code, place, hint, .. } in report.0.iter().take(40) {
             self.text(message);
-            self.text(code.unwrap_or_default());
+            self.name(code.unwrap_or_default());
             if let Some((_, label)) = place {
                 self.text(label);
             }
@@ -84,6 +117,12 @@ impl Seen {
             PlantedFault::Abort => std::process::abort(),
         }
     }
+}
+
+/// Hashes of the words of a text, which are runs of letters.
+fn words(text: &[u8]) -> impl Iterator<Item = u64> {
+    let words = text.split(|octet| !octet.is_ascii_alphabetic()).filter(|word| !word.is_empty());
+    words.map(|word| hash(word.iter().copied()))
 }
 
 /// One input in `many`, by its octets alone.

@@ -1,5 +1,6 @@
 //! Command lines, with a settings file before them where they name one.
 
+use std::cell::RefCell;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::LazyLock;
@@ -10,7 +11,7 @@ use lancer::settings::Settings;
 use lancer::terminal::StreamArguments;
 
 use crate::project::{listings, root};
-use crate::seen::{PlantedFault, Seen};
+use crate::seen::{PlantedFault, Seen, is_sample};
 use crate::surface::{InputForm, Surface};
 
 /// Command lines, a word a line.
@@ -71,6 +72,10 @@ fn options(command: &Command, path: &mut Vec<String>, all: &mut Vec<String>) {
     }
 }
 
+thread_local! {
+    static PARSER: RefCell<Command> = RefCell::new(Lancer::parser(StreamArguments::default()));
+}
+
 fn parse(input: &[u8], seen: &mut Seen) {
     let text = String::from_utf8_lossy(input);
     let stored = || STORED.display().to_string();
@@ -87,13 +92,18 @@ fn parse(input: &[u8], seen: &mut Seen) {
         Err(report) => return seen.report(&report, input),
         Ok(words) => words,
     };
-    match Lancer::parsed(words, streams) {
+    // A parser is made for each command line, which takes much longer than to parse it: seldom here.
+    let parsed = match is_sample(input, 64) {
+        true => Lancer::parsed(words, streams),
+        false => PARSER.with_borrow_mut(|parser| Lancer::parsed_by(parser, words)),
+    };
+    match parsed {
         Err(message) => {
-            seen.text(&format!("{:?}", message.kind()));
+            seen.name(&format!("{:?}", message.kind()));
             seen.text(message.to_string().lines().next().unwrap_or_default());
         }
         Ok((arguments, given)) => {
-            seen.text(text.lines().next().unwrap_or_default().split('=').next().unwrap_or_default());
+            seen.name(text.lines().next().unwrap_or_default().split('=').next().unwrap_or_default());
             seen.count("words", text.lines().count());
             assert!(serde_json::to_value(&given).is_ok(), "options are settings");
             let shown = format!("{arguments:?}");

@@ -107,6 +107,7 @@ fn commands() -> Vec<Vec<u8>> {
 }
 
 fn command(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     let target = target(input.len() % 2 == 0);
     let mut door = Door::new(Session::new(&target).unwrap_or_else(|report| panic!("{}", report.render(false))));
     let text = String::from_utf8_lossy(input);
@@ -121,7 +122,7 @@ fn command(input: &[u8], seen: &mut Seen) {
                 // By the command's name, not by the word: what a line begins with can be anything.
                 let word = line.split_whitespace().next().unwrap_or_default();
                 let is_called = |command: &DebugCommand| command.name == word || command.also.contains(&word);
-                seen.text(COMMANDS.iter().find(|command| is_called(command)).map_or("", |command| command.name));
+                seen.name(COMMANDS.iter().find(|command| is_called(command)).map_or("", |command| command.name));
                 seen.count("lines", answer.text.lines().count());
                 if answer.ends {
                     return;
@@ -201,9 +202,13 @@ fn serve(input: &[u8], seen: &mut Seen) {
     let mut stops = 0;
     for answer in text.split("Content-Length: ").filter_map(|part| part.split_once("\r\n\r\n")).map(|(_, body)| body) {
         let answer: serde_json::Value = serde_json::from_str(answer).expect("answers are JSON");
+        let word = |key: &str| answer[key].as_str().unwrap_or_default();
+        seen.name(word("event"));
         // What is refused repeats what was asked.
-        let keys = if answer["success"] == false { ["event", "message"] } else { ["event", "command"] };
-        keys.iter().for_each(|key| seen.text(answer[key].as_str().unwrap_or_default()));
+        match answer["success"] == false {
+            true => seen.text(word("message")),
+            false => seen.name(word("command")),
+        }
         stops += usize::from(answer["event"] == "stopped");
     }
     seen.plant(PlantedFault::Endless, stops == 3);

@@ -3,11 +3,9 @@
 use std::sync::LazyLock;
 
 use emu::engine::{EngineKind, HostSimd, Wish};
-use emu::machine::arbiter::ArbiterKind;
-use emu::machine::config::{BusConfig, CacheConfig};
-use emu::machine::one_core::{self, OneCore, OneCoreRun};
+use emu::machine::one_core::{LoadedCore, OneCore};
 use emu::machine::preset::PRESETS;
-use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
+use emu::machine::{Config, RunOptions, Setup};
 use emu::octets::Memory;
 use emu::profile::ProfileLevel;
 use emu::registers::Registers;
@@ -19,11 +17,12 @@ use programs::generate::{DATA, MEMORY, below, gather, image, scatter, straight, 
 use programs::main_processor::dispatch;
 use random::SplitMix64;
 
+use super::machines::{self, one_of};
 use crate::project::files;
 use crate::seen::Seen;
 use crate::surface::{InputForm, Surface};
 
-/// Single programs on the interpreter and as native code.
+/// Single programs on the interpreter and as native code: a run for each set of registers that a program begins with.
 pub const PROGRAM: Surface = Surface {
     name: "program",
     form: InputForm::Number,
@@ -34,7 +33,7 @@ pub const PROGRAM: Surface = Surface {
     reader: &["emu/src/engine/interpreter.rs", "emu/src/engine/native", "emu/src/semantics"],
 };
 
-/// Frames of programs on machines: replayed and stepped, on all engines.
+/// Frames of programs on machines, recorded and stepped by native code, and stepped by the interpreter: a run for each machine.
 pub const FRAME: Surface = Surface {
     name: "frame",
     form: InputForm::Number,
@@ -58,18 +57,14 @@ static EXTENDED: LazyLock<Isa> = LazyLock::new(|| {
 
 static BASE: LazyLock<Isa> = LazyLock::new(Isa::base);
 
-/// The number of an input.
-fn random_of(input: &[u8]) -> SplitMix64 {
-    let mut octets = [0; 8];
-    let length = input.len().min(8);
-    octets[..length].copy_from_slice(&input[..length]);
-    SplitMix64::new(u64::from_le_bytes(octets))
-}
+/// Global memory, of which all runs have copies.
+static IMAGE: LazyLock<Memory> = LazyLock::new(|| Memory::new(image()));
 
-/// One of a list.
-fn one_of<T: Copy>(random: &mut SplitMix64, list: &[T]) -> T {
-    list[random.below(list.len() as u64) as usize]
-}
+/// Sets of registers that a program begins with: native code that is generated once serves them all.
+const STARTS: usize = 32;
+
+/// Machines that a frame runs on.
+const MACHINES: usize = 32;
 
 /// Arithmetic in any word and any modes.
 fn arithmetic(random: &mut SplitMix64, config: &mut Config) {
@@ -128,7 +123,7 @@ fn talk(p: &mut ProgramBuilder, random: &mut SplitMix64) {
 }
 
 fn run_program(input: &[u8], seen: &mut Seen) {
-    let random = &mut random_of(input);
+    let random = &mut machines::random_of(input);
     let has_extensions = random.below(4) == 0;
     let isa: &Isa = if has_extensions { &EXTENDED } else { &BASE };
     let mut builder = ProgramBuilder::new(isa.clone());
@@ -149,68 +144,49 @@ fn run_program(input: &[u8], seen: &mut Seen) {
     }
     p.emit(Op::halt, &[]);
     let program = builder.build();
-    let mut config =
-        Config { packet_lanes: 1 << random.below(3), ..one_of(random, &PRESETS.iter().collect::<Vec<_>>()).config() };
+    let mut config = Config { packet_lanes: 1 << random.below(3), ..preset(random) };
     arithmetic(random, &mut config);
     let profile =
         one_of(random, &[ProfileLevel::None, ProfileLevel::None, ProfileLevel::Totals, ProfileLevel::Extremes]);
-    let registers = registers(random);
     let core = OneCore {
-        registers,
         step_limit: 1 << 20,
         profile,
         has_losses: random.below(4) == 0,
         ..OneCore::new(&config, isa, &program)
     };
-    let run = |wish| {
-        one_core::run_with(&core, Memory::new(image()), wish)
-            .unwrap_or_else(|report| panic!("{}", report.render(false)))
-    };
-    let checked = run(Wish::CHECKED);
+    let core = LoadedCore::new(&core).unwrap_or_else(|report| panic!("{}", report.render(false)));
     let mut simds = HostSimd::ALL.into_iter().filter(|simd| simd.is_present()).collect::<Vec<_>>();
     let simd = simds.swap_remove(random.below(simds.len() as u64) as usize);
-    let mut native = run(Wish { simd, ..Wish::native() });
-    // The planted fault is a wrong clock where a loop ran long.
-    if seen.has_planted() && native.state.steps % 97 == 5 {
-        native.clocks.0 += 1;
+    for _ in 0..STARTS {
+        let registers = registers(random);
+        let checked = core.run(&registers, IMAGE.clone(), Wish::CHECKED);
+        let mut native = core.run(&registers, IMAGE.clone(), Wish { simd, ..Wish::native() });
+        // The planted fault is a wrong clock where a loop ran long.
+        if seen.has_planted() && native.state.steps % 97 == 5 {
+            native.clocks.0 += 1;
+        }
+        assert!(native.state == checked.state, "states agree with {}", simd.name());
+        assert!(native.memory == checked.memory, "memories agree with {}", simd.name());
+        assert!((native.clocks, native.waiting) == (checked.clocks, checked.waiting), "clocks agree");
+        assert!(native.tally == checked.tally, "counts agree with {}", simd.name());
+        assert!(native.trap == checked.trap, "traps agree with {}", simd.name());
+        assert!(native.profile == checked.profile, "profiles agree");
+        match &checked.trap {
+            Some(trap) => seen.text(&trap.to_string()),
+            None => seen.name("it ends"),
+        }
+        seen.name(match native.engine.kind {
+            EngineKind::Native => "native",
+            _ => native.engine.refusal.unwrap_or("refused"),
+        });
+        seen.count("steps", checked.state.steps as usize);
+        seen.run();
     }
-    let parts = |run: &OneCoreRun| (run.state.clone(), run.clocks, run.waiting, run.tally.clone(), run.trap.clone());
-    assert!(
-        (parts(&native), &native.memory) == (parts(&checked), &checked.memory),
-        "engines agree with {}",
-        simd.name()
-    );
-    assert!(native.profile == checked.profile, "profiles agree");
-    match &checked.trap {
-        Some(trap) => seen.text(&trap.to_string()),
-        None => seen.text("it ends"),
-    }
-    seen.text(if native.engine.kind == EngineKind::Native {
-        "native"
-    } else {
-        native.engine.refusal.unwrap_or("refused")
-    });
-    seen.count("steps", checked.state.steps as usize);
 }
 
-/// A machine of any kind.
-fn machine(random: &mut SplitMix64) -> Config {
-    let config = one_of(random, &PRESETS.iter().collect::<Vec<_>>()).config();
-    let bus = BusConfig {
-        arbiter: one_of(random, &ArbiterKind::ALL),
-        weights: vec![3, 1, 2],
-        slot_clocks: 40 + random.below(100),
-        burst_octets: random.below(40),
-        setup_clocks: random.below(4),
-        overlap: random.below(4) == 0,
-        ..config.bus
-    };
-    let octets = if random.below(2) == 0 { 0 } else { random.below(200) as u32 };
-    let cache = CacheConfig { octets, line_octets: 16, kind: "data".to_owned() };
-    let mut config = Config { cores: 1 + random.below(16) as u32, step_limit: 1 << 20, bus, cache, ..config };
-    config.main.traffic = random.below(4) > 0;
-    arithmetic(random, &mut config);
-    config
+/// The machine of a preset.
+fn preset(random: &mut SplitMix64) -> Config {
+    PRESETS[random.below(PRESETS.len() as u64) as usize].config()
 }
 
 /// Something by which a frame cannot be replayed.
@@ -225,7 +201,7 @@ fn meddle(p: &mut ProgramBuilder, random: &mut SplitMix64) {
 }
 
 fn run_frame(input: &[u8], seen: &mut Seen) {
-    let random = &mut random_of(input);
+    let random = &mut machines::random_of(input);
     let isa: &Isa = &BASE;
     let core: Program = program(|p| {
         scatter(p, random);
@@ -236,35 +212,13 @@ fn run_frame(input: &[u8], seen: &mut Seen) {
         }
         gather(p);
     });
-    let main = dispatch(random.below(24) as i32);
-    let config = machine(random);
-    let profile = one_of(random, &[ProfileLevel::None, ProfileLevel::Totals, ProfileLevel::Clocks]);
-    let setup = |engine| {
-        let options = RunOptions { engine, profile, has_items: true, is_eager: true, ..RunOptions::default() };
-        Setup {
-            config: &config,
-            isa,
-            core: &core,
-            main: &main,
-            kinds: vec![(DATA as u32..MEMORY as u32, "data".to_owned())],
-            options,
-        }
-    };
-    let text = |result: Result<RunOutcome, RunFailure>| result.map_err(|failure| failure.to_string());
-    let stepped = text(emu::step(&setup(EngineKind::Checked), Memory::new(image()), &mut |_| {}));
-    for engine in EngineKind::ALL {
-        let mut frame = text(emu::run(&setup(engine), Memory::new(image()), &mut |_| {}));
-        if let (Ok(frame), Ok(stepped)) = (&mut frame, &stepped) {
-            seen.text(frame.method.reason().unwrap_or("replayed"));
-            frame.method = stepped.method;
-            if seen.has_planted() && frame.clocks.0 % 31 == 5 && engine == EngineKind::Native {
-                frame.clocks.0 += 1;
-            }
-        }
-        assert!(frame == stepped, "{} agrees with stepping", engine.name());
-    }
-    match &stepped {
-        Ok(frame) => seen.count("clocks", frame.clocks.0 as usize),
-        Err(message) => seen.text(message),
-    }
+    let main = dispatch(random.below(16) as i32);
+    let mut config = Config { step_limit: 1 << 20, ..preset(random) };
+    config.cache.kind = "data".to_owned();
+    arithmetic(random, &mut config);
+    let all: Vec<Config> = (0..MACHINES).map(|_| machines::alike(random, &config, 16)).collect();
+    let options = RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
+    let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
+    let setup = Setup { config: &config, isa, core: &core, main: &main, kinds, options };
+    machines::compare(&setup, &all, &IMAGE, random, seen);
 }

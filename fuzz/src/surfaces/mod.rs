@@ -3,6 +3,7 @@
 pub mod arguments;
 pub mod debugger;
 pub mod engines;
+pub mod machines;
 pub mod meshes;
 pub mod programs;
 pub mod results;

@@ -118,7 +118,7 @@ fn read_words(input: &[u8], seen: &mut Seen) {
             let Some(instruction) = isa.decode(word) else { continue };
             numbers += 1;
             let row = isa.definition(instruction.op);
-            seen.text(&row.name);
+            seen.name(&row.name);
             let operands: Vec<i64> =
                 row.operands.iter().map(|operand| instruction.fields.get(operand.letter)).collect();
             assert_eq!(isa.encode(instruction.op, &operands), Ok(word), "a word is encoded as it was decoded");
@@ -138,6 +138,7 @@ fn read_words(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_hexadecimal(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     // Octets of one form under the name of another.
     for name in ["a.bin", "a.o"].map(Path::new) {
         let form = ProgramFile::of(name).expect("the ending is one of programs");

@@ -130,6 +130,7 @@ fn results() -> Vec<Vec<u8>> {
 }
 
 fn read_plan(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     match StudyPlan::parse(&String::from_utf8_lossy(input), "a.jsonl") {
         Err(report) => seen.report(&report, input),
         Ok(plan) => {
@@ -139,7 +140,7 @@ fn read_plan(input: &[u8], seen: &mut Seen) {
             for point in plan.points.iter().take(2) {
                 match plan.settings(point, &contents) {
                     Err(failure) => seen.text(&format!("{failure:?}")),
-                    Ok(_) => seen.text("settings"),
+                    Ok(_) => seen.name("settings"),
                 }
             }
             let octets = plan.octets().collect::<Vec<_>>().concat();
@@ -151,6 +152,7 @@ fn read_plan(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_part(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     let text = String::from_utf8_lossy(input);
     read_whole_part(&text, input, seen);
     // A change breaks the checksum of the head, behind which nothing more would be read: the same with the one that holds.

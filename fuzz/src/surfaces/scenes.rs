@@ -1,18 +1,20 @@
 //! Scenes with mirrors and glass on all engines and sets of kernels, with any number of cores and any arbiter.
 
-use emu::engine::EngineKind;
-use emu::machine::arbiter::ArbiterKind;
-use emu::machine::{Config, RunOptions, RunOutcome};
+use emu::machine::{Config, RunOptions};
 use kernels::KernelSet;
 use lancer::job::Job;
 use lancer::load::Load;
 use random::SplitMix64;
 use scenes::model::{Light, Material, Scene, Triangle};
 
+use super::machines::{self, one_of};
 use crate::seen::Seen;
 use crate::surface::{InputForm, Surface};
 
-/// Pictures of generated scenes.
+/// Machines that a picture is drawn on: its programs are assembled, and compiled, once for all of them.
+const MACHINES: usize = 64;
+
+/// Pictures of generated scenes: a run for each machine.
 pub const SCENE: Surface = Surface {
     name: "scene",
     form: InputForm::Number,
@@ -56,7 +58,7 @@ fn scene(random: &mut SplitMix64) -> Scene {
     let triangles = triangles.collect();
     Scene {
         name: "generated".to_owned(),
-        size: (1 + random.below(7) as u32, 1 + random.below(5) as u32),
+        size: (1 + random.below(4) as u32, 1 + random.below(3) as u32),
         materials,
         lights,
         vertices,
@@ -65,52 +67,27 @@ fn scene(random: &mut SplitMix64) -> Scene {
 }
 
 fn draw(input: &[u8], seen: &mut Seen) {
-    let mut octets = [0; 8];
-    let length = input.len().min(8);
-    octets[..length].copy_from_slice(&input[..length]);
-    let random = &mut SplitMix64::new(u64::from_le_bytes(octets));
+    let random = &mut machines::random_of(input);
     let mut job = Job::new(scene(random));
     job.view.bounces = random.below(4) as u32;
-    job.kernels.profile = KernelSet::ALL[random.below(KernelSet::ALL.len() as u64) as usize];
-    let arbiter = ArbiterKind::ALL[random.below(ArbiterKind::ALL.len() as u64) as usize];
-    let mut config = Config { cores: 1 + random.below(6) as u32, ..Config::default() };
-    config.bus.arbiter = arbiter;
-    config.bus.slot_clocks = 60 + random.below(100);
-    job.machine = config;
+    job.kernels.profile = one_of(random, KernelSet::ALL);
+    seen.name(job.kernels.profile.name());
     let (load, _) = match Load::picture(&job) {
         Ok(picture) => picture,
         Err(failure) => return seen.text(&format!("{failure:?}")),
     };
-    // The picture and the counts of a frame, whatever the number of cores and the arbiter.
-    let run = |config: &Config, engine, is_stepped: bool| -> Result<RunOutcome, String> {
-        let options = RunOptions { engine, has_items: true, is_eager: true, ..RunOptions::default() };
-        let setup = load.setup(config, options);
-        let frame = match is_stepped {
-            true => emu::step(&setup, load.memory.clone(), &mut |_| {}),
-            false => emu::run(&setup, load.memory.clone(), &mut |_| {}),
-        };
-        frame.map_err(|failure| failure.to_string())
-    };
-    let stepped = run(&job.machine, EngineKind::Checked, true);
-    for engine in EngineKind::ALL {
-        let mut frame = run(&job.machine, engine, false);
-        if let (Ok(frame), Ok(stepped)) = (&mut frame, &stepped) {
-            seen.text(frame.method.reason().unwrap_or("replayed"));
-            frame.method = stepped.method;
-            if seen.has_planted() && frame.clocks.0 % 7 == 5 {
-                frame.clocks.0 += 1;
+    // The first machine has one core and no rivals: the picture and its work items are those of all others.
+    let mut all = vec![Config { cores: 1, ..job.machine.clone() }];
+    all.resize_with(MACHINES, || machines::alike(random, &job.machine, 6));
+    let options = RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
+    let frames = machines::compare(&load.setup(&job.machine, options), &all, &load.memory, random, seen);
+    for frame in &frames {
+        match (&frames[0], frame) {
+            (Ok(alone), Ok(frame)) => {
+                assert!(alone.memory == frame.memory, "the picture depends on no core and no arbiter");
+                assert!(alone.item_count == frame.item_count, "so do the work items");
             }
+            (alone, frame) => assert_eq!(alone.is_err(), frame.is_err(), "a trap depends on no core and no arbiter"),
         }
-        assert!(frame == stepped, "{} agrees with stepping", engine.name());
     }
-    let alone = run(&Config { cores: 1, ..Config::default() }, EngineKind::default(), false);
-    if let (Ok(alone), Ok(stepped)) = (&alone, &stepped) {
-        assert!(alone.memory == stepped.memory, "the picture depends on no core and no arbiter");
-        assert!(alone.item_count == stepped.item_count, "so do the work items");
-        seen.count("clocks", alone.clocks.0 as usize);
-    } else {
-        assert_eq!(alone.is_err(), stepped.is_err(), "a trap depends on no core and no arbiter");
-    }
-    seen.text(job.kernels.profile.name());
-    seen.text(arbiter.name());
 }

@@ -7,6 +7,7 @@ use lancer::settings::read;
 use lancer::stress::progress::RunProgress;
 use lancer::stress::{CASES, CatalogueSize};
 use lancer::sweep::study::Study;
+use serde_json::{Value, json};
 
 use super::source;
 use crate::project::{files, listings, literals, pieces};
@@ -65,13 +66,19 @@ fn studies() -> Vec<Vec<u8>> {
 
 fn settings() -> Vec<Vec<u8>> {
     let own = Settings::default();
-    let written = [
-        serde_json::to_vec(&own).expect("settings are JSON"),
-        toml::to_string(&own).expect("settings are TOML").into_bytes(),
-    ];
+    let text = toml::to_string(&own).expect("settings are TOML");
+    // Each key of each group by itself: in whole settings a change seldom meets anything, and reading them takes long.
+    let groups = own.value().as_object().cloned().unwrap_or_default().into_iter().flat_map(|(group, value)| {
+        let alone = match value {
+            Value::Object(keys) => keys.into_iter().map(|(key, value)| json!({ key: value })).collect(),
+            value => vec![value],
+        };
+        alone.into_iter().map(move |value| json!({ "settings": { group.as_str(): value } }).to_string())
+    });
+    let tables = text.split("\n\n").map(str::to_owned);
+    let written = groups.chain(tables).map(String::into_bytes);
     let tests = literals("src/settings/read.rs").into_iter().chain(literals("tests/cli/settings.rs"));
-    // Whole settings are longer than pieces of other texts.
-    written.into_iter().chain(pieces(tests.chain(listings()).collect(), LONGEST)).collect()
+    written.chain(pieces(tests.chain(listings()).collect(), LONGEST)).collect()
 }
 
 fn states() -> Vec<Vec<u8>> {
@@ -133,6 +140,7 @@ fn read_study(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_settings(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     let Some(source) = source("a.toml", input) else { return };
     let stored = match read::parse(&source) {
         Err(report) => return seen.report(&report, input),
@@ -173,7 +181,7 @@ fn read_vectors(input: &[u8], seen: &mut Seen) {
     seen.count("vectors", vectors.len());
     for vector in &vectors {
         let outcome = vector.outcome();
-        seen.text(vector.operation.name());
+        seen.name(vector.operation.name());
         seen.count(
             "flags",
             usize::from(outcome.is_quantized)

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use asm::limits::SourceLimits;
 use isa::Isa;
 use kernels::Function;
-use kernels::build::KernelOptions;
+use kernels::build::{KernelOptions, SceneFeatures};
 use messages::Source;
 use scenes::generate::{GenerateOptions, scene};
 use scenes::image::{self, MemoryImage, MemoryOptions};
@@ -124,6 +124,7 @@ thread_local! {
 }
 
 fn assemble(input: &[u8], seen: &mut Seen) {
+    seen.leave_out_input();
     let Some(source) = source("a.s", input) else { return };
     // Small limits, so that a run is short: what is beyond them is the same message sooner.
     let limits =
@@ -178,26 +179,52 @@ fn extend(input: &[u8], seen: &mut Seen) {
     }
 }
 
-/// A small scene with mirrors and glass in memory.
-static WORLD: LazyLock<(Scene, View, MemoryImage)> = LazyLock::new(|| {
-    let options = GenerateOptions { level: Some(1), size: (4, 3), ..GenerateOptions::default() };
-    let scene = scene("cornell", &options).expect("the room has such a size");
-    let view = View::new(scene.size);
-    let image = image::build(&scene, &view, &MemoryOptions::default()).expect("the room fits its formats");
-    (scene, view, image)
+/// A small scene in memory, and the options with which its programs are built.
+struct BuildWorld {
+    scene: Scene,
+    view: View,
+    image: MemoryImage,
+    options: KernelOptions,
+}
+
+impl BuildWorld {
+    /// A room with mirrors and glass; without levels of secondary rays its programs are much shorter.
+    fn new(bounces: u32, interpolate: Option<f64>) -> BuildWorld {
+        let options = GenerateOptions { level: Some(1), size: (4, 3), ..GenerateOptions::default() };
+        let scene = scene("cornell", &options).expect("the room has such a size");
+        let view = View { bounces, ..View::new(scene.size) };
+        let image = image::build(&scene, &view, &MemoryOptions::default()).expect("the room fits its formats");
+        BuildWorld { scene, view, image, options: KernelOptions { interpolate, ..KernelOptions::default() } }
+    }
+
+    fn has(&self, function: Function) -> bool {
+        let features = SceneFeatures::new(&self.scene, &self.view, &self.image.formats, &self.options);
+        [false, true].into_iter().flat_map(|is_main| Function::of_program(is_main, &features)).any(|one| one == function)
+    }
+}
+
+/// The world of each function: the first one whose programs have it, of which the shortest come first.
+static WORLDS: LazyLock<Vec<(Function, Arc<BuildWorld>)>> = LazyLock::new(|| {
+    let worlds = [(0, None), (0, Some(0.1)), (2, None)];
+    let worlds = worlds.map(|(bounces, interpolate)| Arc::new(BuildWorld::new(bounces, interpolate)));
+    let world = |&function: &Function| {
+        let world = worlds.iter().find(|world| world.has(function)).expect("some program has the function");
+        (function, world.clone())
+    };
+    Function::ALL.iter().map(world).collect()
 });
 
 fn replace_kernel(input: &[u8], seen: &mut Seen) {
     let Some((&first, text)) = input.split_first() else { return };
-    let function = Function::ALL[usize::from(first) % Function::ALL.len()];
+    let (function, world) = &WORLDS[usize::from(first) % WORLDS.len()];
     let Some(source) = source("own.s", text) else { return };
-    let (scene, view, image) = &*WORLD;
-    let options = KernelOptions { replaced: vec![(function, source)], ..KernelOptions::default() };
+    let BuildWorld { scene, view, image, options } = &**world;
+    let options = KernelOptions { replaced: vec![(*function, source)], ..options.clone() };
     match BASE.with(|isa| kernels::build(scene, view, image, isa, &options)) {
         Err(report) => seen.report(&report, input),
         Ok(build) => {
             seen.report(&build.warnings, input);
-            seen.text(function.name());
+            seen.name(function.name());
             seen.count("words", build.cores.words.len() + build.main.words.len());
             seen.plant(PlantedFault::Panic, build.warnings.0.len() == 1);
         }

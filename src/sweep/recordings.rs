@@ -24,8 +24,8 @@ pub const ENDING: &str = "recording";
 /// First octets of every file.
 const MAGIC: &[u8; 16] = b"lancer recording";
 
-/// Octets before those of the recording: the first ones, the format's version, the digest that names it, their number, and their SHA-256.
-const HEAD: usize = MAGIC.len() + 4 + 32 + 8 + 32;
+/// Octets of a file before those of the recording: the first ones, the format's version, the digest that names it, their number, and their SHA-256.
+pub const HEAD: usize = MAGIC.len() + 4 + 32 + 8 + 32;
 
 /// Folder of the locks, one for each first octet of a digest: their number has a bound, and none is ever removed while somebody may wait for it.
 const LOCKS: &str = "locks";
@@ -123,9 +123,10 @@ impl RecordingStore {
         let file = match File::open(path) {
             Ok(file) => file,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(format!("it cannot be read: {error}")),
+            Err(error) => return Err(unreadable(error)),
         };
-        let octets = body(&file, digest, self.limit)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+        let octets = unsealed(&file, length, digest, self.limit)?;
         let recorded = Recorded::decode(setup, &octets)?;
         // The time of the last use says which one makes room; where it cannot be set, that of writing does.
         let _ = file.set_modified(SystemTime::now());
@@ -142,13 +143,7 @@ impl RecordingStore {
                 self.limit >> 20
             ));
         }
-        let mut whole = Vec::with_capacity(HEAD + octets.len());
-        whole.extend_from_slice(MAGIC);
-        whole.extend_from_slice(&RECORDING_FORMAT.to_le_bytes());
-        whole.extend_from_slice(digest);
-        whole.extend_from_slice(&(octets.len() as u64).to_le_bytes());
-        whole.extend_from_slice(&Sha256::digest(octets));
-        whole.extend_from_slice(octets);
+        let whole = sealed(octets, digest);
         // Making room and taking it is one step, or two processes would take the same room.
         let room = self.lock_named("room");
         let path = self.path(digest);
@@ -211,10 +206,27 @@ impl RecordingStore {
     }
 }
 
-/// The octets of a recording in a file that is what its digest says.
-fn body(mut file: &File, digest: &[u8; 32], limit: u64) -> Result<Vec<u8>, String> {
-    let unreadable = |error: io::Error| format!("it cannot be read: {error}");
-    let length = file.metadata().map_err(unreadable)?.len();
+fn unreadable(error: io::Error) -> String {
+    format!("it cannot be read: {error}")
+}
+
+/// The file of a recording's octets: behind a head that has their SHA-256 and the digest that names them.
+pub fn sealed(octets: &[u8], digest: &[u8; 32]) -> Vec<u8> {
+    let mut whole = Vec::with_capacity(HEAD + octets.len());
+    whole.extend_from_slice(MAGIC);
+    whole.extend_from_slice(&RECORDING_FORMAT.to_le_bytes());
+    whole.extend_from_slice(digest);
+    whole.extend_from_slice(&(octets.len() as u64).to_le_bytes());
+    whole.extend_from_slice(&Sha256::digest(octets));
+    whole.extend_from_slice(octets);
+    whole
+}
+
+/// The octets of a recording in a file of so many octets, which has the digest as its name. Those of the file may be no more than `limit`.
+///
+/// # Errors
+/// Reason for which the file is not as it was written, or is another one.
+pub fn unsealed(mut file: impl Read, length: u64, digest: &[u8; 32], limit: u64) -> Result<Vec<u8>, String> {
     if length < HEAD as u64 {
         return Err("it is cut short".to_owned());
     }
@@ -270,7 +282,7 @@ mod tests {
         }
         // The first one is used again, so the second one is the oldest.
         let first = File::open(store.path(&[1; 32])).unwrap();
-        assert_eq!(body(&first, &[1; 32], store.limit), Ok(vec![1; 100]));
+        assert_eq!(unsealed(&first, SIZE, &[1; 32], store.limit), Ok(vec![1; 100]));
         first.set_modified(SystemTime::UNIX_EPOCH + Duration::from_secs(9)).unwrap();
         store.keep(&[4; 32], &[4; 100]);
         assert_eq!([1, 2, 3, 4].map(is_there), [true, false, true, true]);
@@ -282,7 +294,7 @@ mod tests {
         fs::write(store.folder.join("notes"), [0; 5_000]).unwrap();
         store.keep(&[6; 32], &[6; 250]);
         assert_eq!([1, 3, 4, 6].map(is_there), [false, false, true, true]);
-        assert_eq!(body(&third, &[3; 32], store.limit), Ok(vec![3; 100]));
+        assert_eq!(unsealed(&third, SIZE, &[3; 32], store.limit), Ok(vec![3; 100]));
         assert!(store.folder.join("notes").exists() && store.take_notes().is_empty());
     }
 

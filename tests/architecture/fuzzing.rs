@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{files, root};
 
 /// Files below `src` that open what a user names, each with the surfaces that try what is read there.
-const DOORS: [(&str, &[&str]); 20] = [
+const DOORS: [(&str, &[&str]); 21] = [
     ("src/command/arithmetic.rs", &["arithmetic"]),
     ("src/command/assemble.rs", &["assembler"]),
     ("src/command/debug.rs", &["assembler", "debugger", "dap"]),
@@ -19,18 +19,19 @@ const DOORS: [(&str, &[&str]); 20] = [
     ("src/files/program.rs", &["object", "words", "hex"]),
     ("src/inject/part.rs", &["injections"]),
     ("src/input.rs", &["off", "stl", "dsc", "obj", "mtl", "ply"]),
-    ("src/machine.rs", &["machine"]),
+    ("src/machine.rs", &["machine", "protections"]),
     ("src/settings/job.rs", &["kernel"]),
     ("src/settings/read.rs", &["settings"]),
     ("src/sweep/contents.rs", &["kernel"]),
     ("src/sweep/dataset.rs", &["table"]),
     ("src/sweep/part.rs", &["part"]),
     ("src/sweep/plan.rs", &["plan"]),
+    ("src/sweep/recordings.rs", &["recordings"]),
     ("src/main.rs", &["arguments"]),
 ];
 
 /// Calls that open a file, or read a command line.
-const OPENING: [&str; 8] = [
+const OPENING: [&str; 9] = [
     "files::source(",
     "files::source_of(",
     "files::open(",
@@ -39,6 +40,7 @@ const OPENING: [&str; 8] = [
     "read::load(",
     "super::source_of(",
     "invocation::expanded(",
+    "Recorded::decode(",
 ];
 
 /// Texts between quotation marks, and those between one text and the next.

@@ -6,6 +6,8 @@ pub mod engines;
 pub mod machines;
 pub mod meshes;
 pub mod programs;
+pub mod protections;
+pub mod recordings;
 pub mod results;
 pub mod scenes;
 pub mod settings;

@@ -138,7 +138,13 @@ pub fn run(surface: &Surface, wishes: &Wishes, current: &Path) -> std::io::Resul
         };
         if let Some(why) = why {
             watch.finish()?;
-            return Ok(End::Found(Find { target: surface.name.to_owned(), seed: wishes.seed, run: inputs, why, input }));
+            return Ok(End::Found(Find {
+                target: surface.name.to_owned(),
+                seed: wishes.seed,
+                run: inputs,
+                why,
+                input,
+            }));
         }
         runs += seen.runs();
         inputs += 1;

@@ -121,7 +121,15 @@ fn work(surface: &Surface, arguments: &FuzzArguments) -> Result<bool, String> {
 
 fn tell(find: &Find, folder: &Path) -> Result<(), String> {
     let path = find.write(folder).map_err(|error| error.to_string())?;
-    println!("{:<11} input {} of seed {}: {}\n{:11} {}", find.target, find.run, find.seed, find.why, "", path.display());
+    println!(
+        "{:<11} input {} of seed {}: {}\n{:11} {}",
+        find.target,
+        find.run,
+        find.seed,
+        find.why,
+        "",
+        path.display()
+    );
     Ok(())
 }
 

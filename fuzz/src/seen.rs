@@ -22,8 +22,8 @@ pub struct Seen {
     has_planted: bool,
     runs: u64,
     input: Vec<u8>,
-    /// Hashes of words that are left out of messages, sorted.
-    left_out: Vec<u64>,
+    /// The input as text, where words of it are left out of messages.
+    left_out: String,
 }
 
 /// Words of a message that tell it from others, on each side of what is quoted.
@@ -67,21 +67,19 @@ impl Seen {
 
     /// Leaves out of messages what the input has as well, for a reader that repeats it outside of quotation marks, too.
     pub fn leave_out_input(&mut self) {
-        let mut words: Vec<u64> = words(&self.input).collect();
-        words.sort_unstable();
-        self.left_out = words;
+        self.left_out = String::from_utf8_lossy(&self.input).into_owned();
     }
 
     /// Marks a text by its first words in front of and behind all that is quoted in it.
-    pub fn text(&mut self, text: &str) {
+    pub fn text<'t>(&mut self, text: &'t str) {
         let is_mark = |letter: char| "`\"'".contains(letter);
         let (before, rest) = text.split_once(is_mark).unwrap_or((text, ""));
         let behind = rest.rsplit(is_mark).next().unwrap_or_default();
-        let is_left = |word: &u64| self.left_out.binary_search(word).is_err();
-        let marked = [before, behind]
-            .into_iter()
-            .flat_map(|side| words(side.as_bytes()).filter(is_left).take(MARKED_WORDS).chain([0]));
-        let mark = hash(marked.flat_map(u64::to_le_bytes));
+        // A message may have cut a word of the input short.
+        let is_left = |word: &&str| !word.is_empty() && !self.left_out.contains(word);
+        let words = |side: &'t str| side.split(|letter: char| !letter.is_ascii_alphabetic()).filter(is_left);
+        let marked = [before, behind].into_iter().flat_map(|side| words(side).take(MARKED_WORDS).chain(["|"]));
+        let mark = hash(marked.flat_map(|word| word.bytes().chain([b' '])));
         self.marks.push(mark);
     }
 
@@ -117,12 +115,6 @@ impl Seen {
             PlantedFault::Abort => std::process::abort(),
         }
     }
-}
-
-/// Hashes of the words of a text, which are runs of letters.
-fn words(text: &[u8]) -> impl Iterator<Item = u64> {
-    let words = text.split(|octet| !octet.is_ascii_alphabetic()).filter(|word| !word.is_empty());
-    words.map(|word| hash(word.iter().copied()))
 }
 
 /// One input in `many`, by its octets alone.

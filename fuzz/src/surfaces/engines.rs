@@ -217,7 +217,8 @@ fn run_frame(input: &[u8], seen: &mut Seen) {
     config.cache.kind = "data".to_owned();
     arithmetic(random, &mut config);
     let all: Vec<Config> = (0..MACHINES).map(|_| machines::alike(random, &config, 16)).collect();
-    let options = RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
+    let options =
+        RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
     let setup = Setup { config: &config, isa, core: &core, main: &main, kinds, options };
     machines::compare(&setup, &all, &IMAGE, random, seen);

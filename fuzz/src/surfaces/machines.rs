@@ -98,10 +98,13 @@ pub fn compare(
         0 => hold("that native code steps", self::stepped(&native, machines, memory)),
         1 => hold("of recordings that are handed on", texts(emu::run_all(&native, machines, memory, &mut |_| {}))),
         2 => hold("of recordings", replayed(&native, machines, memory, |recorded| Ok(recorded))),
-        _ => hold("of recordings that were written and read", replayed(&native, machines, memory, |recorded| {
-            // Those with clocks of functions are not kept.
-            recorded.encode().map_or(Ok(recorded), |octets| Recorded::decode(&native, &octets))
-        })),
+        _ => hold(
+            "of recordings that were written and read",
+            replayed(&native, machines, memory, |recorded| {
+                // Those with clocks of functions are not kept.
+                recorded.encode().map_or(Ok(recorded), |octets| Recorded::decode(&native, &octets))
+            }),
+        ),
     }
     // The interpreter records, too, but what it records is replayed as the rest is.
     hold("that the interpreter has recorded", texts(emu::run_all(&checked, &machines[..1], memory, &mut |_| {})));

@@ -63,7 +63,10 @@ fn protect(input: &[u8], seen: &mut Seen) {
         Ok(config) => config,
     };
     for (kind, protection) in config.protection.iter() {
-        assert!(kind.protections().contains(&protection), "a machine has protections that are made for their structures");
+        assert!(
+            kind.protections().contains(&protection),
+            "a machine has protections that are made for their structures"
+        );
         seen.name(kind.name());
         seen.name(protection.name());
     }
@@ -115,7 +118,8 @@ fn check_use(config: &Config, stored: StoredWords, moved: Octets) {
         storage
     };
     let storage: u128 = config.protection.iter().map(storage).sum();
-    let moved_bits: u128 = [FaultKind::Memory, FaultKind::Bus].map(|kind| bits(config.protection.of(kind))).iter().sum();
+    let moved_bits: u128 =
+        [FaultKind::Memory, FaultKind::Bus].map(|kind| bits(config.protection.of(kind))).iter().sum();
     let octets = u128::from(moved.0) * moved_bits / 32;
     let found = ProtectionUse::new(config, stored, moved);
     assert_eq!((u128::from(found.storage_bits), u128::from(found.octets)), (storage, octets), "what protections take");

@@ -178,7 +178,8 @@ fn read_whole_part(text: &str, input: &[u8], seen: &mut Seen) {
             let drawn = rows.iter().filter(|row| row.figures.is_some()).count();
             seen.count("drawn", drawn);
             let again = part::index(part::text(&whole.recording, &rows).as_bytes(), Path::new("b"));
-            let results = |part: &part::StudyPart| -> Vec<_> { part.rows.iter().map(|row| (row.point, row.result)).collect() };
+            let results =
+                |part: &part::StudyPart| -> Vec<_> { part.rows.iter().map(|row| (row.point, row.result)).collect() };
             assert!(again.is_ok_and(|again| results(&again) == results(&whole)), "a part is read as it was written");
             let plan = is_sample(input, 2).then_some(&PLANNED.0);
             match merge::merge(&[whole], &[], plan) {

@@ -79,7 +79,8 @@ fn draw(input: &[u8], seen: &mut Seen) {
     // The first machine has one core and no rivals: the picture and its work items are those of all others.
     let mut all = vec![Config { cores: 1, ..job.machine.clone() }];
     all.resize_with(MACHINES, || machines::alike(random, &job.machine, 6));
-    let options = RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
+    let options =
+        RunOptions { profile: machines::profile(random), has_items: true, is_eager: true, ..RunOptions::default() };
     let frames = machines::compare(&load.setup(&job.machine, options), &all, &load.memory, random, seen);
     for frame in &frames {
         match (&frames[0], frame) {

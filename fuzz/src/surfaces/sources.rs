@@ -199,7 +199,10 @@ impl BuildWorld {
 
     fn has(&self, function: Function) -> bool {
         let features = SceneFeatures::new(&self.scene, &self.view, &self.image.formats, &self.options);
-        [false, true].into_iter().flat_map(|is_main| Function::of_program(is_main, &features)).any(|one| one == function)
+        [false, true]
+            .into_iter()
+            .flat_map(|is_main| Function::of_program(is_main, &features))
+            .any(|one| one == function)
     }
 }
 

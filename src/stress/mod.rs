@@ -1,23 +1,15 @@
 //! The catalogue of what fixed-point ray tracers get wrong, each case with what is measured, the largest value that is allowed, and a seed.
 //! A trial depends on its number alone, so a case can be stopped between trials and taken up again.
 
-mod closed;
-mod decisions;
-mod mesh;
-mod numbers;
 mod pictures;
 pub mod progress;
-mod random;
-mod surfaces;
-mod tally;
-mod target;
 
 use std::ops::Range;
 
 use messages::{Diagnostic, did_you_mean};
 use serde::{Deserialize, Serialize};
-
-pub use tally::TrialTally;
+pub use trials::tally::TrialTally;
+use trials::{closed, decisions, numbers, surfaces};
 
 /// Number of trials by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

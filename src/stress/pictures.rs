@@ -13,8 +13,9 @@ use scenes::metrics;
 use scenes::model::{Material, Picture, Scene, View};
 use scenes::reference::{Reference, SearchMethod};
 
-use super::random::Random;
-use super::tally::{TrialTally, tally, tally_in_turn};
+use trials::series::Random;
+use trials::tally::{TrialTally, tally, tally_in_turn};
+
 use crate::drawing::{self, Comparison};
 use crate::failure::Failure;
 use crate::job::{Detail, Job};

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Crates that each crate may build on. The root package may build on all.
-const MAY_USE: [(&str, &[&str]); 10] = [
+const MAY_USE: [(&str, &[&str]); 11] = [
     ("messages", &[]),
     ("isa", &["messages"]),
     ("conformance", &["messages", "isa"]),
@@ -20,6 +20,7 @@ const MAY_USE: [(&str, &[&str]); 10] = [
     ("emu", &["messages", "isa", "random"]),
     ("scenes", &["messages"]),
     ("kernels", &["messages", "isa", "asm", "scenes"]),
+    ("trials", &["isa", "conformance", "random", "emu", "scenes", "kernels"]),
 ];
 
 /// Crates that only tests of a crate may use besides.

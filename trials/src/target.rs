@@ -13,7 +13,7 @@ use kernels::twin::{Twin, ray};
 use scenes::image::{self, MemoryOptions};
 use scenes::model::{Material, Scene, Triangle, View};
 
-use super::mesh::{ClosedMesh, TriangleCorners};
+use crate::mesh::{ClosedMesh, TriangleCorners};
 
 /// Sign of the determinant where a ray leaves a body whose triangles run anticlockwise, seen from outside.
 const OUTWARDS: i32 = -1;
@@ -251,9 +251,9 @@ pub fn through(origin: Vector, towards: Vector) -> Ray {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mesh::sphere;
-    use super::super::random::Random;
     use super::*;
+    use crate::mesh::sphere;
+    use crate::series::Random;
 
     /// Rays at vertices that are found to be wrong, of 500.
     fn wrong(triangles: Vec<TriangleCorners>) -> usize {

@@ -15,10 +15,10 @@ use kernels::twin::surface::{Surface, normal, sides};
 use kernels::twin::unit::unit;
 use kernels::twin::vector_arithmetic::VectorArithmetic;
 
-use super::mesh::{ClosedMesh, sphere};
-use super::random::Random;
-use super::tally::{TrialTally, tally};
-use super::target::Target;
+use crate::mesh::{ClosedMesh, sphere};
+use crate::series::Random;
+use crate::tally::{TrialTally, tally};
+use crate::target::Target;
 
 /// A component of a direction, in the format that directions have in a word of 32 bits.
 type Component = I2F30;

@@ -5,8 +5,8 @@ use std::ops::Range;
 use conformance::{Format, Number, Operation, operate};
 use isa::number::{Arithmetic, Modes, Nearest32, Overflow, Quantization};
 
-use super::random::Random;
-use super::tally::{TrialTally, tally};
+use crate::series::Random;
+use crate::tally::{TrialTally, tally};
 
 /// Bits of the operands of which all pairs are tried.
 const WORD: u32 = 12;
@@ -31,7 +31,7 @@ pub const OVERFLOWS: [Overflow; 9] = [
 pub fn arithmetic(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
-        let any = |random: &mut Random| (random.next() >> (64 - WORD)) as i32 - (1 << (WORD - 1));
+        let any = |random: &mut Random| (random.bits() >> (64 - WORD)) as i32 - (1 << (WORD - 1));
         check_pair(any(&mut random), any(&mut random)).map(|()| 0.0)
     })
 }
@@ -74,9 +74,9 @@ fn check_pair(a: i32, b: i32) -> Result<(), String> {
 pub fn roots(seed: u64, trials: Range<u64>) -> TrialTally {
     tally(trials, |trial| {
         let mut random = Random::new(seed, trial);
-        let root = random.next() >> 48;
+        let root = random.bits() >> 48;
         let near = (root * root + random.below(5) as u64).saturating_sub(2);
-        check_root([random.next() >> 32, near.min(u32::MAX.into())][random.below(2)])
+        check_root([random.bits() >> 32, near.min(u32::MAX.into())][random.below(2)])
     })
 }
 

@@ -10,23 +10,23 @@ impl Random {
     /// The series of a trial.
     pub fn new(seed: u64, trial: u64) -> Random {
         let mut random = Random(SplitMix64::new(seed ^ trial.wrapping_mul(0xd134_2543_de82_ef95)));
-        random.next();
+        random.bits();
         random
     }
 
     /// 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0.bits()
     }
 
     /// A number below `end`.
     pub fn below(&mut self, end: usize) -> usize {
-        (self.next() % end as u64) as usize
+        (self.bits() % end as u64) as usize
     }
 
     /// A number from -reach to reach.
     pub fn coordinate(&mut self, reach: i32) -> i32 {
-        (self.next() % (2 * reach as u64 + 1)) as i64 as i32 - reach
+        (self.bits() % (2 * reach as u64 + 1)) as i64 as i32 - reach
     }
 
     /// Three of them.

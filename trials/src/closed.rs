@@ -9,10 +9,10 @@ use kernels::KernelSet;
 use scenes::image::MemoryOptions;
 use scenes::layout::Layout;
 
-use super::mesh::closed;
-use super::random::Random;
-use super::tally::{TrialTally, tally};
-use super::target::{Target, through};
+use crate::mesh::closed;
+use crate::series::Random;
+use crate::tally::{TrialTally, tally};
+use crate::target::{Target, through};
 
 /// Of so many rays one is searched for in all triangles too.
 const EVERY: u64 = 16;

@@ -10,10 +10,10 @@ use kernels::KernelSet;
 use kernels::twin::packets::PackedLeaves;
 use kernels::twin::stage::StageNode;
 
-use super::mesh::{ClosedMesh, TriangleCorners, cube, sphere};
-use super::random::Random;
-use super::tally::{TrialTally, tally};
-use super::target::{Target, nearest_integer, through};
+use crate::mesh::{ClosedMesh, TriangleCorners, cube, sphere};
+use crate::series::Random;
+use crate::tally::{TrialTally, tally};
+use crate::target::{Target, nearest_integer, through};
 
 /// Fraction bits of t when the machine is asked: 1 is where the ray was aimed.
 const SHIFT: u32 = 28;

@@ -95,7 +95,13 @@ const LEVERS: &[(&str, &[&str])] = &[
         &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
     ),
     ("panics that unwind", &["profile.release.panic=\"unwind\""]),
-    ("everything at opt-level 3 but what prints", &["profile.release.opt-level=3"]),
+    (
+        "everything at opt-level 3 but what prints",
+        &["profile.release.opt-level=3", "profile.release.package.\"*\".opt-level=3"],
+    ),
+    ("commands and their texts at opt-level 1", &["profile.release.opt-level=1"]),
+    // Flags of one's own mean that the linker is not asked for more than that (`build.rs`).
+    ("functions whose code is the same", &["build.rustflags=[\"-Cdebuginfo=0\"]"]),
     (
         "what prints at opt-level 1",
         &[

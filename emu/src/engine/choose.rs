@@ -227,9 +227,21 @@ impl EngineRunner<'_> {
         tally: &mut Tally,
         observer: &mut O,
     ) -> Pause {
+        self.run_timed(core, state, arithmetic, &mut Timeless(link), tally, observer)
+    }
+
+    /// As [`EngineRunner::run`], on a link that an engine tells when it is asked; the interpreter asks without that.
+    pub(crate) fn run_timed<T: Watch, O: Observer>(
+        &mut self,
+        core: CoreId,
+        state: &mut State,
+        arithmetic: &T,
+        link: &mut impl TimedLink,
+        tally: &mut Tally,
+        observer: &mut O,
+    ) -> Pause {
         loop {
-            let timed = &mut Timeless(&mut *link);
-            match self.run_ahead(core, state, arithmetic, timed, &mut Taint::default(), observer.profiler()) {
+            match self.run_ahead(core, state, arithmetic, link, &mut Taint::default(), observer.profiler()) {
                 Some(Stopped::Halt) => return Pause::Halt,
                 Some(Stopped::Wait) => return Pause::Wait,
                 Some(Stopped::Fault(fault)) => return Pause::Fault(fault),

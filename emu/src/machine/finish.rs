@@ -4,13 +4,14 @@ use isa::Class;
 
 use super::RunFailure;
 use super::cache::Cache;
+use super::kinds::Kinds;
 use super::outcome::{Method, RunOutcome};
 use super::processor::ProcessorState;
 use super::schedule::Machine;
 use super::trace::Spans;
 use super::worker::{Worker, WorkerCounts};
 use crate::code::Code;
-use crate::code::quantity::Octets;
+use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Trap};
 use crate::profile::{ClockKeys, ClockLog, Profile, ProgramClocks};
@@ -47,8 +48,21 @@ impl<W: Worker> Machine<'_, W> {
         }
     }
 
+    /// Takes back what masters of the bus still have, which are those that it will never serve, so that processors can say what they wait for.
+    fn recall(&mut self) {
+        /// A clock behind all others.
+        const END: Clocks = Clocks(1 << 62);
+        let masters = self.masters.iter_mut().flat_map(|masters| &mut masters.all);
+        for (processor, master) in self.processors.iter_mut().zip(masters) {
+            if processor.state == ProcessorState::Asks {
+                processor.take_back(master, END);
+            }
+        }
+    }
+
     /// Check that everybody has done what was begun.
-    pub(super) fn check_end(&self) -> Result<(), RunFailure> {
+    pub(super) fn check_end(&mut self) -> Result<(), RunFailure> {
+        self.recall();
         let is_stuck = |number: usize| {
             let processor = &self.processors[number];
             match processor.state {
@@ -85,8 +99,9 @@ impl<W: Worker> Machine<'_, W> {
         let trace = self.bus_watch.map(|watch| watch.into_trace(spans));
         let main = self.processors.pop().expect("a machine has a main processor");
         let main_code = main.code;
-        let WorkerCounts { tally: main_tally, profile: mut main_profile, clocks: log, keys } =
+        let WorkerCounts { tally: main_tally, profile: mut main_profile, clocks: log, keys, kinds } =
             main.worker.into_counts();
+        self.kinds.merge(kinds.as_ref().map_or(&[], Kinds::totals));
         if let (Some(log), Some(keys)) = (log, keys) {
             add_clocks(&log, &[keys], main_code, &mut main_profile);
         }
@@ -96,7 +111,8 @@ impl<W: Worker> Machine<'_, W> {
         let mut profile: Option<Profile> = None;
         let (mut core_clocks, mut logs) = (Vec::new(), Vec::new());
         for processor in self.processors {
-            let WorkerCounts { tally: more, profile: mut observed, clocks: log, keys } = processor.worker.into_counts();
+            let WorkerCounts { tally: more, profile: mut observed, clocks: log, keys, .. } =
+                processor.worker.into_counts();
             tally.merge(&more);
             match (log, keys) {
                 (Some(log), Some(keys)) => core_clocks.extend(add_clocks(&log, &[keys], core_code, &mut observed)),

@@ -176,7 +176,7 @@ fn run_on<T: Watch, O: Observer>(task: OneCoreTask, arithmetic: &T) -> OneCoreRu
     worker.observer.end();
     let trap = fault.map(|fault| Trap::new(fault, 0, worker.state.pc, code));
     let (engine, state) = (worker.engine(), worker.state.clone());
-    let WorkerCounts { tally, mut profile, clocks: log, keys } = worker.into_counts();
+    let WorkerCounts { tally, mut profile, clocks: log, keys, .. } = worker.into_counts();
     if let (Some(log), Some(keys)) = (log, keys) {
         add_clocks(&log, &[keys], code, &mut profile);
     }

@@ -83,7 +83,7 @@ pub(crate) struct Machine<'a, W: Worker> {
     /// Instructions of the cores since the main processor last executed one.
     steps_without_main: u64,
     /// The masters of the bus, which go from transfer to transfer by themselves; none where somebody watches each transfer.
-    masters: Option<BusMasters<W::Master>>,
+    pub masters: Option<BusMasters<W::Master>>,
     /// Octets that were written when the masters were told of it.
     written: Range<u64>,
     progress: &'a mut dyn FnMut(u64),
@@ -185,13 +185,14 @@ impl<'a, W: Worker> Machine<'a, W> {
 
     /// Run of a processor up to the next thing that concerns others; one that is ahead of its own transfer does that thing when the transfer has ended.
     fn run_on(&mut self, number: usize, is_permitted: bool, is_ahead: bool) {
-        let is_main = number == self.main();
+        // What the main processor has done ahead it goes through step by step.
+        let has_main_stepped = number == self.main() || self.processors[self.main()].worker.is_accounted();
         let steps_allowed = self.steps_allowed();
         let processor = &mut self.processors[number];
         // The clock and the request before the advance: what was permitted happens then, and the advance overwrites both.
         let (at, asked, used) = (processor.clock, processor.request, processor.used);
         let advance = processor.advance(&mut self.shared, is_permitted);
-        self.steps_without_main = if is_main { 0 } else { self.steps_without_main + advance.steps };
+        self.steps_without_main = if has_main_stepped { 0 } else { self.steps_without_main + advance.steps };
         if let Some((message, _)) = advance.taken
             && processor.work.message.is_none()
         {
@@ -211,8 +212,7 @@ impl<'a, W: Worker> Machine<'a, W> {
         } else {
             self.settle(number, pause);
         }
-        // Wake those who waited for it
-        // What was permitted may be what another processor waits for.
+        // Wake those who waited for it: what was permitted may be what another processor waits for.
         if let Some((_, sender)) = advance.taken {
             self.unblock(sender as usize, number as u32, at);
         }

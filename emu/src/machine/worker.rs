@@ -12,7 +12,7 @@ use crate::code::Code;
 use crate::code::octets::Buffer;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
-use crate::engine::{Choice, CoreId, EngineRunner, Pause, State, interpreter};
+use crate::engine::{Choice, CoreId, EngineRunner, Pause, State, TimedLink, Timeless, interpreter};
 use crate::profile::{ClockKeys, ClockLog, Observer, Profile, ProfileLevel, TransferMeter, Unobserved};
 use crate::semantics::{Message, Watch};
 
@@ -29,7 +29,7 @@ pub struct Advance {
     pub clocks: u64,
     /// Instructions executed.
     pub steps: u64,
-    /// Octets of transfers still to come, where a worker knows them beforehand: then it [is accounted](Worker::is_accounted).
+    /// Octets of transfers still to come, where a worker knows them beforehand: those [are accounted](Worker::is_accounted).
     pub octets: Octets,
 }
 
@@ -92,7 +92,7 @@ pub trait Worker {
     /// hand on to each other.
     fn receives_first(&self, shared: &mut Shared, scratch: &mut Option<State>) -> bool;
 
-    /// True where its octets are known from elsewhere, so that the machine does not add up what it asks for.
+    /// True where the octets of what it asks for now are known already, so that the machine does not add them up.
     fn is_accounted(&self) -> bool;
 
     /// Hands the work item over to its master when a transfer is asked for, where nothing but the bus is needed for what comes next; true where
@@ -129,6 +129,8 @@ pub struct WorkerCounts {
     pub clocks: Option<ClockLog>,
     /// Meaning of the numbers in that, where the worker knows it.
     pub keys: Option<ClockKeys>,
+    /// Octets by kind of what the machine did not add up.
+    pub kinds: Option<Kinds>,
 }
 
 /// Master that goes on to nothing by itself.
@@ -195,6 +197,20 @@ impl<'a, T: Watch, O: Observer> Executor<'a, T, O> {
         self.runner.choice()
     }
 
+    /// Runs up to the next thing that concerns others, or that the link makes wait; yields why it stopped, and the clocks and instructions that
+    /// took.
+    pub(crate) fn run(&mut self, link: &mut impl TimedLink) -> (Pause, u64, u64) {
+        let (clocks, steps) = (self.state.clocks, self.state.steps);
+        let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
+        let pause = self.runner.run_timed(self.core, state, self.arithmetic, link, tally, observer);
+        (pause, self.state.clocks - clocks, self.state.steps - steps)
+    }
+
+    /// Meter of its transfers, where clocks of functions are measured.
+    pub(crate) fn meter(&mut self) -> Option<&mut TransferMeter> {
+        self.meter.as_deref_mut()
+    }
+
     /// The passes of its program so far.
     pub fn take_tally(&mut self) -> Tally {
         // Its links are told of all reads.
@@ -207,18 +223,9 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
     type Master = PlainMaster;
 
     fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance {
-        let (clocks, steps) = (self.state.clocks, self.state.steps);
         let mut port = CorePort::new(shared, self.core.core, permission);
-        let (state, tally, observer) = (&mut self.state, &mut self.tally, &mut self.observer);
-        let pause = self.runner.run(self.core, state, self.arithmetic, &mut port, tally, observer);
-        Advance {
-            pause,
-            request: port.request,
-            taken: port.taken,
-            clocks: self.state.clocks - clocks,
-            steps: self.state.steps - steps,
-            octets: Octets(0),
-        }
+        let (pause, clocks, steps) = self.run(&mut Timeless(&mut port));
+        Advance { pause, request: port.request, taken: port.taken, clocks, steps, octets: Octets(0) }
     }
 
     fn restart(&mut self) {
@@ -285,6 +292,6 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
             keys = Some(ClockKeys { paths: contexts.paths().cloned().collect(), sites: meter.table.all().to_vec() });
             clocks = Some(meter.into_log(contexts));
         }
-        WorkerCounts { profile: self.observer.into_profile(self.code, &tally), tally, clocks, keys }
+        WorkerCounts { profile: self.observer.into_profile(self.code, &tally), tally, clocks, keys, kinds: None }
     }
 }

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 use super::regions::RegionNesting;
-use super::sites::SiteUse;
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 
@@ -149,16 +148,16 @@ impl ClockProfile {
         self.places.entry((path.clone(), word)).or_default()
     }
 
-    /// Adds transfers of a site.
-    pub(super) fn add_site(&mut self, path: &CallPath, word: u32, kind: u32, found: &SiteUse) {
+    /// Adds transfers of a site, and waits for them.
+    pub(super) fn add_site(&mut self, path: &CallPath, word: u32, kind: u32, found: WorkClocks) {
         let place = self.place(path, word);
-        place.work += found.work();
-        if found.waiting != 0 {
+        place.work += found;
+        if found.waiting != Clocks(0) {
             let kind = kind as usize;
             if place.waiting_kinds.len() <= kind {
                 place.waiting_kinds.resize(kind + 1, 0);
             }
-            place.waiting_kinds[kind] += found.waiting;
+            place.waiting_kinds[kind] += found.waiting.0;
         }
     }
 

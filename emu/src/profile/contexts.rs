@@ -34,7 +34,7 @@ const LOOKED_AT: usize = 1 << 10;
 const MOST_OCTETS: usize = 64 << 20;
 
 /// Number of the context that stands for all for which there is no room.
-const CROWDED: u32 = 0;
+pub const CROWDED: u32 = 0;
 
 /// Number of the context of what was not called.
 const ROOT: u32 = 1;

@@ -3,7 +3,7 @@
 use super::clocks::{CallPath, ClockProfile, ProgramClocks, WorkClocks};
 use super::contexts::Contexts;
 use super::regions::RegionNesting;
-use super::sites::{SiteTable, SiteUse, TransferSite};
+use super::sites::{SiteAsked, SiteTable, TransferSite};
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 
@@ -21,8 +21,10 @@ pub struct ClockKeys {
 pub struct LogPart {
     /// Clocks of computing by calling context and innermost region: see `Contexts::cell`.
     pub cells: Vec<u64>,
-    /// By site.
-    pub sites: Vec<SiteUse>,
+    /// Transfers by site.
+    pub asked: Vec<SiteAsked>,
+    /// Clocks from requests to the ends of their transfers, by site.
+    pub waits: Vec<u64>,
 }
 
 /// Work of one core, by the observers that numbered it.
@@ -35,14 +37,28 @@ pub struct ClockLog {
 }
 
 impl LogPart {
-    /// The sums of a site.
-    #[inline]
-    pub fn site(&mut self, number: u32) -> &mut SiteUse {
-        let number = number as usize;
-        if self.sites.len() <= number {
-            self.sites.resize(number + 1, SiteUse::default());
+    /// Makes room for so many sites.
+    pub fn reserve(&mut self, sites: usize) {
+        if self.asked.len() < sites {
+            self.asked.resize(sites, SiteAsked::default());
         }
-        &mut self.sites[number]
+        if self.waits.len() < sites {
+            self.waits.resize(sites, 0);
+        }
+    }
+
+    /// Adds transfers of a site.
+    #[inline]
+    pub fn add_asked(&mut self, site: u32, asked: SiteAsked) {
+        self.reserve(site as usize + 1);
+        self.asked[site as usize].add(asked);
+    }
+
+    /// Adds a wait at a site.
+    #[inline]
+    pub fn add_wait(&mut self, site: u32, Clocks(waiting): Clocks) {
+        self.reserve(site as usize + 1);
+        self.waits[site as usize] += waiting;
     }
 
     /// Adds clocks of computing to cells.
@@ -69,10 +85,12 @@ impl ClockLog {
                 let work = WorkClocks { busy: Clocks(busy), ..WorkClocks::default() };
                 found.add(&keys.paths[cell / stride], nesting.chain(innermost), work);
             }
-            for (site, used) in keys.sites.iter().zip(&part.sites).filter(|(_, used)| used.transfers != 0) {
-                let path = &keys.paths[site.context as usize];
-                found.add(path, nesting.around(site.slot), used.work());
-                profile.add_site(path, code.word(site.slot), site.kind, used);
+            let asked = part.asked.iter().zip(&part.waits);
+            for (site, (asked, &waiting)) in keys.sites.iter().zip(asked).filter(|(_, (asked, _))| asked.transfers != 0)
+            {
+                let (path, work) = (&keys.paths[site.context as usize], asked.work(waiting));
+                found.add(path, nesting.around(site.slot), work);
+                profile.add_site(path, code.word(site.slot), site.kind, work);
             }
         }
         found.add_crowded(&self.crowded);
@@ -101,14 +119,16 @@ pub struct TransferMeter {
 impl TransferMeter {
     /// Notes a request for octets at a site. `open` are all regions around it, where calls are too many to be told apart.
     pub fn ask(&mut self, site: u32, octets: Octets, open: Vec<u16>) {
-        let asked = SiteUse { waiting: 0, transfers: 1, octets: octets.0 };
+        let asked = SiteAsked { transfers: 1, octets: octets.0 };
         (self.asked, self.open) = (site, open);
-        self.add(asked);
+        self.part.add_asked(site, asked);
+        self.add_crowded(asked.work(0));
     }
 
     /// Notes a wait for what was asked for last.
     pub fn wait(&mut self, clocks: Clocks) {
-        self.add(SiteUse { waiting: clocks.0, ..SiteUse::default() });
+        self.part.add_wait(self.asked, clocks);
+        self.add_crowded(SiteAsked::default().work(clocks.0));
     }
 
     /// The sums, with what was computed in calling contexts.
@@ -121,14 +141,13 @@ impl TransferMeter {
         ClockLog { parts: vec![part], crowded }
     }
 
-    fn add(&mut self, more: SiteUse) {
-        self.part.site(self.asked).add(more);
+    fn add_crowded(&mut self, more: WorkClocks) {
         for &region in &self.open {
             let region = usize::from(region);
             if self.crowded.len() <= region {
                 self.crowded.resize(region + 1, WorkClocks::default());
             }
-            self.crowded[region] += more.work();
+            self.crowded[region] += more;
         }
     }
 }

@@ -14,6 +14,7 @@ mod sites;
 use isa::Counts;
 
 pub use clocks::{CallPath, ClockProfile, PlaceUse, ProgramClocks, RegionClocks, WorkClocks};
+pub(crate) use contexts::CROWDED;
 #[cfg(feature = "native")]
 pub(crate) use contexts::CallStack;
 #[cfg(feature = "native")]
@@ -22,7 +23,7 @@ pub use log::{ClockKeys, ClockLog, LogPart, TransferMeter};
 pub use profiler::Profiler;
 #[cfg(feature = "native")]
 pub(crate) use regions::{FunctionChange, RegionNesting};
-pub use sites::{SiteTable, SiteUse, TransferSite};
+pub use sites::{SiteAsked, SiteTable, TransferSite};
 
 use crate::code::octets::Buffer;
 use crate::code::registers::Registers;

@@ -20,35 +20,26 @@ pub struct TransferSite {
     pub kind: u32,
 }
 
-/// Transfers of a site.
+/// Transfers that a site asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SiteUse {
-    /// Clocks from requests to the ends of their transfers.
-    pub waiting: u64,
+pub struct SiteAsked {
     /// Number of transfers.
     pub transfers: u64,
-    /// Octets that they were asked for.
+    /// Octets of those.
     pub octets: u64,
 }
 
-impl SiteUse {
+impl SiteAsked {
     /// Adds more of the same site.
     #[inline]
-    pub fn add(&mut self, more: SiteUse) {
-        self.waiting += more.waiting;
+    pub fn add(&mut self, more: SiteAsked) {
         self.transfers += more.transfers;
         self.octets += more.octets;
     }
 
-    /// Takes back a transfer of octets that did not wait.
-    pub fn take_back(&mut self, octets: u64) {
-        self.transfers -= 1;
-        self.octets -= octets;
-    }
-
-    /// All of it as work.
-    pub fn work(&self) -> WorkClocks {
-        let (waiting, octets) = (Clocks(self.waiting), Octets(self.octets));
+    /// All of it as work, with clocks from requests to the ends of their transfers.
+    pub fn work(&self, waiting: u64) -> WorkClocks {
+        let (waiting, octets) = (Clocks(waiting), Octets(self.octets));
         WorkClocks { busy: Clocks(0), waiting, transfers: self.transfers, octets }
     }
 }

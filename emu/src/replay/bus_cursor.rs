@@ -1,22 +1,21 @@
-//! Recorded transfers of a work item, one after the other, as long as nothing but the arbiter stands between them: the core that replays the item
-//! hands it over when it asks for a transfer, and takes it back when something else is next.
+//! Recorded transfers, one after the other, as long as nothing but the arbiter stands between them: the processor that goes through them
+//! hands them over when it asks for a transfer, and takes them back when something else is next.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::recording::{Recording, Segment};
+use super::recording::{Segment, Track};
 use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
 use crate::machine::cache::Cache;
 use crate::machine::worker::{HandOver, Played};
-use crate::profile::SiteUse;
 
-/// Recorded work item that a master of the bus goes through by itself; none at first.
+/// Track that a master of the bus goes through by itself; none at first.
 #[derive(Clone, Debug)]
 pub struct BusCursor {
-    /// The work item; none while its core has it.
-    recording: Option<Arc<Recording>>,
+    /// The track; none while its processor goes through it.
+    track: Option<Arc<Track>>,
     /// Segments that are behind it; the last of them is the transfer that the master asks for.
     next: usize,
     /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
@@ -25,12 +24,12 @@ pub struct BusCursor {
     ahead: Burst,
     /// Clock at which it was handed over.
     start: Clocks,
-    /// Clock at which the transfer that is on its way was asked for; kept where it is asked for, by clocks of functions or by loads.
+    /// Clock at which the transfer that is on its way was asked for.
     asked: Clocks,
     /// Clocks of computing since then.
     busy: Clocks,
-    /// Sums by site, where clocks of functions are measured.
-    meter: Option<Box<CursorMeter>>,
+    /// Waits by site, where clocks of functions are measured; else none.
+    waits: Vec<u64>,
     /// The longest wait of the master for a grant that nobody was told of.
     longest_wait: Clocks,
     /// A core with a cache, or with loads that it does not wait for; none where every read is a transfer and is waited for.
@@ -57,40 +56,28 @@ struct BesideTransfers {
     is_lost: bool,
 }
 
-/// A work item that a bus cursor hands back to its core.
+/// Account of a track that a bus cursor hands back to its processor.
 pub struct HandedBack {
-    /// The work item.
-    pub recording: Arc<Recording>,
     /// Segments that are behind it.
     pub next: usize,
-    /// Clocks since it was handed over.
+    /// Clocks since the track was handed over.
     pub played: Played,
-    /// Sums by site, where clocks of functions are measured.
-    pub sites: Option<Vec<SiteUse>>,
+    /// Waits by site, where clocks of functions are measured.
+    pub waits: Vec<u64>,
     /// Cache of the core.
     pub cache: Option<Cache>,
-    /// The work item has read what was written meanwhile, so that its recording is worth nothing.
+    /// The track has read what was written meanwhile, so that it is worth nothing.
     pub is_lost: bool,
 }
 
-/// Sums of transfers by site while a bus cursor goes through a work item.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct CursorMeter {
-    /// By site; as many as the recording knows.
-    sites: Vec<SiteUse>,
-}
-
-impl CursorMeter {
-    /// The transfer of a segment has ended, for which its core has waited. The sums of a site are looked at once a transfer, since
-    /// nobody can foresee which one it is.
-    #[inline(always)]
-    fn end(&mut self, recording: &Recording, at: usize, waiting: Clocks) {
-        let site = recording.clocks.as_ref().and_then(|clocks| clocks.sites.get(at));
-        if let (Some(&site), Some(segment)) = (site, recording.segments.get(at))
-            && let Some(sums) = self.sites.get_mut(site as usize)
-        {
-            sums.add(SiteUse { waiting: waiting.0, transfers: 1, octets: segment.octets().0 });
-        }
+/// Adds the wait for a segment's transfer to those of its site, where clocks of functions are measured. What was asked for is the same on
+/// every machine, so only waits are added up here.
+#[inline(always)]
+fn add_wait(waits: &mut [u64], track: &Track, at: usize, waiting: Clocks) {
+    if let Some(&site) = track.sites.get(at)
+        && let Some(sum) = waits.get_mut(site as usize)
+    {
+        *sum += waiting.0;
     }
 }
 
@@ -113,14 +100,14 @@ impl Default for BusCursor {
         let none = Clocks(0);
         let (computing, ahead) = (NEVER, Burst::default());
         BusCursor {
-            recording: None,
+            track: None,
             next: 0,
             computing,
             ahead,
             start: none,
             asked: none,
             busy: none,
-            meter: None,
+            waits: Vec::new(),
             longest_wait: none,
             beside: None,
         }
@@ -174,26 +161,25 @@ impl BesideTransfers {
 }
 
 impl BusCursor {
-    /// Takes over a work item, when its core begins to ask for the last of the segments that are behind it, with sums by site where
+    /// Takes over a track, when its processor begins to ask for the last of the segments that are behind it, with waits by site where
     /// clocks of functions are measured.
-    pub fn begin(&mut self, recording: Arc<Recording>, next: usize, transfer: HandOver, sites: Option<Vec<SiteUse>>) {
+    pub fn begin(&mut self, track: Arc<Track>, next: usize, transfer: HandOver, waits: Vec<u64>) {
         let HandOver { clock, lengths, overlaps, cache, .. } = transfer;
-        (self.next, self.start, self.asked, self.busy) = (next, clock, clock, Clocks(0));
-        self.meter = sites.map(|sites| Box::new(CursorMeter { sites }));
+        (self.next, self.start, self.asked, self.busy, self.waits) = (next, clock, clock, Clocks(0), waits);
         if overlaps || cache.is_some() {
             // The box stays from one work item to the next.
             let beside = self.beside.get_or_insert_default();
             beside.overlaps = overlaps;
-            beside.is_ahead = overlaps && recording.segments.get(next - 1).is_some_and(Segment::is_load);
+            beside.is_ahead = overlaps && track.segments.get(next - 1).is_some_and(Segment::is_load);
             (beside.answered, beside.is_lost, beside.cache) = (0..0, false, cache.take());
         }
-        self.recording = Some(recording);
+        self.track = Some(track);
         self.look(lengths);
     }
 
     #[inline(always)]
     fn look(&mut self, lengths: &Lengths) {
-        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        let segments = self.track.as_ref().map_or(&[][..], |track| &track.segments);
         match &mut self.beside {
             None => (self.computing, self.ahead) = ahead_of(segments, self.next, lengths),
             Some(beside) => self.computing = beside.look(segments, self.next),
@@ -202,22 +188,22 @@ impl BusCursor {
 
     /// True where it may read any of these octets.
     pub fn depends_on(&self, written: &Range<u64>) -> bool {
-        self.recording.as_ref().is_some_and(|recording| overlap(&recording.reads, written))
+        self.track.as_ref().is_some_and(|track| overlap(&track.reads, written))
     }
 
     /// Makes it end with the transfer that its master asks for, because it may read any of these octets.
     pub fn stop_at(&mut self, written: &Range<u64>) {
         self.computing = NEVER;
-        if let (Some(beside), Some(recording)) = (&mut self.beside, &self.recording) {
+        if let (Some(beside), Some(track)) = (&mut self.beside, &self.track) {
             // The cache may have answered that later than it was written.
-            let answered = recording.segments.get(beside.answered.clone()).unwrap_or_default();
+            let answered = track.segments.get(beside.answered.clone()).unwrap_or_default();
             beside.is_lost |= answered.iter().any(|segment| overlap(&segment.range(), written));
         }
     }
 
-    /// Hands the work item back when its transfer has ended at a clock; `None` where its core has it.
+    /// Hands the track back when its transfer has ended at a clock; `None` where its processor goes through it.
     pub fn end(&mut self, clock: Clocks) -> Option<HandedBack> {
-        let recording = self.recording.take()?;
+        let track = self.track.take()?;
         self.computing = NEVER;
         let (mut cache, mut is_ahead, mut is_lost) = (None, false, false);
         if let Some(beside) = &mut self.beside {
@@ -225,25 +211,20 @@ impl BusCursor {
         }
         // A core that has not waited for its load has computed since it asked for that, and will be told how long it waited.
         let clock = if is_ahead { self.asked } else { clock };
-        let sites = self.meter.take().map(|mut meter| {
-            meter.end(&recording, self.next - 1, clock - self.asked);
-            meter.sites
-        });
+        let mut waits = std::mem::take(&mut self.waits);
+        add_wait(&mut waits, &track, self.next - 1, clock - self.asked);
         let played = Played { busy: self.busy, waiting: clock - self.start - self.busy, clock, is_ahead };
-        Some(HandedBack { recording, next: self.next, played, sites, cache, is_lost })
+        Some(HandedBack { next: self.next, played, waits, cache, is_lost })
     }
 
     /// Goes on with a cache, or with loads that are not waited for.
     #[inline(never)]
     fn next_beside(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)> {
-        let (recording, beside) = (self.recording.as_ref()?, self.beside.as_mut()?);
-        let last = self.next - 1;
-        let segment = recording.segments.get(beside.hits.end)?;
+        let (track, beside) = (self.track.as_ref()?, self.beside.as_mut()?);
+        let segment = track.segments.get(beside.hits.end)?;
         let (asked, waiting, octets) = beside.go_on([self.asked, end, self.computing], segment);
-        if let Some(meter) = &mut self.meter {
-            meter.end(recording, last, waiting);
-            beside.answered.clone().for_each(|at| meter.end(recording, at, Clocks(0)));
-        }
+        // What the cache answered was not waited for.
+        add_wait(&mut self.waits, track, self.next - 1, waiting);
         self.busy += self.computing + beside.after_hit;
         (self.next, self.asked) = (beside.hits.end + 1, asked);
         self.look(lengths);
@@ -263,10 +244,10 @@ impl NextTransfer for BusCursor {
             return self.next_beside(end, lengths);
         }
         self.busy += computing;
-        if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
-            meter.end(recording, self.next - 1, end - self.asked);
-            self.asked = end + computing;
+        if let Some(track) = &self.track {
+            add_wait(&mut self.waits, track, self.next - 1, end - self.asked);
         }
+        self.asked = end + computing;
         self.next += 1;
         self.look(lengths);
         Some((computing, ahead))
@@ -279,7 +260,7 @@ impl NextTransfer for BusCursor {
         if self.beside.is_some() {
             return alone;
         }
-        let segments = self.recording.as_ref().map_or(&[][..], |recording| &recording.segments);
+        let Some(track) = &self.track else { return alone };
         let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
         let before = (next, arrival);
         // Take burst after burst; each begins when it is asked for, because nobody else holds the bus
@@ -298,12 +279,10 @@ impl NextTransfer for BusCursor {
                 continue;
             }
             (alone.burst, alone.arrival) = (ahead, alone.free + computing);
-            if let (Some(meter), Some(recording)) = (&mut self.meter, &self.recording) {
-                meter.end(recording, next - 1, alone.free - self.asked);
-                self.asked = alone.arrival;
-            }
+            add_wait(&mut self.waits, track, next - 1, alone.free - self.asked);
+            self.asked = alone.arrival;
             next += 1;
-            (computing, ahead) = ahead_of(segments, next, lengths);
+            (computing, ahead) = ahead_of(&track.segments, next, lengths);
         }
         // Put back what has changed: all that was not holding the bus was computing
         alone.transfers = (next - before.0) as u64;
@@ -327,45 +306,25 @@ mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
-    use super::super::recording::ItemClocks;
     use super::*;
-    use crate::engine::Pause;
     use crate::machine::GrantFault;
     use crate::machine::arbiter::ArbiterKind;
     use crate::machine::bus::{Bus, BusMasters};
     use crate::machine::config::{BusConfig, CacheConfig};
     use crate::machine::request::{Access, Request};
-    use crate::semantics::Message;
 
     /// A clock behind everything.
     const END: u64 = 1 << 32;
 
-    /// A work item that reads what these segments say: clocks of computing, octets.
-    fn recording(segments: &[(u64, u64)]) -> Arc<Recording> {
+    /// A track that reads what these segments say: clocks of computing, octets.
+    fn track(segments: &[(u64, u64)]) -> Arc<Track> {
         let segment = |&(clocks, octets): &(u64, u64)| {
             let access = if clocks % 3 == 0 { Access::Read } else { Access::Load };
             let request = Request::Transfer { address: clocks as u32 % 4 * 16, octets: Octets(octets), access };
             Segment::new(clocks, 0, request, 0).expect("it fits")
         };
-        Arc::new(Recording {
-            message: Message::new([[0; 3]]),
-            segments: segments.iter().map(segment).collect(),
-            reads: 0..128,
-            octets: Octets(0),
-            sent: Vec::new(),
-            clocks: Some(ItemClocks {
-                observer: 0,
-                cells: Vec::new(),
-                sites: (0..).take(segments.len()).collect(),
-                known: 8,
-            }),
-            last_clocks: 0,
-            last_pc: 0,
-            end: Pause::Halt,
-            steps: 0,
-            elementary: 0,
-            depends_on_cores: false,
-        })
+        let sites = (0..).take(segments.len()).collect();
+        Arc::new(Track { segments: segments.iter().map(segment).collect(), sites, reads: 0..128 })
     }
 
     proptest! {
@@ -393,7 +352,7 @@ mod tests {
                 let master = master % masters;
                 let arrival = (now + Clocks(pause)).max(ends[master as usize]);
                 if plain.requests.arrival(master) == NEVER {
-                    let item = recording(&segments);
+                    let item = track(&segments);
                     for (bus, cursors) in [(&mut quick, &mut cursors), (&mut plain, &mut plain_cursors)] {
                         let cursor = &mut cursors.all[master as usize];
                         let _ = cursor.end(arrival);
@@ -402,7 +361,7 @@ mod tests {
                         let kinds = [(0..128, "nodes".to_owned())];
                         let mut cache = Cache::new(&CacheConfig { octets, line_octets: 16, ..CacheConfig::default() }, &kinds);
                         let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut cache };
-                        cursor.begin(item.clone(), 1, transfer, Some(vec![SiteUse::default(); 8]));
+                        cursor.begin(item.clone(), 1, transfer, vec![0; 8]);
                     }
                 }
                 // Anybody, who may be in the middle of an item.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::bus_cursor::{BusCursor, HandedBack, overlap};
 use super::feed::Feed;
+use super::main_cursor::MainCursor;
 use super::recording::{Reason, Recording, Segment};
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
@@ -16,8 +17,8 @@ use crate::machine::cache::Cache;
 use crate::machine::kinds::Kinds;
 use crate::machine::port::Shared;
 use crate::machine::request::{Access, Request};
-use crate::machine::worker::{Advance, Executor, HandOver, Played, Progress, Worker, WorkerCounts};
-use crate::profile::{ClockLog, LogPart, Observer, ProfileLevel, SiteUse};
+use crate::machine::worker::{Advance, HandOver, Played, Progress, Worker, WorkerCounts};
+use crate::profile::{ClockLog, LogPart, Observer, ProfileLevel};
 use crate::semantics::Watch;
 
 /// Reason for which a recording, which knows the initial memory only, is not what happens.
@@ -28,12 +29,12 @@ pub struct ItemCursor<'a> {
     code: &'a Code<'a>,
     core: CoreId,
     feed: &'a RefCell<Feed>,
-    /// The work item; none before its message has come, and while the bus cursor has it.
+    /// The work item; none before its message has come.
     recording: Option<Arc<Recording>>,
     /// Segments that are behind it.
     next: usize,
     progress: Progress,
-    /// Sums of clocks, where those of functions are measured; the bus cursor has a part of them while it has the work item.
+    /// Sums of clocks, where those of functions are measured; the bus cursor has the waits of a part while it goes through the work item.
     log: Option<ClockLog>,
     /// Observer and site of the transfer that was asked for last.
     asked: (usize, u32),
@@ -46,7 +47,7 @@ impl<'a> ItemCursor<'a> {
         ItemCursor { code, core, feed, recording: None, next: 0, progress: Progress::default(), log, asked: (0, 0) }
     }
 
-    /// Adds what the work item that begins computes, and makes room for the sums of its observer.
+    /// Adds what the work item that begins computes and asks for, and makes room for the waits of its observer.
     fn begin_clocks(&mut self) {
         let clocks = self.recording.as_ref().and_then(|recording| recording.clocks.as_ref());
         if let (Some(log), Some(clocks)) = (&mut self.log, clocks) {
@@ -56,9 +57,8 @@ impl<'a> ItemCursor<'a> {
             }
             let part = &mut log.parts[observer];
             part.add_cells(&clocks.cells);
-            if part.sites.len() < clocks.known as usize {
-                part.sites.resize(clocks.known as usize, SiteUse::default());
-            }
+            part.reserve(clocks.known as usize);
+            clocks.asked.iter().for_each(|&(site, asked)| part.add_asked(site, asked));
         }
     }
 
@@ -69,7 +69,16 @@ impl<'a> ItemCursor<'a> {
 
     /// The segment that asked for what the core waits for; none where that is its message.
     fn asked(&self) -> Option<&Segment> {
-        self.recording.as_ref()?.segments.get(self.next.checked_sub(1)?)
+        self.recording.as_ref()?.track.segments.get(self.next.checked_sub(1)?)
+    }
+
+    /// Notes the site of what the core waits for.
+    fn note_site(&mut self) {
+        let Some(recording) = self.recording.as_ref() else { return };
+        let site = self.next.checked_sub(1).and_then(|at| recording.track.sites.get(at));
+        if let (Some(&site), Some(clocks)) = (site, &recording.clocks) {
+            self.asked = (clocks.observer as usize, site);
+        }
     }
 
     /// Does what the core waits for, and yields the message that it took with its sender.
@@ -137,7 +146,7 @@ impl Worker for ItemCursor<'_> {
                 (prefix.clocks, Pause::Wait)
             }
             None => (0, Pause::Fault(Fault::Deadlock)),
-            Some(recording) => match recording.segments.get(self.next) {
+            Some(recording) => match recording.track.segments.get(self.next) {
                 Some(segment) => {
                     self.next += 1;
                     request = Some(segment.request(self.core.cores));
@@ -176,62 +185,43 @@ impl Worker for ItemCursor<'_> {
 
     fn hand_over(&mut self, master: &mut BusCursor, transfer: HandOver) -> bool {
         let is_safe = |recording: &Recording| {
-            self.asked().is_some_and(Segment::is_read) && !overlap(&recording.reads, transfer.written)
+            self.asked().is_some_and(Segment::is_read) && !overlap(&recording.track.reads, transfer.written)
         };
-        if !self.recording.as_deref().is_some_and(is_safe) {
-            return false;
-        }
-        let Some(recording) = self.recording.take() else { return false };
-        // The master counts transfers when they end, and this one was counted when it was asked for.
-        let (observer, site) = self.asked;
-        let octets = recording.segments.get(self.next - 1).map_or(0, |segment| segment.octets().0);
-        let sites = self.part(observer).map(|part| {
-            part.site(site).take_back(octets);
-            std::mem::take(&mut part.sites)
-        });
-        master.begin(recording, self.next, transfer, sites);
+        let Some(recording) = self.recording.as_deref().filter(|recording| is_safe(recording)) else { return false };
+        let (track, (observer, _)) = (recording.track.clone(), self.asked);
+        let waits = self.part(observer).map_or(Vec::new(), |part| std::mem::take(&mut part.waits));
+        master.begin(track, self.next, transfer, waits);
         true
     }
 
-    fn note_ask(&mut self, _: Request, octets: Octets, _: &Kinds) {
-        let clocks = self.recording.as_ref().and_then(|recording| recording.clocks.as_ref());
-        let Some(clocks) = clocks.filter(|_| self.log.is_some()) else { return };
-        let site = self.next.checked_sub(1).and_then(|at| clocks.sites.get(at));
-        if let Some(&site) = site {
-            self.asked = (clocks.observer as usize, site);
-            if let Some(part) = self.part(self.asked.0) {
-                part.site(site).add(SiteUse { waiting: 0, transfers: 1, octets: octets.0 });
-            }
-        }
+    fn note_ask(&mut self, _: Request, _: Octets, _: &Kinds) {
+        // What it asks for was added when the work item began.
+        self.note_site();
     }
 
-    fn note_wait(&mut self, Clocks(waiting): Clocks) {
-        if waiting != 0 {
+    fn note_wait(&mut self, waiting: Clocks) {
+        if waiting != Clocks(0) {
             let (observer, site) = self.asked;
             if let Some(part) = self.part(observer) {
-                part.site(site).waiting += waiting;
+                part.add_wait(site, waiting);
             }
         }
     }
 
     fn take_back(&mut self, master: &mut BusCursor, end: Clocks, cache: &mut Option<Cache>) -> Option<Played> {
-        let HandedBack { recording, next, played, sites, cache: own, is_lost } = master.end(end)?;
+        let HandedBack { next, played, waits, cache: own, is_lost } = master.end(end)?;
         *cache = own;
         if is_lost {
             self.feed.borrow_mut().lose::<()>(READS_WRITTEN);
         }
-        let observer = recording.clocks.as_ref().map(|clocks| clocks.observer as usize);
-        if let (Some(observer), Some(sites)) = (observer, sites)
-            && let Some(part) = self.part(observer)
-        {
-            part.sites = sites;
+        let (observer, _) = self.asked;
+        if let Some(part) = self.part(observer) {
+            part.waits = waits;
         }
         // What is waited for from now on is the last transfer that the master asked for.
-        let site = recording.clocks.as_ref().and_then(|clocks| clocks.sites.get(next - 1));
-        if let (Some(observer), Some(&site)) = (observer, site) {
-            self.asked = (observer, site);
-        }
-        (self.recording, self.next) = (Some(recording), next);
+        self.next = next;
+        self.note_site();
+        self.progress.pc = self.asked().map_or(self.progress.pc, |segment| segment.pc);
         Some(played)
     }
 
@@ -244,7 +234,7 @@ impl Worker for ItemCursor<'_> {
     }
 
     fn into_counts(self) -> WorkerCounts {
-        WorkerCounts { tally: Tally::new(self.code), profile: None, clocks: self.log, keys: None }
+        WorkerCounts { tally: Tally::new(self.code), profile: None, clocks: self.log, keys: None, kinds: None }
     }
 }
 
@@ -253,7 +243,7 @@ pub enum Replayer<'a, T, O> {
     /// A core.
     Core(ItemCursor<'a>),
     /// The main processor.
-    Main(Box<Executor<'a, T, O>>),
+    Main(Box<MainCursor<'a, T, O>>),
 }
 
 /// Hands a method on to whichever it is.
@@ -295,17 +285,11 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
     }
 
     fn hand_over(&mut self, master: &mut BusCursor, transfer: HandOver) -> bool {
-        match self {
-            Replayer::Core(core) => core.hand_over(master, transfer),
-            Replayer::Main(_) => false,
-        }
+        each!(self, worker => worker.hand_over(master, transfer))
     }
 
     fn take_back(&mut self, master: &mut BusCursor, end: Clocks, cache: &mut Option<Cache>) -> Option<Played> {
-        match self {
-            Replayer::Core(core) => core.take_back(master, end, cache),
-            Replayer::Main(_) => None,
-        }
+        each!(self, worker => worker.take_back(master, end, cache))
     }
 
     fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {

@@ -10,7 +10,7 @@ use super::feed::Batch;
 use super::prerun::ItemTotals;
 use super::record::Prefix;
 use super::recorded::Recorded;
-use super::recording::{Reason, Recording, Segment, reads};
+use super::recording::{Reason, Recording, Segment, Track, reads};
 use crate::code::Code;
 use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
@@ -187,8 +187,8 @@ fn put_item(out: &mut Vec<u8>, item: &Recording, shapes: &mut ShapeTable) -> Opt
     put_words(out, [item.last_pc]);
     put_length(out, item.sent.len())?;
     item.sent.iter().for_each(|message| put_message(out, message));
-    put_length(out, item.segments.len())?;
-    for segment in &item.segments {
+    put_length(out, item.track.segments.len())?;
+    for segment in &item.track.segments {
         let shape = shapes.number(segment.shape())?.to_le_bytes();
         let address = segment.address.to_le_bytes();
         out.extend_from_slice(&[shape[0], shape[1], shape[2], address[0], address[1], address[2], address[3]]);
@@ -308,9 +308,8 @@ fn item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32) -> Result<Rec
     let octets = segments.iter().fold(Octets(0), |sum, segment| sum + segment.octets());
     Ok(Recording {
         message,
-        reads: reads(&segments),
         octets,
-        segments,
+        track: Arc::new(Track { reads: reads(&segments), segments, sites: Vec::new() }),
         sent,
         clocks: None,
         last_clocks,

@@ -8,6 +8,7 @@ mod cursor;
 mod feed;
 mod item;
 mod kept;
+mod main_cursor;
 mod prerun;
 mod record;
 mod recorded;
@@ -38,6 +39,7 @@ use crate::semantics::Watch;
 use cursor::{ItemCursor, Replayer};
 use feed::{Batch, Feed};
 use item::RecordLevel;
+use main_cursor::MainCursor;
 use prerun::ItemTotals;
 use record::{Prefix, Recorder};
 
@@ -144,7 +146,8 @@ fn on_clock<T: Watch, O: Observer>(
 ) -> Replayed {
     let feed = RefCell::new(feed);
     let core = |core| Replayer::Core(ItemCursor::new(core_code, core, &feed, setup.level::<O>()));
-    let main = Replayer::Main(Box::new(schedule::main_worker::<T, O>(setup, main_code, arithmetic)));
+    let main = schedule::main_worker::<T, O>(setup, main_code, arithmetic);
+    let main = Replayer::Main(Box::new(MainCursor::new(setup, main)));
     let done = Machine::new(setup, memory, [core_code, main_code], core, main, progress).run();
     let mut feed = feed.into_inner();
     // Recordings that nobody asked for mean that the prerun was given other work than this machine.

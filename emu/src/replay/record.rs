@@ -1,8 +1,10 @@
 //! Runs work items by themselves and records what they do. Global memory is only read, so many can run at once.
 
+use std::sync::Arc;
+
 use super::budget::Budget;
 use super::item::{ItemRecord, ItemRecorder, RecordLevel};
-use super::recording::{ItemClocks, Reason, Recording, Segment, reads};
+use super::recording::{ItemClocks, Reason, Recording, Segment, Track, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -14,7 +16,7 @@ use crate::engine::{
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::machine::request::{Access, Request};
-use crate::profile::{CallPath, ClockKeys, Observer, ProfileLevel, SiteTable};
+use crate::profile::{CallPath, ClockKeys, Observer, ProfileLevel, SiteAsked, SiteTable};
 use crate::semantics::{Link, Message, Watch};
 
 /// The link of a work item that is recorded: it says what it asks for, then gets it at once.
@@ -134,8 +136,8 @@ pub struct Recorder<'a, T, O> {
     runner: EngineRunner<'a>,
     /// Sites of transfers, where clocks are measured.
     sites: Option<SiteTable>,
-    /// Room for the sites of an item, which is kept for the next one.
-    own_sites: Vec<u32>,
+    /// Transfers of an item by site, empty between items.
+    asked: Vec<SiteAsked>,
     /// Number of this recorder among those of a run.
     number: u32,
     /// Segments of the last item, and so about those of the next one.
@@ -166,7 +168,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         Recorder {
             usual: 0,
             number,
-            own_sites: Vec::new(),
+            asked: Vec::new(),
             sites: (profile == ProfileLevel::Clocks && level == RecordLevel::Segments).then(SiteTable::default),
             runner: choose(&demand),
             level,
@@ -312,7 +314,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.observer.begin(self.state.pc);
         // Items of one scene are much alike, so the last one tells how much room this one wants.
         let segments = Vec::with_capacity(self.usual);
-        let sites = std::mem::take(&mut self.own_sites);
+        let sites = Vec::with_capacity(if self.sites.is_some() { self.usual } else { 0 });
         let mut record = ItemRecord { message: Some(message), segments, sites, ..ItemRecord::default() };
         let end = loop {
             let stopped = self.run_quickly(&mut record, budget);
@@ -328,7 +330,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 break end;
             }
         };
-        let ItemRecord { message: rest, mut segments, sites, octets, before, sent, .. } = record;
+        let ItemRecord { message: rest, mut segments, mut sites, octets, before, sent, .. } = record;
         if rest.is_some() {
             return Err(BEGINS);
         }
@@ -338,6 +340,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.usual = segments.len().min(Budget::PORTION);
         if segments.len() < segments.capacity() / 2 {
             segments.shrink_to_fit();
+            sites.shrink_to_fit();
         }
         if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
@@ -346,14 +349,14 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         let known = self.sites.as_ref().map_or(0, |sites| sites.all().len() as u32);
         let cells = self.observer.profiler().filter(|_| self.sites.is_some());
         let cells = cells.and_then(|profiler| Some(profiler.contexts.cells.as_mut()?.take(clocks)));
-        let clocks = cells.map(|cells| ItemClocks { observer, cells, sites: sites.as_slice().into(), known });
-        self.own_sites = sites;
-        self.own_sites.clear();
+        let clocks = cells.map(|cells| {
+            let asked = asked_of(&segments, &sites, known, &mut self.asked);
+            ItemClocks { observer, cells, asked, known }
+        });
         Ok(Recording {
             message,
             clocks,
-            reads: reads(&segments),
-            segments,
+            track: Arc::new(Track { reads: reads(&segments), segments, sites }),
             octets,
             sent,
             last_clocks: self.state.clocks - before,
@@ -364,4 +367,21 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
             depends_on_cores: self.observer.taint.depends_on_cores,
         })
     }
+}
+
+/// Transfers of an item by site, of which so many are known. `sums` has none before and afterwards, and keeps its room.
+fn asked_of(segments: &[Segment], sites: &[u32], known: u32, sums: &mut Vec<SiteAsked>) -> Vec<(u32, SiteAsked)> {
+    sums.resize(sums.len().max(known as usize), SiteAsked::default());
+    let mut asked = Vec::new();
+    for (segment, &site) in segments.iter().zip(sites) {
+        let sum = &mut sums[site as usize];
+        if sum.transfers == 0 {
+            asked.push((site, SiteAsked::default()));
+        }
+        sum.add(SiteAsked { transfers: 1, octets: segment.octets().0 });
+    }
+    for (site, found) in &mut asked {
+        *found = std::mem::take(&mut sums[*site as usize]);
+    }
+    asked
 }

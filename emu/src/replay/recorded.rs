@@ -40,7 +40,7 @@ impl Recorded {
     /// Segments of all work items: computing, then a transfer or a message.
     pub fn segments(&self) -> usize {
         let batches = self.batches.iter().filter_map(|batch| batch.as_ref().as_ref().ok());
-        batches.flatten().map(|recording| recording.segments.len()).sum()
+        batches.flatten().map(|recording| recording.track.segments.len()).sum()
     }
 
     /// Replays them on a machine that computes as the one that they were recorded for.

@@ -2,10 +2,12 @@
 //! clock is not said here.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::code::quantity::Octets;
 use crate::engine::{NotedRead, Pause};
 use crate::machine::request::{Access, Request};
+use crate::profile::SiteAsked;
 use crate::semantics::Message;
 
 /// Reason for which a program's work items cannot be replayed and have to be stepped.
@@ -105,6 +107,17 @@ pub fn reads(segments: &[Segment]) -> Range<u64> {
     ranges.reduce(|all, range| all.start.min(range.start)..all.end.max(range.end)).unwrap_or_default()
 }
 
+/// Segments one after the other, which a core or the bus goes through.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Track {
+    /// The segments.
+    pub segments: Vec<Segment>,
+    /// The site of each, 4 octets beside the 16 of a segment, where clocks of functions are measured; else none.
+    pub sites: Vec<u32>,
+    /// From the first to the last octet of global memory that they read; empty where it does not matter who writes there meanwhile.
+    pub reads: Range<u64>,
+}
+
 /// Clocks by function of a work item, apart from its waits, under the numbers of the observer of those who recorded it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ItemClocks {
@@ -112,8 +125,8 @@ pub struct ItemClocks {
     pub observer: u32,
     /// Clocks of computing by cell; those that are not empty.
     pub cells: Vec<(u32, u64)>,
-    /// The site of each segment: 4 octets beside the 16 of that.
-    pub sites: Box<[u32]>,
+    /// Transfers by site, of the sites that have some: whatever the machine, the item asks for the same.
+    pub asked: Vec<(u32, SiteAsked)>,
     /// Number of sites that the observer knew at its end.
     pub known: u32,
 }
@@ -124,14 +137,12 @@ pub struct Recording {
     /// The message that it began with.
     pub message: Message,
     /// Segments after that.
-    pub segments: Vec<Segment>,
-    /// From the first to the last octet of global memory that it read.
-    pub reads: Range<u64>,
+    pub track: Arc<Track>,
     /// Octets of all of those.
     pub octets: Octets,
     /// The messages that it sent to the main processor.
     pub sent: Vec<Message>,
-    /// Clocks by function and sites of transfers, where they were asked for.
+    /// Clocks by function, where they were asked for.
     pub clocks: Option<ItemClocks>,
     /// Clocks of computing after the last segment.
     pub last_clocks: u64,

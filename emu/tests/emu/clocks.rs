@@ -10,7 +10,7 @@ use emu::profile::{Profile, ProfileLevel, ProgramClocks, WorkClocks};
 use emu::quantity::Clocks;
 use isa::{Class, Isa, Op, Program};
 
-use super::builder::program;
+use super::builder::{ProgramBuilder, program};
 use super::machine::dispatch;
 use super::replay::{NODES, TRIANGLES, memory, setup, with};
 
@@ -155,37 +155,45 @@ fn engines_find_the_same_clocks() {
     assert!(checked[0] == replayed && checked[1] == replayed);
 }
 
+/// A program that calls functions often and goes on with `end`. Each of them calls any, as s9 leads, so that whatever is open stands in
+/// another order each time.
+pub fn tangle(p: &mut ProgramBuilder, end: impl FnOnce(&mut ProgramBuilder)) {
+    const FUNCTIONS: usize = 8;
+    let labels: Vec<_> = (0..FUNCTIONS).map(|_| p.label()).collect();
+    p.emit(Op::iaddi, &[9, 9, 77]).emit(Op::movi, &[12, 0]);
+    p.repeat(1, 150, |p| {
+        p.emit(Op::movi, &[10, 7]).branch(Op::call, &[31], labels[0]);
+    });
+    end(p);
+    for (number, &label) in labels.iter().enumerate() {
+        p.function(&format!("f{number}"), |p| {
+            let (bottom, back) = (p.label(), p.label());
+            p.place(label).branch(Op::beq, &[10, 0], bottom);
+            p.emit(Op::isubi, &[10, 10, 1]).emit(Op::slli, &[11, 10, 2]).emit(Op::sw, &[31, 11, 100]);
+            // A number that wanders chooses the next function.
+            p.constant(13, 1_103_515_245).emit(Op::imul, &[9, 9, 13]).emit(Op::iaddi, &[9, 9, 12_345]);
+            p.emit(Op::srli, &[14, 9, 20]).emit(Op::andi, &[14, 14, 7]);
+            for (next, &label) in labels.iter().enumerate() {
+                let on = p.label();
+                p.emit(Op::movi, &[15, next as i64]).branch(Op::bne, &[14, 15], on);
+                p.branch(Op::call, &[31], label).branch(Op::jump, &[], back);
+                p.place(on);
+            }
+            p.place(back).emit(Op::slli, &[11, 10, 2]).emit(Op::lw, &[31, 11, 100]).emit(Op::iaddi, &[10, 10, 1]);
+            p.place(bottom).emit(Op::andi, &[5, 9, 0xfc]).emit(Op::ldw, &[6, 5, NODES]);
+            p.emit(Op::add, &[16, 16, 6]).emit(Op::ret, &[31]);
+        });
+    }
+}
+
 #[test]
 fn functions_that_call_each_other_in_too_many_ways_are_stepped_to_the_clock() {
-    // Functions of which each calls any: whatever is open stands in another order each time.
-    const FUNCTIONS: usize = 8;
     let core = program(|p| {
-        let labels: Vec<_> = (0..FUNCTIONS).map(|_| p.label()).collect();
-        p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[9, 0, 0]).emit(Op::iaddi, &[9, 9, 77]).emit(Op::movi, &[12, 0]);
-        p.repeat(1, 150, |p| {
-            p.emit(Op::movi, &[10, 7]).branch(Op::call, &[31], labels[0]);
+        p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[9, 0, 0]);
+        tangle(p, |p| {
+            p.emit(Op::vmov, &[6, 0]).emit(Op::vsplat, &[7, 9]).emit(Op::cores, &[20]);
+            p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
         });
-        p.emit(Op::vmov, &[6, 0]).emit(Op::vsplat, &[7, 9]).emit(Op::cores, &[20]);
-        p.emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
-        for (number, &label) in labels.iter().enumerate() {
-            p.function(&format!("f{number}"), |p| {
-                let (bottom, back) = (p.label(), p.label());
-                p.place(label).branch(Op::beq, &[10, 0], bottom);
-                p.emit(Op::isubi, &[10, 10, 1]).emit(Op::slli, &[11, 10, 2]).emit(Op::sw, &[31, 11, 100]);
-                // A number that wanders chooses the next function.
-                p.constant(13, 1_103_515_245).emit(Op::imul, &[9, 9, 13]).emit(Op::iaddi, &[9, 9, 12_345]);
-                p.emit(Op::srli, &[14, 9, 20]).emit(Op::andi, &[14, 14, 7]);
-                for (next, &label) in labels.iter().enumerate() {
-                    let on = p.label();
-                    p.emit(Op::movi, &[15, next as i64]).branch(Op::bne, &[14, 15], on);
-                    p.branch(Op::call, &[31], label).branch(Op::jump, &[], back);
-                    p.place(on);
-                }
-                p.place(back).emit(Op::slli, &[11, 10, 2]).emit(Op::lw, &[31, 11, 100]).emit(Op::iaddi, &[10, 10, 1]);
-                p.place(bottom).emit(Op::andi, &[5, 9, 0xfc]).emit(Op::ldw, &[6, 5, NODES]);
-                p.emit(Op::add, &[16, 16, 6]).emit(Op::ret, &[31]);
-            });
-        }
     });
     let (isa, main) = (Isa::base(), dispatch(20));
     let config = with(ArbiterKind::RoundRobin, 3, Config::default());

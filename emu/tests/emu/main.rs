@@ -1,6 +1,7 @@
 //! Programs on the machine, and what they must do, take and count.
 
 mod again;
+mod ahead;
 mod alike;
 mod bus;
 mod clocks;

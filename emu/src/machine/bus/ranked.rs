@@ -38,9 +38,13 @@ impl Bus {
         // Where nobody asks, the smallest number is beyond every clock.
         let until = until.min(Clocks(NEVER.0 >> RANK));
         let granted = loop {
-            // On a full bus the next in turn mostly waits already: it is served without a comparison with the others.
+            // On a full bus the next in turn mostly waits already, or the one behind it where that is the main processor, which seldom asks: it is
+            // served without a comparison with the others.
+            let second = if first + 1 == masters { 0 } else { first + 1 };
             let (master, start) = if is_circle && arrivals[first] <= free.0 {
                 (first, free)
+            } else if is_circle && arrivals[second] <= free.0 {
+                (second, free)
             } else {
                 // Find the smallest number by halving, without a branch
                 let floor = free.0 & by_rank;

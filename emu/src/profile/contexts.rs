@@ -258,9 +258,10 @@ impl Contexts {
 
     /// Passes through an exit that were counted elsewhere, with their units.
     pub fn add_passes(&mut self, context: u32, exit: usize, count: u64, units: UnitCount) {
-        let exits = self.costs.len();
         let passes = &mut self.contexts[context as usize].passes;
-        passes.resize(exits, ContextPasses::default());
+        if passes.is_empty() {
+            passes.resize(self.costs.len(), ContextPasses::default());
+        }
         passes[exit].add(count, units);
     }
 

@@ -1,5 +1,8 @@
 //! Outcome of one run as the harness sees it: marks that tell inputs apart which lead to different places, and planted faults.
 
+use std::cell::RefCell;
+use std::collections::HashSet;
+
 use messages::{Diagnostic, Report};
 
 /// A fault that the harness must find where it was planted.
@@ -22,8 +25,6 @@ pub struct Seen {
     has_planted: bool,
     runs: u64,
     input: Vec<u8>,
-    /// The input as text, where words of it are left out of messages.
-    left_out: String,
 }
 
 /// Words of a message that tell it from others, on each side of what is quoted.
@@ -65,22 +66,23 @@ impl Seen {
         self.marks.push(hash(name.bytes()));
     }
 
-    /// Leaves out of messages what the input has as well, for a reader that repeats it outside of quotation marks, too.
-    pub fn leave_out_input(&mut self) {
-        self.left_out = String::from_utf8_lossy(&self.input).into_owned();
-    }
-
-    /// Marks a text by its first words in front of and behind all that is quoted in it.
-    pub fn text<'t>(&mut self, text: &'t str) {
+    /// Marks a text by its first words in front of and behind all that is quoted in it, without those that only the input can have brought there.
+    pub fn text(&mut self, text: &str) {
         let is_mark = |letter: char| "`\"'".contains(letter);
         let (before, rest) = text.split_once(is_mark).unwrap_or((text, ""));
         let behind = rest.rsplit(is_mark).next().unwrap_or_default();
-        // A message may have cut a word of the input short.
-        let is_left = |word: &&str| !word.is_empty() && !self.left_out.contains(word);
-        let words = |side: &'t str| side.split(|letter: char| !letter.is_ascii_alphabetic()).filter(is_left);
-        let marked = [before, behind].into_iter().flat_map(|side| words(side).take(MARKED_WORDS).chain(["|"]));
-        let mark = hash(marked.flat_map(|word| word.bytes().chain([b' '])));
-        self.marks.push(mark);
+        let mut mark = Vec::new();
+        for side in [before, behind] {
+            // Numbers are of the input in one way or another.
+            let is_word = |part: &&str| !part.is_empty() && part.bytes().all(|octet| octet.is_ascii_alphabetic());
+            let words = side.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(is_word);
+            words.filter(|word| is_ours(word, &self.input)).take(MARKED_WORDS).for_each(|word| {
+                mark.extend_from_slice(word.as_bytes());
+                mark.push(b' ');
+            });
+            mark.push(b'|');
+        }
+        self.marks.push(hash(mark));
     }
 
     /// Marks all messages of a report, and shows it as a person would see it for one input in sixteen.
@@ -115,6 +117,28 @@ impl Seen {
             PlantedFault::Abort => std::process::abort(),
         }
     }
+}
+
+thread_local! {
+    /// Words of messages about inputs that do not have them: those that readers use themselves.
+    static OURS: RefCell<HashSet<String>> = RefCell::default();
+}
+
+/// Most words that readers use themselves.
+const MOST_WORDS: usize = 20_000;
+
+/// False for a word that so far was only met in messages about inputs that have it, or of which they have more: it may be cut short.
+fn is_ours(word: &str, input: &[u8]) -> bool {
+    OURS.with_borrow_mut(|ours| {
+        if ours.contains(word) {
+            return true;
+        }
+        let is_new = !String::from_utf8_lossy(input).contains(word) && ours.len() < MOST_WORDS;
+        if is_new {
+            ours.insert(word.to_owned());
+        }
+        is_new
+    })
 }
 
 /// One input in `many`, by its octets alone.

@@ -138,7 +138,6 @@ fn read_words(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_hexadecimal(input: &[u8], seen: &mut Seen) {
-    seen.leave_out_input();
     // Octets of one form under the name of another.
     for name in ["a.bin", "a.o"].map(Path::new) {
         let form = ProgramFile::of(name).expect("the ending is one of programs");

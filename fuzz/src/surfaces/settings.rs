@@ -140,7 +140,6 @@ fn read_study(input: &[u8], seen: &mut Seen) {
 }
 
 fn read_settings(input: &[u8], seen: &mut Seen) {
-    seen.leave_out_input();
     let Some(source) = source("a.toml", input) else { return };
     let stored = match read::parse(&source) {
         Err(report) => return seen.report(&report, input),

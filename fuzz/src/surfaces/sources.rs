@@ -124,7 +124,6 @@ thread_local! {
 }
 
 fn assemble(input: &[u8], seen: &mut Seen) {
-    seen.leave_out_input();
     let Some(source) = source("a.s", input) else { return };
     // Small limits, so that a run is short: what is beyond them is the same message sooner.
     let limits =

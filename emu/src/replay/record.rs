@@ -372,7 +372,8 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
 /// Transfers of an item by site, of which so many are known. `sums` has none before and afterwards, and keeps its room.
 fn asked_of(segments: &[Segment], sites: &[u32], known: u32, sums: &mut Vec<SiteAsked>) -> Vec<(u32, SiteAsked)> {
     sums.resize(sums.len().max(known as usize), SiteAsked::default());
-    let mut asked = Vec::new();
+    // Room for what most items need: it would grow four times on the way there.
+    let mut asked = Vec::with_capacity(sums.len().min(32));
     for (segment, &site) in segments.iter().zip(sites) {
         let sum = &mut sums[site as usize];
         if sum.transfers == 0 {

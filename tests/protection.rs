@@ -86,7 +86,7 @@ fn a_protected_picture_takes_what_inject_says_that_it_costs() {
     let picture = "mirrors --size 5x4";
     let plain = session.json(&format!("render {picture} --energy"));
     assert_eq!(plain["protection"], serde_json::json!({ "octets": 0, "storage_bits": 0 }));
-    let whole = |value: &Value| value.as_u64().unwrap();
+    let whole = |value: &Value| value.as_i64().unwrap();
     let least = |result: &Value| result["energy"]["frame_nj"]["least"].as_f64().unwrap();
     let (mut clocks, mut octets, mut bits, mut energy) = (0, 0, 0, 0);
     for (kind, protection, cost) in costs(&session, picture) {

@@ -13,7 +13,6 @@ use emu::profile::ProfileLevel;
 use isa::number::Modes;
 use kernels::Function;
 use kernels::build::SceneFeatures;
-use kernels::twin::Twin;
 use messages::Diagnostic;
 use rayon::prelude::*;
 use scenes::reference::{Reference, SearchMethod};
@@ -179,13 +178,7 @@ fn twin(
     modes: Modes,
 ) -> Result<(), Failure> {
     let failed = |failure: kernels::twin::TwinFailure| Failure::from(Diagnostic::error(failure.to_string()));
-    let profile = job.kernels.profile;
-    if modes == Modes::default() {
-        let twin = Twin::new(image, features, profile, isa::number::Nearest32);
-        twin.ok_or(kernels::twin::TwinFailure::NoScene).and_then(|twin| twin.render(crop)).map(drop).map_err(failed)
-    } else {
-        kernels::twin::render(image, features, crop, profile, modes).map(drop).map_err(failed)
-    }
+    kernels::twin::render(image, features, crop, job.kernels.profile, modes).map(drop).map_err(failed)
 }
 
 fn timed(work: impl FnOnce() -> Result<(), Failure>) -> Result<Duration, Failure> {

@@ -1,9 +1,9 @@
 //! `lancer completions`: scripts by which shells complete command lines.
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::Shell;
 
-use super::Lancer;
+use super::invocation::COMMAND_LINE;
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
 
@@ -25,7 +25,7 @@ pub struct CompletionsArguments {
 /// Prints the script.
 pub(super) fn execute(arguments: &CompletionsArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Lancer::command(), "lancer", &mut script);
+    clap_complete::generate(arguments.shell, &mut COMMAND_LINE.clone(), "lancer", &mut script);
     terminal.print_octets(&script)?;
     Ok(Exit::Done)
 }

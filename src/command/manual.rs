@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory, ValueEnum};
+use clap::{Args, Command, ValueEnum};
 use clap_mangen::Man;
 use isa::Isa;
 use messages::{Diagnostic, did_you_mean};
 
-use super::Lancer;
+use super::invocation::COMMAND_LINE;
 use crate::arguments::ExtensionArguments;
 use crate::failure::{Exit, Failure};
 use crate::terminal::Terminal;
@@ -92,7 +92,7 @@ pub(super) fn page_of(topic: &str, isa: &Isa) -> Result<String, Failure> {
 
 /// The man page of all commands in one: that of `lancer`, then a section for each command below it.
 fn man_page() -> String {
-    let mut command = Lancer::command();
+    let mut command = COMMAND_LINE.clone();
     command.build();
     let page = rendered(|out| Man::new(command.clone()).render(out)).replace(".SH EXTRA", ".SH EXAMPLES");
     // There are no pages of their own for the commands: their sections follow.

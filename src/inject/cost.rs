@@ -24,7 +24,7 @@ pub struct ProtectionCost {
     pub storage_bits: Option<u64>,
     /// Octets that go over the bus in addition, in a frame.
     pub octets: Option<u64>,
-    /// Clocks that a frame takes in addition; less than 0 where longer bursts come in an order that happens to be better.
+    /// Clocks that a frame takes in addition; less than 0 where what takes longer brings the requests of cores into a better order.
     pub clocks: Option<i64>,
     /// Those as a share of the frame without protections.
     pub clocks_share: Option<f64>,

@@ -177,7 +177,8 @@ fn protections(kinds: &[KindVulnerability]) -> String {
                 grouped(effect.passed),
                 grouped(effect.unknown),
                 interval(&effect.left),
-                more(cost.clocks_share.map(percent)),
+                // What rounds to nothing has no sign.
+                more(cost.clocks_share.map(|share| percent((share * 1e4).round() / 1e4 + 0.0))),
                 more(cost.octets.map(grouped)),
                 more(cost.storage_bits.map(grouped)),
                 more(cost.energy_nj),

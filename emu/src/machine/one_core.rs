@@ -113,7 +113,7 @@ impl<'a> LoadedCore<'a> {
         Ok(LoadedCore { one_core, code: Code::new(program, isa, config.timing()) })
     }
 
-    /// Run from registers and memory of its own, with an engine that is wanted.
+    /// Run from these registers and this memory, with an engine that is wanted; the registers of the [`OneCore`] play no part.
     pub fn run(&self, registers: &Registers, memory: Memory, wish: Wish) -> OneCoreRun {
         let OneCore { config, has_losses, profile, .. } = *self.one_core;
         dispatch(config.arithmetic.watching(has_losses), profile, OneCoreTask { core: self, registers, memory, wish })

@@ -10,13 +10,13 @@ use super::cache::Cache;
 use super::course::BusCourse;
 use super::finish::EndedRun;
 use super::kinds::Kinds;
-use super::outcome::{Item, RunOutcome};
+use super::outcome::Item;
 use super::port::Shared;
 use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
 use super::worker::{Executor, HandOver, Worker};
-use super::{RunFailure, Setup, stepped};
+use super::{RunFailure, Setup};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::{Clocks, Octets};
@@ -24,19 +24,6 @@ use crate::code::trap::Fault;
 use crate::engine::{CoreId, Demand, EngineRunner, Pause, choose};
 use crate::profile::Observer;
 use crate::semantics::Watch;
-
-/// Runs a frame by stepping, on one arithmetic and with one kind of observer.
-///
-/// # Errors
-/// A trap.
-pub fn run<T: Watch, O: Observer>(
-    setup: &Setup,
-    memory: Memory,
-    arithmetic: &T,
-    progress: &mut dyn FnMut(u64),
-) -> Result<RunOutcome, RunFailure> {
-    stepped::run_decoded::<T, O>(setup, &setup.codes(), memory, arithmetic, progress)
-}
 
 /// Runner of a program on a machine.
 pub(super) fn runner_of<'a, T: Watch, O: Observer>(

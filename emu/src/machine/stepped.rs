@@ -58,7 +58,7 @@ impl Task for StepTask<'_> {
 ///
 /// # Errors
 /// A trap.
-pub(super) fn run_decoded<T: Watch, O: Observer>(
+pub(crate) fn run_decoded<T: Watch, O: Observer>(
     setup: &Setup,
     [core_code, main_code]: &[Code; 2],
     memory: Memory,

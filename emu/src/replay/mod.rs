@@ -33,6 +33,7 @@ use crate::extension;
 use crate::machine::finish::{self, EndedRun};
 use crate::machine::outcome::Method;
 use crate::machine::schedule::{self, Machine};
+use crate::machine::stepped;
 use crate::machine::{RunFailure, RunOutcome, Setup};
 use crate::profile::{Observer, Unobserved};
 use crate::semantics::Watch;
@@ -54,8 +55,10 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     progress: &mut dyn FnMut(u64),
 ) -> Vec<Result<RunOutcome, RunFailure>> {
     let Some(first) = setups.first() else { return Vec::new() };
+    // All machines share what is made of the programs, whichever way they go.
+    let codes = first.codes();
     let step = |setup: &Setup, why: Reason, progress: &mut dyn FnMut(u64)| {
-        let frame = schedule::run::<T, O>(setup, memory.clone(), arithmetic, progress)?;
+        let frame = stepped::run_decoded::<T, O>(setup, &codes, memory.clone(), arithmetic, progress)?;
         Ok(RunOutcome { method: Method::Stepped { why }, ..frame })
     };
     // One prefix serves all machines: they differ in time only, and the prefix asks nothing of others.
@@ -63,7 +66,6 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
         Ok(prefix) => prefix,
         Err(why) => return setups.iter().map(|setup| step(setup, why, progress)).collect(),
     };
-    let codes = codes(first);
     let (totals, endings) = replay::<T, O>(setups, &codes, prefix, memory, arithmetic, progress);
     let mut results = Vec::with_capacity(setups.len());
     for (setup, ending) in setups.iter().zip(endings) {
@@ -83,11 +85,6 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
         return Err("an instruction keeps its state from one work item to the next");
     }
     Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic.clone(), RecordLevel::Segments).prefix()
-}
-
-/// The programs of the cores and of the main processor, decoded for machines that compute alike, which then share what is made of them.
-fn codes<'a>(setup: &Setup<'a>) -> [Code<'a>; 2] {
-    setup.codes()
 }
 
 /// Outcome of one machine, or the reason for which it has to be stepped.

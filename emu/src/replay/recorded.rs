@@ -66,7 +66,7 @@ impl Recorded {
 
     /// Replays of them on many machines, of which this is one, all with its programs and its options.
     pub fn replays<'a>(&'a self, setup: &Setup<'a>) -> Replays<'a> {
-        Replays { recorded: self, setup: setup.clone(), codes: super::codes(setup) }
+        Replays { recorded: self, setup: setup.clone(), codes: setup.codes() }
     }
 }
 

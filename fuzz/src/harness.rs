@@ -70,10 +70,15 @@ pub fn attempt(surface: &Surface, input: &[u8], seen: &mut Seen) -> Result<(), S
 
 /// Inputs of a folder, in the order of their names, which follow from what they hold; no more than are kept.
 fn kept_in(folder: &Path) -> Vec<Vec<u8>> {
+    paths_in(folder).iter().take(MOST_KEPT).filter_map(|path| std::fs::read(path).ok()).collect()
+}
+
+/// Paths of a folder, in order.
+fn paths_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
-    paths.iter().take(MOST_KEPT).filter_map(|path| std::fs::read(path).ok()).collect()
+    paths
 }
 
 /// Name of the file of a kept input.
@@ -91,6 +96,10 @@ fn keep(folder: &Path, kept: &[Vec<u8>], tried: &[String]) -> std::io::Result<()
     for name in tried.iter().filter(|name| !names.contains(*name)) {
         // Another process may have removed it.
         let _ = std::fs::remove_file(folder.join(name));
+    }
+    // Seeds that there was no time for may be too many with the new ones.
+    for path in paths_in(folder).into_iter().skip(MOST_KEPT) {
+        let _ = std::fs::remove_file(path);
     }
     Ok(())
 }

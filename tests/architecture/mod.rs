@@ -93,6 +93,23 @@ fn no_crate_comes_from_outside() {
     }
 }
 
+/// Property tests try the same values on every run: what fails on one host fails on all.
+#[test]
+fn seeds_of_property_tests_are_fixed() {
+    let (mut blocks, mut unseeded) = (0, Vec::new());
+    for (name, text) in files().iter().filter(|(name, _)| name.ends_with(".rs")) {
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for pair in lines.windows(2).filter(|pair| pair[0] == "proptest! {") {
+            blocks += 1;
+            if !(pair[1].starts_with("#![proptest_config(") && pair[1].contains("RngSeed::Fixed(")) {
+                unseeded.push(name.clone());
+            }
+        }
+    }
+    assert!(blocks > 20, "{blocks} blocks");
+    assert_eq!(unseeded, [""; 0], "the first line of a block has `rng_seed: RngSeed::Fixed(...)`");
+}
+
 /// All `path = "..."` of a manifest.
 fn paths(value: &toml::Value) -> Vec<String> {
     match value {

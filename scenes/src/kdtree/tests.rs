@@ -2,6 +2,7 @@
 //! costs compared as fractions with the node's surface below the line.
 
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 use super::*;
 
@@ -124,7 +125,7 @@ fn boxes(range: i32, most: usize) -> impl Strategy<Value = Vec<Bounds>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn it_is_the_tree_of_the_literal_rule_where_bounds_often_coincide(triangles in boxes(3, 24), depth in 0u32..7) {
@@ -409,7 +410,7 @@ fn point([a, b, c]: &[[i32; 3]; 3], u: i64, v: i64) -> [i64; 3] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn a_leaf_holds_every_triangle_of_which_a_part_is_in_it(

@@ -1,6 +1,7 @@
 //! Refusals in single precision against the test in double precision: never of a hit, and of nearly all misses.
 
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 use super::hierarchy::Box3;
 use super::search::Search;
@@ -55,7 +56,7 @@ fn bounds(vertices: [Vec3; 3]) -> Box3 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4000, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     #[test]
     fn no_hit_is_refused(shot in shots(), lane in 0..LANES) {

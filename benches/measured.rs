@@ -95,11 +95,8 @@ const LEVERS: &[(&str, &[&str])] = &[
         &["profile.release.debug=\"line-tables-only\"", "profile.release.strip=\"none\""],
     ),
     ("panics that unwind", &["profile.release.panic=\"unwind\""]),
-    (
-        "everything at opt-level 3 but what prints",
-        &["profile.release.opt-level=3", "profile.release.package.\"*\".opt-level=3"],
-    ),
-    ("commands and their texts at opt-level 1", &["profile.release.opt-level=1"]),
+    ("everything at opt-level 3 but what prints", &["profile.release.opt-level=3"]),
+    ("everything that has no line of its own made small", &["profile.release.opt-level=\"s\""]),
     // Flags of one's own mean that the linker is not asked for more than that (`build.rs`).
     ("functions whose code is the same", &["build.rustflags=[\"-Cdebuginfo=0\"]"]),
     (
@@ -107,10 +104,7 @@ const LEVERS: &[(&str, &[&str])] = &[
         &[
             "profile.release.package.annotate-snippets.opt-level=1",
             "profile.release.package.image.opt-level=1",
-            "profile.release.package.papergrid.opt-level=1",
-            "profile.release.package.pulldown-cmark.opt-level=1",
             "profile.release.package.schemars.opt-level=1",
-            "profile.release.package.tabled.opt-level=1",
         ],
     ),
     (

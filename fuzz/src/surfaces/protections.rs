@@ -70,6 +70,8 @@ fn protect(input: &[u8], seen: &mut Seen) {
         seen.name(kind.name());
         seen.name(protection.name());
     }
+    let protected = config.protection.iter().count();
+    seen.count("protected", protected);
     let random = &mut SplitMix64::new(hash(input.iter().copied()));
     let stored = StoredWords {
         program: random.bits() >> 42,
@@ -88,7 +90,7 @@ fn protect(input: &[u8], seen: &mut Seen) {
     if is_sample(input, COSTED) {
         check_costs(&config, seen);
     }
-    seen.plant(PlantedFault::Panic, config.protection.iter().count() == 4);
+    seen.plant(PlantedFault::Panic, protected == 8);
 }
 
 /// Check bits of a word, by the names that files have.

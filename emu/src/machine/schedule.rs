@@ -15,7 +15,7 @@ use super::port::Shared;
 use super::processor::{Act, Processor, ProcessorState, Work};
 use super::request::{Access, Request};
 use super::trace::{BusWatch, Spans};
-use super::worker::{Executor, HandOver, Worker};
+use super::worker::{Executor, HandOver, ItemMaster, Worker};
 use super::{RunFailure, Setup};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
@@ -333,9 +333,9 @@ impl<'a, W: Worker> Machine<'a, W> {
             // Masters look only at recordings, so they have to be told of what might make those wrong.
             self.written = self.shared.written.clone();
             for number in 0..self.processors.len() {
-                if W::depends_on(&masters.all[number], &self.written) {
+                if masters.all[number].depends_on(&self.written) {
                     self.bus.go_back(masters, number as u32, self.now);
-                    W::stop_at(&mut masters.all[number], &self.written);
+                    masters.all[number].stop_at(&self.written);
                 }
             }
         }

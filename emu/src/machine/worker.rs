@@ -71,10 +71,24 @@ pub struct HandOver<'a> {
     pub cache: &'a mut Option<Cache>,
 }
 
+/// Master that may hold the work item of a worker.
+pub trait ItemMaster: NextTransfer {
+    /// True where what it goes on to may depend on what was written.
+    fn depends_on(&self, written: &Range<u64>) -> bool {
+        let _ = written;
+        false
+    }
+
+    /// Makes one that depends on what was written stop after the transfer that it asks for.
+    fn stop_at(&mut self, written: &Range<u64>) {
+        let _ = written;
+    }
+}
+
 /// Whoever does the work of a processor, item after item.
 pub trait Worker {
     /// The worker as a master of the bus, where it can go from transfer to transfer by itself.
-    type Master: NextTransfer;
+    type Master: ItemMaster;
 
     /// Goes on up to the next thing that concerns others. With permission, what the worker waits for is done first, at that clock.
     fn advance(&mut self, shared: &mut Shared, permission: Option<Clocks>) -> Advance;
@@ -109,12 +123,6 @@ pub trait Worker {
     /// handed over.
     fn take_back(&mut self, master: &mut Self::Master, end: Clocks, cache: &mut Option<Cache>) -> Option<Played>;
 
-    /// True where what a master goes on to may depend on what was written.
-    fn depends_on(master: &Self::Master, written: &Range<u64>) -> bool;
-
-    /// Makes a master that depends on what was written stop after the transfer that it asks for.
-    fn stop_at(master: &mut Self::Master, written: &Range<u64>);
-
     /// Everything that was counted of its program.
     fn into_counts(self) -> WorkerCounts;
 }
@@ -138,6 +146,8 @@ pub struct WorkerCounts {
 pub struct PlainMaster {
     longest_wait: Clocks,
 }
+
+impl ItemMaster for PlainMaster {}
 
 impl NextTransfer for PlainMaster {
     fn next_transfer(&mut self, _: Clocks, _: &Lengths) -> Option<(Clocks, super::bus::Burst)> {
@@ -277,12 +287,6 @@ impl<T: Watch, O: Observer> Worker for Executor<'_, T, O> {
     fn take_back(&mut self, _: &mut PlainMaster, _: Clocks, _: &mut Option<Cache>) -> Option<Played> {
         None
     }
-
-    fn depends_on(_: &PlainMaster, _: &Range<u64>) -> bool {
-        false
-    }
-
-    fn stop_at(_: &mut PlainMaster, _: &Range<u64>) {}
 
     fn into_counts(mut self) -> WorkerCounts {
         let tally = self.take_tally();

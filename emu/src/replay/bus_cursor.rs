@@ -9,7 +9,7 @@ use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
 use crate::machine::cache::Cache;
-use crate::machine::worker::{HandOver, Played};
+use crate::machine::worker::{HandOver, ItemMaster, Played};
 
 /// Track that a master of the bus goes through by itself; none at first.
 #[derive(Clone, Debug)]
@@ -186,21 +186,6 @@ impl BusCursor {
         }
     }
 
-    /// True where it may read any of these octets.
-    pub fn depends_on(&self, written: &Range<u64>) -> bool {
-        self.track.as_ref().is_some_and(|track| overlap(&track.reads, written))
-    }
-
-    /// Makes it end with the transfer that its master asks for, because it may read any of these octets.
-    pub fn stop_at(&mut self, written: &Range<u64>) {
-        self.computing = NEVER;
-        if let (Some(beside), Some(track)) = (&mut self.beside, &self.track) {
-            // The cache may have answered that later than it was written.
-            let answered = track.segments.get(beside.answered.clone()).unwrap_or_default();
-            beside.is_lost |= answered.iter().any(|segment| overlap(&segment.range(), written));
-        }
-    }
-
     /// Hands the track back when its transfer has ended at a clock; `None` where its processor goes through it.
     pub fn end(&mut self, clock: Clocks) -> Option<HandedBack> {
         let track = self.track.take()?;
@@ -229,6 +214,21 @@ impl BusCursor {
         (self.next, self.asked) = (beside.hits.end + 1, asked);
         self.look(lengths);
         Some((asked - end, lengths.burst(octets)))
+    }
+}
+
+impl ItemMaster for BusCursor {
+    fn depends_on(&self, written: &Range<u64>) -> bool {
+        self.track.as_ref().is_some_and(|track| overlap(&track.reads, written))
+    }
+
+    fn stop_at(&mut self, written: &Range<u64>) {
+        self.computing = NEVER;
+        if let (Some(beside), Some(track)) = (&mut self.beside, &self.track) {
+            // The cache may have answered that later than it was written.
+            let answered = track.segments.get(beside.answered.clone()).unwrap_or_default();
+            beside.is_lost |= answered.iter().any(|segment| overlap(&segment.range(), written));
+        }
     }
 }
 

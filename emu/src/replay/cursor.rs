@@ -1,7 +1,6 @@
 //! Cores that replay what work items were recorded to do, in the place of an engine that does it.
 
 use std::cell::RefCell;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::bus_cursor::{BusCursor, HandedBack, overlap};
@@ -225,14 +224,6 @@ impl Worker for ItemCursor<'_> {
         Some(played)
     }
 
-    fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {
-        master.depends_on(written)
-    }
-
-    fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
-        master.stop_at(written);
-    }
-
     fn into_counts(self) -> WorkerCounts {
         WorkerCounts { tally: Tally::new(self.code), profile: None, clocks: self.log, keys: None, kinds: None }
     }
@@ -290,14 +281,6 @@ impl<T: Watch, O: Observer> Worker for Replayer<'_, T, O> {
 
     fn take_back(&mut self, master: &mut BusCursor, end: Clocks, cache: &mut Option<Cache>) -> Option<Played> {
         each!(self, worker => worker.take_back(master, end, cache))
-    }
-
-    fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {
-        master.depends_on(written)
-    }
-
-    fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
-        master.stop_at(written);
     }
 
     fn note_ask(&mut self, request: Request, octets: Octets, kinds: &Kinds) {

@@ -1,7 +1,6 @@
 //! The main processor of a machine that replays. Its program is executed, since what it does depends on the clocks of the cores; but nobody else
 //! writes global memory, so it reads ahead of the clock, and the bus goes through these reads by itself.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::bus_cursor::{BusCursor, HandedBack};
@@ -286,14 +285,6 @@ impl<T: Watch, O: Observer> Worker for MainCursor<'_, T, O> {
         }
         self.next = next;
         Some(played)
-    }
-
-    fn depends_on(master: &BusCursor, written: &Range<u64>) -> bool {
-        master.depends_on(written)
-    }
-
-    fn stop_at(master: &mut BusCursor, written: &Range<u64>) {
-        master.stop_at(written);
     }
 
     fn into_counts(self) -> WorkerCounts {

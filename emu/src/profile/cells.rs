@@ -44,11 +44,10 @@ impl ClockCells {
         &self.cells
     }
 
-    /// Empties the cells, which have so many clocks together, and yields the contents of those that were not empty.
+    /// Empties the cells, which have so many clocks together, and hands the contents of those that were not empty over.
     ///
     /// One item is much like another, so the cells that were in use before mostly have all: only where a clock is missing, all are looked at.
-    pub fn take(&mut self, clocks: u64) -> Vec<(u32, u64)> {
-        let mut found = Vec::with_capacity(self.used.len());
+    pub fn take(&mut self, clocks: u64, found: &mut Vec<(u32, u64)>) {
         let mut left = clocks;
         for &cell in &self.used {
             let taken = std::mem::take(&mut self.cells[cell as usize]);
@@ -63,7 +62,6 @@ impl ClockCells {
                 self.used.push(cell);
             }
         }
-        found
     }
 }
 
@@ -74,14 +72,19 @@ mod tests {
     #[test]
     fn cells_are_found_when_they_are_used_first_and_later() {
         let mut cells = ClockCells::new(3);
+        let taken = |cells: &mut ClockCells, clocks| {
+            let mut found = Vec::new();
+            cells.take(clocks, &mut found);
+            found
+        };
         cells.add_context();
         cells.add(1, 5);
-        assert_eq!(cells.take(5), [(1, 5)]);
+        assert_eq!(taken(&mut cells, 5), [(1, 5)]);
         cells.add(1, 2);
         cells.add(4, 3);
-        assert_eq!(cells.take(5), [(1, 2), (4, 3)]);
+        assert_eq!(taken(&mut cells, 5), [(1, 2), (4, 3)]);
         cells.add(4, 7);
-        assert_eq!(cells.take(7), [(4, 7)]);
-        assert!(cells.take(0).is_empty() && cells.all() == [0; 6]);
+        assert_eq!(taken(&mut cells, 7), [(4, 7)]);
+        assert!(taken(&mut cells, 0).is_empty() && cells.all() == [0; 6]);
     }
 }

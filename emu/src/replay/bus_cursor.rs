@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::recording::{Segment, Track};
+use super::recording::{Segment, Stretch, Track};
 use crate::code::quantity::{Clocks, Octets};
 use crate::machine::arbiter::NEVER;
 use crate::machine::bus::{Alone, Burst, Lengths, NextTransfer};
@@ -16,8 +16,10 @@ use crate::machine::worker::{HandOver, ItemMaster, Played};
 pub struct BusCursor {
     /// The track; none while its processor goes through it.
     track: Option<Arc<Track>>,
-    /// Segments that are behind it; the last of them is the transfer that the master asks for.
+    /// Segments that are behind it, of all of the track; the last of them is the transfer that the master asks for.
     next: usize,
+    /// The stretch of the track that it goes through.
+    stretch: Stretch,
     /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
     computing: Clocks,
     /// That transfer's first burst; of no meaning with a cache, which says so when the transfer is asked for.
@@ -102,6 +104,7 @@ impl Default for BusCursor {
         BusCursor {
             track: None,
             next: 0,
+            stretch: Stretch::default(),
             computing,
             ahead,
             start: none,
@@ -163,9 +166,10 @@ impl BesideTransfers {
 impl BusCursor {
     /// Takes over a track, when its processor begins to ask for the last of the segments that are behind it, with waits by site where
     /// clocks of functions are measured.
-    pub fn begin(&mut self, track: Arc<Track>, next: usize, transfer: HandOver, waits: Vec<u64>) {
+    pub fn begin(&mut self, (track, stretch): (Arc<Track>, Stretch), next: usize, transfer: HandOver, waits: Vec<u64>) {
         let HandOver { clock, lengths, overlaps, cache, .. } = transfer;
         (self.next, self.start, self.asked, self.busy, self.waits) = (next, clock, clock, Clocks(0), waits);
+        self.stretch = stretch;
         if overlaps || cache.is_some() {
             // The box stays from one work item to the next.
             let beside = self.beside.get_or_insert_default();
@@ -179,7 +183,8 @@ impl BusCursor {
 
     #[inline(always)]
     fn look(&mut self, lengths: &Lengths) {
-        let segments = self.track.as_ref().map_or(&[][..], |track| &track.segments);
+        let end = self.stretch.segments.end;
+        let segments = self.track.as_ref().map_or(&[][..], |track| &track.segments[..end]);
         match &mut self.beside {
             None => (self.computing, self.ahead) = ahead_of(segments, self.next, lengths),
             Some(beside) => self.computing = beside.look(segments, self.next),
@@ -219,7 +224,7 @@ impl BusCursor {
 
 impl ItemMaster for BusCursor {
     fn depends_on(&self, written: &Range<u64>) -> bool {
-        self.track.as_ref().is_some_and(|track| overlap(&track.reads, written))
+        self.track.is_some() && overlap(&self.stretch.reads, written)
     }
 
     fn stop_at(&mut self, written: &Range<u64>) {
@@ -261,6 +266,7 @@ impl NextTransfer for BusCursor {
             return alone;
         }
         let Some(track) = &self.track else { return alone };
+        let segments = &track.segments[..self.stretch.segments.end];
         let (mut next, mut computing, mut ahead) = (self.next, self.computing, self.ahead);
         let before = (next, arrival);
         // Take burst after burst; each begins when it is asked for, because nobody else holds the bus
@@ -282,7 +288,7 @@ impl NextTransfer for BusCursor {
             add_wait(&mut self.waits, track, next - 1, alone.free - self.asked);
             self.asked = alone.arrival;
             next += 1;
-            (computing, ahead) = ahead_of(&track.segments, next, lengths);
+            (computing, ahead) = ahead_of(segments, next, lengths);
         }
         // Put back what has changed: all that was not holding the bus was computing
         alone.transfers = (next - before.0) as u64;
@@ -316,15 +322,16 @@ mod tests {
     /// A clock behind everything.
     const END: u64 = 1 << 32;
 
-    /// A track that reads what these segments say: clocks of computing, octets.
-    fn track(segments: &[(u64, u64)]) -> Arc<Track> {
+    /// A stretch that reads what these segments say, clocks of computing and octets, between segments of other items.
+    fn track(segments: &[(u64, u64)]) -> (Arc<Track>, Stretch) {
         let segment = |&(clocks, octets): &(u64, u64)| {
             let access = if clocks % 3 == 0 { Access::Read } else { Access::Load };
             let request = Request::Transfer { address: clocks as u32 % 4 * 16, octets: Octets(octets), access };
             Segment::new(clocks, 0, request, 0).expect("it fits")
         };
-        let sites = (0..).take(segments.len()).collect();
-        Arc::new(Track { segments: segments.iter().map(segment).collect(), sites, reads: 0..128 })
+        let all: Vec<Segment> = [(1, 1)].iter().chain(segments).chain(&[(1, 1)]).map(segment).collect();
+        let (sites, stretch) = ((0..).take(all.len()).collect(), 1..all.len() - 1);
+        (Arc::new(Track { segments: all, sites }), Stretch { segments: stretch, reads: 0..128 })
     }
 
     proptest! {
@@ -356,12 +363,12 @@ mod tests {
                     for (bus, cursors) in [(&mut quick, &mut cursors), (&mut plain, &mut plain_cursors)] {
                         let cursor = &mut cursors.all[master as usize];
                         let _ = cursor.end(arrival);
-                        bus.request(master, arrival, item.segments[0].octets());
+                        bus.request(master, arrival, item.0.segments[1].octets());
                         let (clock, written, lengths) = (arrival, &(0..0), &bus.lengths);
                         let kinds = [(0..128, "nodes".to_owned())];
                         let mut cache = Cache::new(&CacheConfig { octets, line_octets: 16, ..CacheConfig::default() }, &kinds);
                         let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut cache };
-                        cursor.begin(item.clone(), 1, transfer, vec![0; 8]);
+                        cursor.begin(item.clone(), 2, transfer, vec![0; 9]);
                     }
                 }
                 // Anybody, who may be in the middle of an item.
@@ -380,6 +387,8 @@ mod tests {
                     let grant = quick.serve(&mut cursors, now);
                     prop_assert_eq!(grant, plain.serve_by_choice(&mut plain_cursors.all, now));
                     if let Some(grant) = grant {
+                        let cursor = &cursors.all[grant.master as usize];
+                        prop_assert!(cursor.next <= cursor.stretch.segments.end);
                         ends[grant.master as usize] = grant.end;
                     }
                     // Who is ahead of the bus is compared when it has caught up, at the end at the latest.

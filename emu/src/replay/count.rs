@@ -52,9 +52,9 @@ impl Task for CountTask<'_> {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
                 Ok(batch) => {
-                    item_count += batch.len() as u64;
+                    item_count += batch.iter().map(|portion| portion.items.len() as u64).sum::<u64>();
                     // A trap stops a machine at a clock, and what others have done by then only a run on the clock knows.
-                    if batch.iter().any(|recording| recording.end != Pause::Halt) {
+                    if batch.iter().flat_map(|portion| &portion.items).any(|item| item.end != Pause::Halt) {
                         unfit = Some("a work item traps");
                     }
                 }

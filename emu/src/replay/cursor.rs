@@ -1,12 +1,12 @@
 //! Cores that replay what work items were recorded to do, in the place of an engine that does it.
 
 use std::cell::RefCell;
-use std::sync::Arc;
+use std::rc::Rc;
 
 use super::bus_cursor::{BusCursor, HandedBack, overlap};
 use super::feed::Feed;
 use super::main_cursor::MainCursor;
-use super::recording::{Reason, Recording, Segment};
+use super::recording::{Reason, RecordedItem, Recording, Segment};
 use crate::code::Code;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::tally::Tally;
@@ -27,10 +27,10 @@ const READS_WRITTEN: Reason = "the cores read what the main processor has writte
 pub struct ItemCursor<'a> {
     code: &'a Code<'a>,
     core: CoreId,
-    feed: &'a RefCell<Feed>,
+    feed: Rc<RefCell<Feed<'a>>>,
     /// The work item; none before its message has come.
-    recording: Option<Arc<Recording>>,
-    /// Segments that are behind it.
+    recording: Option<RecordedItem>,
+    /// Segments that are behind it, of all of its portion.
     next: usize,
     progress: Progress,
     /// Sums of clocks, where those of functions are measured; the bus cursor has the waits of a part while it goes through the work item.
@@ -41,23 +41,26 @@ pub struct ItemCursor<'a> {
 
 impl<'a> ItemCursor<'a> {
     /// A core that has replayed nothing.
-    pub fn new(code: &'a Code<'a>, core: CoreId, feed: &'a RefCell<Feed>, level: ProfileLevel) -> ItemCursor<'a> {
+    pub fn new(code: &'a Code<'a>, core: CoreId, feed: Rc<RefCell<Feed<'a>>>, level: ProfileLevel) -> ItemCursor<'a> {
         let log = (level == ProfileLevel::Clocks).then(ClockLog::default);
         ItemCursor { code, core, feed, recording: None, next: 0, progress: Progress::default(), log, asked: (0, 0) }
     }
 
-    /// Adds what the work item that begins computes and asks for, and makes room for the waits of its observer.
-    fn begin_clocks(&mut self) {
-        let clocks = self.recording.as_ref().and_then(|recording| recording.clocks.as_ref());
-        if let (Some(log), Some(clocks)) = (&mut self.log, clocks) {
+    /// Begins the work item: adds what it computes and asks for, and makes room for the waits of its observer.
+    fn begin_item(&mut self) {
+        let Some(recording) = &self.recording else { return };
+        self.next = recording.stretch.segments.start;
+        if let (Some(log), Some(clocks)) = (&mut self.log, &recording.clocks) {
             let observer = clocks.observer as usize;
             if log.parts.len() <= observer {
                 log.parts.resize(observer + 1, LogPart::default());
             }
             let part = &mut log.parts[observer];
-            part.add_cells(&clocks.cells);
+            part.add_cells(&recording.portion().cells[clocks.cells.clone()]);
             part.reserve(clocks.known as usize);
-            clocks.asked.iter().for_each(|&(site, asked)| part.add_asked(site, asked));
+            recording.portion().asked[clocks.asked.clone()]
+                .iter()
+                .for_each(|&(site, asked)| part.add_asked(site, asked));
         }
     }
 
@@ -68,13 +71,14 @@ impl<'a> ItemCursor<'a> {
 
     /// The segment that asked for what the core waits for; none where that is its message.
     fn asked(&self) -> Option<&Segment> {
-        self.recording.as_ref()?.track.segments.get(self.next.checked_sub(1)?)
+        let recording = self.recording.as_ref()?;
+        recording.portion().segments(recording).get(self.next.checked_sub(recording.stretch.segments.start + 1)?)
     }
 
     /// Notes the site of what the core waits for.
     fn note_site(&mut self) {
         let Some(recording) = self.recording.as_ref() else { return };
-        let site = self.next.checked_sub(1).and_then(|at| recording.track.sites.get(at));
+        let site = self.next.checked_sub(1).and_then(|at| recording.portion().track.sites.get(at));
         if let (Some(&site), Some(clocks)) = (site, &recording.clocks) {
             self.asked = (clocks.observer as usize, site);
         }
@@ -88,14 +92,14 @@ impl<'a> ItemCursor<'a> {
             let (_, sender) = shared.mailboxes.next(own)?;
             let message = shared.mailboxes.take(own, sender)?;
             self.recording = self.feed.borrow_mut().take(&message);
-            self.begin_clocks();
+            self.begin_item();
             return Some((message, sender));
         };
         match segment.request(self.core.cores) {
             Request::Send { to, .. } => {
                 // The address of a segment that sends is the number of its message.
-                let sent = self.recording.as_ref().and_then(|recording| recording.sent.get(segment.address as usize));
-                if let Some(&message) = sent {
+                let sent = self.recording.as_ref().map_or(&[][..], |recording| recording.portion().sent(recording));
+                if let Some(&message) = sent.get(segment.address as usize) {
                     shared.mailboxes.put(to, own, at, message);
                 }
             }
@@ -145,14 +149,14 @@ impl Worker for ItemCursor<'_> {
                 (prefix.clocks, Pause::Wait)
             }
             None => (0, Pause::Fault(Fault::Deadlock)),
-            Some(recording) => match recording.track.segments.get(self.next) {
-                Some(segment) => {
+            Some(recording) => match recording.portion().track.segments.get(self.next) {
+                Some(segment) if self.next < recording.stretch.segments.end => {
                     self.next += 1;
                     request = Some(segment.request(self.core.cores));
                     self.progress.pc = segment.pc;
                     (segment.clocks.into(), Pause::Wait)
                 }
-                None => {
+                _ => {
                     let Recording { last_pc: pc, steps: all, elementary, .. } = **recording;
                     self.progress = Progress { pc, steps: all, elementary };
                     steps = all;
@@ -184,12 +188,13 @@ impl Worker for ItemCursor<'_> {
 
     fn hand_over(&mut self, master: &mut BusCursor, transfer: HandOver) -> bool {
         let is_safe = |recording: &Recording| {
-            self.asked().is_some_and(Segment::is_read) && !overlap(&recording.track.reads, transfer.written)
+            self.asked().is_some_and(Segment::is_read) && !overlap(&recording.stretch.reads, transfer.written)
         };
-        let Some(recording) = self.recording.as_deref().filter(|recording| is_safe(recording)) else { return false };
-        let (track, (observer, _)) = (recording.track.clone(), self.asked);
+        let Some(recording) = self.recording.as_ref().filter(|recording| is_safe(recording)) else { return false };
+        let (track, stretch) = (recording.portion().track.clone(), recording.stretch.clone());
+        let (observer, _) = self.asked;
         let waits = self.part(observer).map_or(Vec::new(), |part| std::mem::take(&mut part.waits));
-        master.begin(track, self.next, transfer, waits);
+        master.begin((track, stretch), self.next, transfer, waits);
         true
     }
 

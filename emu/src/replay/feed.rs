@@ -2,52 +2,56 @@
 
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::sync::mpsc::Receiver;
 
 use super::record::Prefix;
-use super::recording::{Reason, Recording};
+use super::recording::{Portion, Reason, RecordedItem};
 use crate::semantics::Message;
 
 /// Recordings, or why there are no more.
-pub type Batch = Result<Vec<Arc<Recording>>, Reason>;
+pub type Batch = Result<Vec<Arc<Portion>>, Reason>;
 
 /// Recordings that a machine holds at once, at most.
 const MOST_HELD: usize = 1 << 14;
 
 /// The recordings of one machine, each of which it uses once.
-#[derive(Debug)]
-pub struct Feed {
+pub struct Feed<'a> {
     /// Prefix of every work item, before its message comes.
     pub prefix: Prefix,
     /// Number of cores that the items were recorded with.
     recorded_cores: u32,
     /// Number of cores of this machine.
     cores: u32,
-    batches: Receiver<Arc<Batch>>,
+    /// The next batch; none when there are no more.
+    batches: Box<dyn FnMut() -> Option<Arc<Batch>> + 'a>,
     /// In the order in which they were recorded.
-    held: VecDeque<Arc<Recording>>,
+    held: VecDeque<RecordedItem>,
     /// Reason for which the replay is worth nothing.
     pub lost: Option<Reason>,
 }
 
-impl Feed {
-    /// The recordings that come through a channel.
-    pub fn new(prefix: Prefix, recorded_cores: u32, cores: u32, batches: Receiver<Arc<Batch>>) -> Feed {
-        Feed { prefix, recorded_cores, cores, batches, held: VecDeque::new(), lost: None }
+impl<'a> Feed<'a> {
+    /// The recordings that somebody yields, batch by batch.
+    pub fn new(
+        prefix: Prefix,
+        recorded_cores: u32,
+        cores: u32,
+        batches: impl FnMut() -> Option<Arc<Batch>> + 'a,
+    ) -> Feed<'a> {
+        Feed { prefix, recorded_cores, cores, batches: Box::new(batches), held: VecDeque::new(), lost: None }
     }
 
     /// Takes the recording of the work item that begins with a message; `None` when the replay is lost.
-    pub fn take(&mut self, message: &Message) -> Option<Arc<Recording>> {
+    pub fn take(&mut self, message: &Message) -> Option<RecordedItem> {
         // Mostly it is the first: work is handed out in the order in which it was recorded.
         let mut from = 0;
         loop {
-            let is_it = |recording: &Arc<Recording>| recording.message == *message;
+            let is_it = |recording: &RecordedItem| recording.message == *message;
             if let Some(place) = self.held.range(from..).position(is_it) {
                 return self.held.remove(from + place);
             }
             // What was looked at does not match; only the next batch can have it.
             from = self.held.len();
-            let batch = self.batches.recv().ok().filter(|_| from < MOST_HELD);
+            let batch = (self.batches)().filter(|_| from < MOST_HELD);
             match batch.as_deref() {
                 Some(Ok(batch)) => self.hold(batch)?,
                 Some(Err(reason)) => return self.lose(reason),
@@ -56,12 +60,14 @@ impl Feed {
         }
     }
 
-    fn hold(&mut self, batch: &[Arc<Recording>]) -> Option<()> {
+    fn hold(&mut self, batch: &[Arc<Portion>]) -> Option<()> {
         // On as many cores as it was recorded with, an item may depend on their number.
-        if self.recorded_cores != self.cores && batch.iter().any(|recording| recording.depends_on_cores) {
+        if self.recorded_cores != self.cores
+            && batch.iter().flat_map(|portion| &portion.items).any(|item| item.depends_on_cores)
+        {
             return self.lose("the work items depend on the number of cores");
         }
-        self.held.extend(batch.iter().cloned());
+        self.held.extend(batch.iter().flat_map(RecordedItem::all));
         Some(())
     }
 
@@ -73,6 +79,6 @@ impl Feed {
 
     /// True where each recording was used; waits for the last one.
     pub fn is_used_up(&mut self) -> bool {
-        self.held.is_empty() && self.batches.recv().is_err()
+        self.held.is_empty() && (self.batches)().is_none()
     }
 }

@@ -1,7 +1,7 @@
 //! The link of work items that an engine records, and what it does.
 
 use super::budget::Budget;
-use super::recording::Segment;
+use super::recording::{Segment, Track};
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
@@ -20,18 +20,31 @@ pub enum RecordLevel {
     Passes,
 }
 
-/// A work item that is recorded.
+/// A work item that is recorded, behind those that its portion has already.
 #[derive(Debug, Default)]
 pub(super) struct ItemRecord {
     pub message: Option<Message>,
     pub sent: Vec<Message>,
-    pub segments: Vec<Segment>,
-    /// Sites of the segments, where clocks are measured.
-    pub sites: Vec<u32>,
+    pub track: Track,
+    /// Segments and messages of the items before it.
+    pub before_it: [usize; 2],
     pub octets: Octets,
     pub before: u64,
     /// There was no room for a segment, so that the item was recorded in vain.
     pub is_without_room: bool,
+}
+
+impl ItemRecord {
+    /// Number of its segments.
+    #[inline(always)]
+    pub fn segments(&self) -> usize {
+        self.track.segments.len() - self.before_it[0]
+    }
+
+    /// Number of the messages that it has sent.
+    pub fn messages(&self) -> usize {
+        self.sent.len() - self.before_it[1]
+    }
 }
 
 /// The link of a work item: it gets at once what it asks for. Whatever has to be refused is left to the interpreter.
@@ -79,16 +92,16 @@ impl Quick for ItemRecorder<'_> {
     fn keep(&mut self, reads: &[NotedRead], before: u64) -> bool {
         let record = &mut *self.record;
         // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
-        let portions = record.segments.len() / Budget::PORTION;
-        record.segments.extend(reads.iter().map(Segment::of_read));
+        let portions = record.segments() / Budget::PORTION;
+        record.track.segments.extend(reads.iter().map(Segment::of_read));
         if let Some(sites) = &mut self.sites {
             let range = |address| self.kinds.range(address);
             let site = |read: &NotedRead| sites.at(read.context, read.slot, read.address, range);
-            record.sites.extend(reads.iter().map(site));
+            record.track.sites.extend(reads.iter().map(site));
         }
         record.octets += Octets(reads.iter().map(|read| u64::from(read.octets)).sum());
         record.before = before;
-        let more = record.segments.len() / Budget::PORTION - portions;
+        let more = record.segments() / Budget::PORTION - portions;
         if more != 0 && !self.budget.take(more * Budget::PORTION) {
             record.is_without_room = true;
         }
@@ -116,15 +129,15 @@ impl ItemRecorder<'_> {
     fn keep(&mut self, request: Request) -> Result<(), Stop> {
         let record = &mut *self.record;
         let clocks = self.time.clocks - record.before;
-        let segment = Segment::new(clocks, self.time.pc, request, record.sent.len()).ok_or(Stop::Wait)?;
-        if (record.segments.len() + 1).is_multiple_of(Budget::PORTION) && !self.budget.take(Budget::PORTION) {
+        let segment = Segment::new(clocks, self.time.pc, request, record.messages()).ok_or(Stop::Wait)?;
+        if (record.segments() + 1).is_multiple_of(Budget::PORTION) && !self.budget.take(Budget::PORTION) {
             return Err(Stop::Wait);
         }
         record.octets += segment.octets();
         record.before = self.time.clocks;
-        record.segments.push(segment);
+        record.track.segments.push(segment);
         if let Some(sites) = &mut self.sites {
-            record.sites.push(self.kinds.site(sites, self.time.context, self.time.pc, request));
+            record.track.sites.push(self.kinds.site(sites, self.time.context, self.time.pc, request));
         }
         self.kinds.add(self.time.pc, Some(request));
         Ok(())

@@ -10,7 +10,7 @@ use super::feed::Batch;
 use super::prerun::ItemTotals;
 use super::record::Prefix;
 use super::recorded::Recorded;
-use super::recording::{Reason, Recording, Segment, Track, reads};
+use super::recording::{Portion, Reason, Recording, Segment, Stretch, reads};
 use crate::code::Code;
 use crate::code::quantity::Octets;
 use crate::code::tally::Tally;
@@ -49,12 +49,14 @@ impl Recorded {
     /// item depends on the number of cores or ends in a fault, where the main processor does not come to its end, and where clocks of
     /// functions were measured.
     pub fn encode(&self) -> Option<Vec<u8>> {
-        let is_kept =
-            |item: &Arc<Recording>| item.end == Pause::Halt && !item.depends_on_cores && item.clocks.is_none();
-        let batches: Vec<&Vec<Arc<Recording>>> =
+        let is_kept = |item: &Recording| item.end == Pause::Halt && !item.depends_on_cores && item.clocks.is_none();
+        let batches: Vec<&Vec<Arc<Portion>>> =
             self.batches.iter().map(|batch| batch.as_ref().as_ref().ok()).collect::<Option<_>>()?;
         let is_plain = self.totals.profile.is_none() && self.totals.keys.is_empty();
-        if !self.is_whole || !is_plain || !batches.iter().copied().flatten().all(is_kept) {
+        if !self.is_whole
+            || !is_plain
+            || !batches.iter().copied().flatten().flat_map(|portion| &portion.items).all(is_kept)
+        {
             return None;
         }
         // Items first, since the table of shapes is known when the last of them is written
@@ -62,9 +64,11 @@ impl Recorded {
         let mut items = Vec::with_capacity(SEGMENT * self.segments());
         put_length(&mut items, batches.len())?;
         for batch in batches {
-            put_length(&mut items, batch.len())?;
-            for item in batch {
-                put_item(&mut items, item, &mut shapes)?;
+            put_length(&mut items, batch.iter().map(|portion| portion.items.len()).sum())?;
+            for portion in batch {
+                for item in &portion.items {
+                    put_item(&mut items, portion, item, &mut shapes)?;
+                }
             }
         }
         // Head and totals, then the table and the items
@@ -117,8 +121,11 @@ impl Recorded {
             if count == 0 {
                 return Err(IMPOSSIBLE);
             }
-            let items = (0..count).map(|_| item(&mut reader, &shapes, slots).map(Arc::new));
-            batches.push(Arc::new(Batch::Ok(items.collect::<Result<_, Reason>>()?)));
+            let mut portion = Portion { items: Vec::with_capacity(count), ..Portion::default() };
+            for _ in 0..count {
+                read_item(&mut reader, &shapes, slots, &mut portion)?;
+            }
+            batches.push(Arc::new(Batch::Ok(vec![Arc::new(portion)])));
         }
         if !reader.rest.is_empty() {
             return Err("it is longer than it says");
@@ -181,14 +188,15 @@ fn put_message(out: &mut Vec<u8>, message: &Message) {
 }
 
 /// Writes an item. A segment `(7 clocks, word 5, read of 4 octets)` at address 400 whose shape has number 2 is `02 00 00 90 01 00 00`.
-fn put_item(out: &mut Vec<u8>, item: &Recording, shapes: &mut ShapeTable) -> Option<()> {
+fn put_item(out: &mut Vec<u8>, portion: &Portion, item: &Recording, shapes: &mut ShapeTable) -> Option<()> {
+    let (sent, segments) = (portion.sent(item), portion.segments(item));
     put_message(out, &item.message);
     put_numbers(out, [item.steps, item.elementary, item.last_clocks]);
     put_words(out, [item.last_pc]);
-    put_length(out, item.sent.len())?;
-    item.sent.iter().for_each(|message| put_message(out, message));
-    put_length(out, item.track.segments.len())?;
-    for segment in &item.track.segments {
+    put_length(out, sent.len())?;
+    sent.iter().for_each(|message| put_message(out, message));
+    put_length(out, segments.len())?;
+    for segment in segments {
         let shape = shapes.number(segment.shape())?.to_le_bytes();
         let address = segment.address.to_le_bytes();
         out.extend_from_slice(&[shape[0], shape[1], shape[2], address[0], address[1], address[2], address[3]]);
@@ -282,35 +290,38 @@ fn totals(reader: &mut OctetReader, code: &Code, setup: &Setup) -> Result<ItemTo
     Ok(ItemTotals { tally, kinds, profile: None, keys: Vec::new() })
 }
 
-/// An item; its octets and the range that it reads follow from its segments.
-fn item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32) -> Result<Recording, Reason> {
+/// Reads an item into a portion; its octets and the range that it reads follow from its segments.
+fn read_item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32, portion: &mut Portion) -> Result<(), Reason> {
+    let track = Arc::get_mut(&mut portion.track).expect("nobody else has it");
+    let starts = [track.segments.len(), portion.sent.len()];
     let message = reader.message()?;
     let [steps, elementary, last_clocks] = reader.numbers()?;
     let [last_pc] = reader.words()?;
     let count = reader.length(13)?;
-    let sent = (0..count).map(|_| reader.message()).collect::<Result<Vec<Message>, Reason>>()?;
+    for _ in 0..count {
+        portion.sent.push(reader.message()?);
+    }
+    let sent = count;
     let count = reader.length(SEGMENT)?;
-    let segments: Option<Vec<Segment>> = reader
-        .take(count * SEGMENT)?
-        .chunks_exact(SEGMENT)
-        .map(|octets| {
-            let &[s0, s1, s2, a0, a1, a2, a3] = octets else { return None };
-            let shape = shapes.get(u32::from_le_bytes([s0, s1, s2, 0]) as usize)?;
-            Segment::of_shape(*shape, u32::from_le_bytes([a0, a1, a2, a3]))
-        })
-        .collect();
-    let segments = segments.ok_or(IMPOSSIBLE)?;
+    track.segments.reserve(count);
+    for octets in reader.take(count * SEGMENT)?.chunks_exact(SEGMENT) {
+        let &[s0, s1, s2, a0, a1, a2, a3] = octets else { return Err(IMPOSSIBLE) };
+        let shape = shapes.get(u32::from_le_bytes([s0, s1, s2, 0]) as usize).ok_or(IMPOSSIBLE)?;
+        let segment = Segment::of_shape(*shape, u32::from_le_bytes([a0, a1, a2, a3]));
+        track.segments.push(segment.ok_or(IMPOSSIBLE)?);
+    }
+    let segments = &track.segments[starts[0]..];
     // The address of a message is its number.
-    let is_sent = |segment: &Segment| segment.is_read() || (segment.address as usize) < sent.len();
+    let is_sent = |segment: &Segment| segment.is_read() || (segment.address as usize) < sent;
     if last_pc >= slots || !segments.iter().all(is_sent) {
         return Err(IMPOSSIBLE);
     }
     let octets = segments.iter().fold(Octets(0), |sum, segment| sum + segment.octets());
-    Ok(Recording {
+    portion.items.push(Recording {
         message,
         octets,
-        track: Arc::new(Track { reads: reads(&segments), segments, sites: Vec::new() }),
-        sent,
+        stretch: Stretch { segments: starts[0]..track.segments.len(), reads: reads(segments) },
+        sent: starts[1]..portion.sent.len(),
         clocks: None,
         last_clocks,
         last_pc,
@@ -318,5 +329,6 @@ fn item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32) -> Result<Rec
         steps,
         elementary,
         depends_on_cores: false,
-    })
+    });
+    Ok(())
 }

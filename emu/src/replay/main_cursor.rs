@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::bus_cursor::{BusCursor, HandedBack};
-use super::recording::{Segment, Track};
+use super::recording::{Segment, Stretch, Track};
 use crate::code::octets::Buffer;
 use crate::code::quantity::{Clocks, Octets};
 use crate::code::trap::Stop;
@@ -260,7 +260,9 @@ impl<T: Watch, O: Observer> Worker for MainCursor<'_, T, O> {
         });
         // It has no cache, and waits for each load.
         let transfer = HandOver { overlaps: false, cache: &mut None, ..transfer };
-        master.begin(self.track.clone(), self.next, transfer, waits);
+        // Nobody else writes while they wait, so it does not matter what they read.
+        let stretch = Stretch { segments: 0..self.track.segments.len(), reads: 0..0 };
+        master.begin((self.track.clone(), stretch), self.next, transfer, waits);
         true
     }
 

@@ -16,6 +16,7 @@ mod recording;
 pub mod weigh;
 
 use std::cell::RefCell;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
@@ -41,7 +42,7 @@ use cursor::{ItemCursor, Replayer};
 use feed::{Batch, Feed};
 use item::RecordLevel;
 use main_cursor::MainCursor;
-use prerun::ItemTotals;
+use prerun::{ItemTotals, Prerun};
 use record::{Prefix, Recorder};
 
 /// Batches that may wait for a machine.
@@ -90,7 +91,8 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 /// Outcome of one machine, or the reason for which it has to be stepped.
 type Replayed = Result<Result<EndedRun, RunFailure>, Reason>;
 
-/// The prerun on a thread of its own, the first machine on this one, each other one on another.
+/// Recordings and replays of machines that are alike: on one host thread in turns, batch by batch; on several, or for several machines, with the
+/// prerun on a thread of its own, the first machine on this one, and each other one on another.
 fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
     codes: &[Code; 2],
@@ -99,11 +101,18 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
 ) -> (ItemTotals, Vec<Replayed>) {
+    let recorded_cores = setups[0].config.cores;
+    if let ([setup], 1) = (setups, rayon::current_num_threads()) {
+        let mut prerun = Prerun::<T, O>::new(setup, codes, memory, arithmetic.clone(), RecordLevel::Segments);
+        let feed = Feed::new(prefix, recorded_cores, recorded_cores, || prerun.next_batch());
+        let ending = on_clock::<T, O>(setup, codes, memory.clone(), arithmetic, feed, progress);
+        return (prerun.into_totals().items, vec![ending]);
+    }
     let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
         setups.iter().map(|_| sync_channel(AHEAD)).unzip();
-    let recorded_cores = setups[0].config.cores;
-    let feed =
-        |setup: &Setup, batches: Receiver<Arc<Batch>>| Feed::new(prefix, recorded_cores, setup.config.cores, batches);
+    let feed = |setup: &Setup, batches: Receiver<Arc<Batch>>| {
+        Feed::new(prefix, recorded_cores, setup.config.cores, move || batches.recv().ok())
+    };
     std::thread::scope(|scope| {
         let own = arithmetic.clone();
         let prerun = scope.spawn(move || {
@@ -116,8 +125,10 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
         let (first, batches) = machines.next().expect("there is a machine");
         let others: Vec<_> = machines
             .map(|(setup, batches)| {
-                let (own, feed) = (arithmetic.clone(), feed(setup, batches));
-                scope.spawn(move || on_clock::<T, O>(setup, codes, memory.clone(), &own, feed, &mut |_| {}))
+                let own = arithmetic.clone();
+                scope.spawn(move || {
+                    on_clock::<T, O>(setup, codes, memory.clone(), &own, feed(setup, batches), &mut |_| {})
+                })
             })
             .collect();
         // The first machine stays on this thread, because only that may call `progress`.
@@ -141,12 +152,12 @@ fn on_clock<T: Watch, O: Observer>(
     feed: Feed,
     progress: &mut dyn FnMut(u64),
 ) -> Replayed {
-    let feed = RefCell::new(feed);
-    let core = |core| Replayer::Core(ItemCursor::new(core_code, core, &feed, setup.level::<O>()));
+    let feed = Rc::new(RefCell::new(feed));
+    let core = |core| Replayer::Core(ItemCursor::new(core_code, core, feed.clone(), setup.level::<O>()));
     let main = schedule::main_worker::<T, O>(setup, main_code, arithmetic);
     let main = Replayer::Main(Box::new(MainCursor::new(setup, main)));
     let done = Machine::new(setup, memory, [core_code, main_code], core, main, progress).run();
-    let mut feed = feed.into_inner();
+    let mut feed = feed.borrow_mut();
     // Recordings that nobody asked for mean that the prerun was given other work than this machine.
     if done.is_ok() && feed.lost.is_none() && !feed.is_used_up() {
         feed.lose::<()>("the main processor hands out other work than it would to many cores");

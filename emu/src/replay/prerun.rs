@@ -9,12 +9,12 @@ use super::budget::Budget;
 use super::feed::Batch;
 use super::item::RecordLevel;
 use super::record::Recorder;
-use super::recording::{Reason, Recording};
+use super::recording::{Portion, Reason};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::tally::Tally;
 use crate::code::trap::{Fault, Stop};
-use crate::engine::{CoreId, Demand, Pause, State, choose};
+use crate::engine::{CoreId, Demand, EngineRunner, Pause, State, choose};
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
 use crate::profile::{ClockKeys, Observer, Profile, Unobserved};
@@ -38,13 +38,13 @@ const TOO_LONG: Reason = "the work items make too many transfers to be recorded"
 const MOST_STEPS: u64 = 1 << 32;
 
 /// The main processor's link: cores that take everything and answer in the order of their work.
-struct InstantCores<'a> {
-    memory: &'a mut Memory,
+struct InstantCores {
+    memory: Memory,
     work: Vec<(u32, Message)>,
     answers: VecDeque<(Message, u32)>,
 }
 
-impl Link for InstantCores<'_> {
+impl Link for InstantCores {
     at_once! { self => self.memory }
 
     fn send(&mut self, to: i32, message: Message) -> Result<(), Stop> {
@@ -68,21 +68,20 @@ impl Link for InstantCores<'_> {
 }
 
 /// Records work items on all host threads. The recordings are in the order of the messages, whoever made them.
-fn record<T: Watch + Send, O: Observer + Send>(
-    recorders: &mut [Recorder<T, O>],
-    work: &[(u32, Message)],
-) -> Result<Vec<Arc<Recording>>, Reason> {
+fn record<T: Watch + Send, O: Observer + Send>(recorders: &mut [Recorder<T, O>], work: &[(u32, Message)]) -> Batch {
     let (next, budget) = (AtomicUsize::new(0), Budget::new(MOST_SEGMENTS));
-    let mut found: Vec<Vec<(usize, Result<Recording, Reason>)>> = Vec::new();
+    let mut found: Vec<Vec<(usize, Result<Portion, Reason>)>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
-    let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Recording, Reason>)>| {
+    let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Portion, Reason>)>| {
         // Portions go to whoever is free: items differ much in length.
         while !budget.is_full()
             && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
             && let Some(rest) = work.get(at..).filter(|rest| !rest.is_empty())
         {
-            let portion = rest.iter().take(AT_ONCE);
-            found.extend((at..).zip(portion).map(|(at, (_, message))| (at, recorder.record(*message, &budget))));
+            let mut portion = Portion::default();
+            let mut messages = rest.iter().take(AT_ONCE).map(|(_, message)| *message);
+            let recorded = messages.try_for_each(|message| recorder.record(message, &budget, &mut portion));
+            found.push((at, recorded.map(|()| portion)));
         }
     };
     // Threads of their own: this may itself be a thread of a pool in which all others wait.
@@ -106,7 +105,7 @@ fn record<T: Watch + Send, O: Observer + Send>(
     let mut found: Vec<_> = found.into_iter().flatten().collect();
     // The order of the messages, so that results do not depend on which thread was faster.
     found.sort_unstable_by_key(|(at, _)| *at);
-    found.into_iter().map(|(_, recording)| recording.map(Arc::new)).collect()
+    found.into_iter().map(|(_, portion)| portion.map(Arc::new)).collect()
 }
 
 /// True where clocks are measured and there are more calling contexts than one recorder has room for, whichever of them have seen which.
@@ -144,6 +143,94 @@ pub struct PrerunTotals {
     pub end: Pause,
 }
 
+/// A main processor that runs ahead, and those who record what it hands out.
+pub struct Prerun<'a, T, O> {
+    setup: &'a Setup<'a>,
+    codes: &'a [Code<'a>; 2],
+    arithmetic: T,
+    /// A recorder a host thread, kept for all batches: engines and buffers are made once.
+    recorders: Vec<Recorder<'a, T, O>>,
+    cores: InstantCores,
+    state: State,
+    tally: Tally,
+    runner: EngineRunner<'a>,
+    /// End of the main processor's program, or what it waits for in vain; none while there may be more work.
+    end: Option<Pause>,
+}
+
+impl<'a, T: Watch + Clone + Send, O: Observer + Send> Prerun<'a, T, O> {
+    /// A main processor that has handed out nothing; codes are those of the cores and of its own.
+    pub fn new(
+        setup: &'a Setup<'a>,
+        codes: &'a [Code<'a>; 2],
+        memory: &'a Memory,
+        arithmetic: T,
+        level: RecordLevel,
+    ) -> Prerun<'a, T, O> {
+        let ([core_code, main_code], main) = (codes, &setup.config.main);
+        let recorder = |number| Recorder::new(number, core_code, setup, memory, arithmetic.clone(), level);
+        let demand = Demand::new(main_code, setup.options.wish(), arithmetic.computes(), main.buffer_octets);
+        Prerun {
+            recorders: (0..rayon::current_num_threads() as u32).map(recorder).collect(),
+            cores: InstantCores { memory: memory.clone(), work: Vec::new(), answers: VecDeque::new() },
+            state: State::new(main_code, Buffer::new(&setup.main.buffer, main.buffer_octets)),
+            tally: Tally::new(main_code),
+            runner: choose(&demand),
+            end: None,
+            setup,
+            codes,
+            arithmetic,
+        }
+    }
+
+    /// Lets the main processor hand out work until it waits, records all of that, and answers it; `None` when there is no more work.
+    pub fn next_batch(&mut self) -> Option<Arc<Batch>> {
+        if self.end.is_some() {
+            return None;
+        }
+        let most = self.setup.config.main.step_limit;
+        let seat =
+            CoreId { core: CORES, cores: CORES, step_limit: most.min(self.state.steps.saturating_add(MOST_STEPS)) };
+        let (cores, nobody) = (&mut self.cores, &mut Unobserved);
+        let pause = self.runner.run(seat, &mut self.state, &self.arithmetic, cores, &mut self.tally, nobody);
+        if cores.work.is_empty() {
+            self.end = Some(pause);
+            return None;
+        }
+        let batch = record(&mut self.recorders, &cores.work);
+        // Answers come in the order of the work, which is as if all cores had taken equally long.
+        if let Ok(batch) = &batch {
+            let items = batch.iter().flat_map(|portion| portion.items.iter().map(|item| portion.sent(item)));
+            for (&(core, _), sent) in cores.work.iter().zip(items) {
+                cores.answers.extend(sent.iter().map(|&message| (message, core)));
+            }
+        }
+        cores.work.clear();
+        if batch.is_err() || pause != Pause::Wait {
+            self.end = Some(pause);
+        }
+        Some(Arc::new(batch))
+    }
+
+    /// What all host threads counted; sums do not depend on who recorded what.
+    pub fn into_totals(self) -> PrerunTotals {
+        let code = &self.codes[0];
+        let (tally, kinds, keys) = (Tally::new(code), Kinds::new(&self.setup.kinds), Vec::new());
+        let mut items = ItemTotals { tally, kinds, profile: None, keys };
+        for mut recorder in self.recorders {
+            let tally = recorder.take_tally();
+            items.tally.merge(&tally);
+            items.kinds.merge(recorder.kinds.totals());
+            items.keys.extend(recorder.clock_keys());
+            match (&mut items.profile, recorder.observer.into_profile(code, &tally)) {
+                (Some(profile), Some(more)) => profile.merge(&more),
+                (profile, more) => *profile = more,
+            }
+        }
+        PrerunTotals { items, memory: self.cores.memory, end: self.end.unwrap_or(Pause::Wait) }
+    }
+}
+
 /// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
 pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     setup: &Setup,
@@ -152,52 +239,12 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     level: RecordLevel,
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
 ) -> PrerunTotals {
-    let config = setup.config;
-    let core_code = Code::new(setup.core, setup.isa, config.timing());
-    let main_code = Code::new(setup.main, setup.isa, config.timing());
-    let recorder = |number| Recorder::<T, O>::new(number, &core_code, setup, memory, arithmetic.clone(), level);
-    // A recorder a host thread, kept for all batches: engines and buffers are made once.
-    let mut recorders: Vec<_> = (0..rayon::current_num_threads() as u32).map(recorder).collect();
-    let mut memory = memory.clone();
-    let mut cores = InstantCores { memory: &mut memory, work: Vec::new(), answers: VecDeque::new() };
-    let mut state = State::new(&main_code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
-    let mut tally = Tally::new(&main_code);
-    let computes = arithmetic.computes();
-    let mut runner = choose(&Demand::new(&main_code, setup.options.wish(), computes, config.main.buffer_octets));
-    // Let the main processor hand out work until it waits, record all of that, and answer it
-    let end = loop {
-        let step_limit = config.main.step_limit.min(state.steps.saturating_add(MOST_STEPS));
-        let seat = CoreId { core: CORES, cores: CORES, step_limit };
-        let nobody = &mut Unobserved;
-        let pause = runner.run(seat, &mut state, &arithmetic, &mut cores, &mut tally, nobody);
-        if cores.work.is_empty() {
-            break pause;
-        }
-        let batch = record(&mut recorders, &cores.work);
-        // Answers come in the order of the work, which is as if all cores had taken equally long.
-        if let Ok(batch) = &batch {
-            for (&(core, _), recording) in cores.work.iter().zip(batch) {
-                cores.answers.extend(recording.sent.iter().map(|&message| (message, core)));
-            }
-        }
-        cores.work.clear();
-        let is_over = batch.is_err() || pause != Pause::Wait;
-        if !hand_over(Arc::new(batch)) || is_over {
-            break pause;
-        }
-    };
-    // Add up what all threads counted; sums do not depend on who recorded what
-    let (tally, kinds, keys) = (Tally::new(&core_code), Kinds::new(&setup.kinds), Vec::new());
-    let mut items = ItemTotals { tally, kinds, profile: None, keys };
-    for mut recorder in recorders {
-        let tally = recorder.take_tally();
-        items.tally.merge(&tally);
-        items.kinds.merge(recorder.kinds.totals());
-        items.keys.extend(recorder.clock_keys());
-        match (&mut items.profile, recorder.observer.into_profile(&core_code, &tally)) {
-            (Some(profile), Some(more)) => profile.merge(&more),
-            (profile, more) => *profile = more,
+    let codes = setup.codes();
+    let mut prerun = Prerun::<T, O>::new(setup, &codes, memory, arithmetic, level);
+    while let Some(batch) = prerun.next_batch() {
+        if !hand_over(batch) {
+            break;
         }
     }
-    PrerunTotals { items, memory, end }
+    prerun.into_totals()
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::budget::Budget;
 use super::item::{ItemRecord, ItemRecorder, RecordLevel};
-use super::recording::{ItemClocks, Reason, Recording, Segment, Track, reads};
+use super::recording::{ItemClocks, Portion, Reason, Recording, Segment, Stretch, reads};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -140,8 +140,6 @@ pub struct Recorder<'a, T, O> {
     asked: Vec<SiteAsked>,
     /// Number of this recorder among those of a run.
     number: u32,
-    /// Segments of the last item, and so about those of the next one.
-    usual: usize,
 }
 
 impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
@@ -166,7 +164,6 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
             ..Demand::new(code, setup.options.wish(), arithmetic.computes(), config.buffer_octets)
         };
         Recorder {
-            usual: 0,
             number,
             asked: Vec::new(),
             sites: (profile == ProfileLevel::Clocks && level == RecordLevel::Segments).then(SiteTable::default),
@@ -283,17 +280,17 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                     return Err(BEGINS);
                 }
                 let clocks = self.state.clocks - record.before;
-                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len());
+                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len() - record.before_it[1]);
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 record.octets += segment.octets();
                 if let (Some(sites), Some(profiler)) = (&mut self.sites, self.observer.profiler()) {
                     let context = profiler.contexts.current();
-                    record.sites.push(self.kinds.site(sites, context, self.state.pc, request));
+                    record.track.sites.push(self.kinds.site(sites, context, self.state.pc, request));
                 }
                 self.kinds.add(self.state.pc, Some(request));
-                record.segments.push(segment);
+                record.track.segments.push(segment);
                 // Room is taken in portions, since all host threads share one number.
-                if record.segments.len().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
+                if record.segments().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
                     return Err(WITHOUT_ROOM);
                 }
             }
@@ -305,17 +302,17 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         Ok(end)
     }
 
-    /// Runs a work item from reset to its end.
+    /// Runs a work item from reset to its end, and puts it behind those of a portion that nobody else has.
     ///
     /// # Errors
-    /// Reason for which the work item cannot be replayed.
-    pub fn record(&mut self, message: Message, budget: &Budget) -> Result<Recording, Reason> {
+    /// Reason for which the work item cannot be replayed; then the portion is worth nothing.
+    pub fn record(&mut self, message: Message, budget: &Budget, portion: &mut Portion) -> Result<(), Reason> {
         self.state.begin(self.code, &self.initial);
         self.observer.begin(self.state.pc);
-        // Items of one scene are much alike, so the last one tells how much room this one wants.
-        let segments = Vec::with_capacity(self.usual);
-        let sites = Vec::with_capacity(if self.sites.is_some() { self.usual } else { 0 });
-        let mut record = ItemRecord { message: Some(message), segments, sites, ..ItemRecord::default() };
+        let track = std::mem::take(Arc::get_mut(&mut portion.track).expect("nobody else has it"));
+        let sent = std::mem::take(&mut portion.sent);
+        let starts = [track.segments.len(), sent.len()];
+        let mut record = ItemRecord { message: Some(message), track, sent, before_it: starts, ..ItemRecord::default() };
         let end = loop {
             let stopped = self.run_quickly(&mut record, budget);
             if record.is_without_room {
@@ -330,50 +327,58 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 break end;
             }
         };
-        let ItemRecord { message: rest, mut segments, mut sites, octets, before, sent, .. } = record;
-        if rest.is_some() {
+        if record.message.is_some() {
             return Err(BEGINS);
         }
-        // Account for what was recorded, and give back room that was kept in vain
+        // Account for what was recorded
         self.observer.end();
-        budget.take(segments.len() % Budget::PORTION);
-        self.usual = segments.len().min(Budget::PORTION);
-        if segments.len() < segments.capacity() / 2 {
-            segments.shrink_to_fit();
-            sites.shrink_to_fit();
-        }
+        budget.take(record.segments() % Budget::PORTION);
         if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
         }
         let (observer, clocks) = (self.number, self.state.clocks);
         let known = self.sites.as_ref().map_or(0, |sites| sites.all().len() as u32);
-        let cells = self.observer.profiler().filter(|_| self.sites.is_some());
-        let cells = cells.and_then(|profiler| Some(profiler.contexts.cells.as_mut()?.take(clocks)));
-        let clocks = cells.map(|cells| {
-            let asked = asked_of(&segments, &sites, known, &mut self.asked);
+        let ItemRecord { track, sent, octets, before, .. } = record;
+        let profiler = self.observer.profiler().filter(|_| self.sites.is_some());
+        let cells = profiler.and_then(|profiler| profiler.contexts.cells.as_mut());
+        let item_clocks = cells.map(|cells| {
+            let first = [portion.cells.len(), portion.asked.len()];
+            cells.take(clocks, &mut portion.cells);
+            let (segments, sites) = (&track.segments[starts[0]..], &track.sites[starts[0]..]);
+            add_asked(segments, sites, known, &mut self.asked, &mut portion.asked);
+            let (cells, asked) = (first[0]..portion.cells.len(), first[1]..portion.asked.len());
             ItemClocks { observer, cells, asked, known }
         });
-        Ok(Recording {
+        let segments = starts[0]..track.segments.len();
+        portion.items.push(Recording {
             message,
-            clocks,
-            track: Arc::new(Track { reads: reads(&segments), segments, sites }),
+            clocks: item_clocks,
+            stretch: Stretch { reads: reads(&track.segments[segments.clone()]), segments },
             octets,
-            sent,
-            last_clocks: self.state.clocks - before,
+            sent: starts[1]..sent.len(),
+            last_clocks: clocks - before,
             last_pc: self.state.pc,
             end,
             steps: self.state.steps,
             elementary: self.state.elementary,
             depends_on_cores: self.observer.taint.depends_on_cores,
-        })
+        });
+        *Arc::get_mut(&mut portion.track).expect("nobody else has it") = track;
+        portion.sent = sent;
+        Ok(())
     }
 }
 
-/// Transfers of an item by site, of which so many are known. `sums` has none before and afterwards, and keeps its room.
-fn asked_of(segments: &[Segment], sites: &[u32], known: u32, sums: &mut Vec<SiteAsked>) -> Vec<(u32, SiteAsked)> {
+/// Adds the transfers of an item by site, of which so many are known, behind those that are there. `sums` has none before and afterwards.
+fn add_asked(
+    segments: &[Segment],
+    sites: &[u32],
+    known: u32,
+    sums: &mut Vec<SiteAsked>,
+    asked: &mut Vec<(u32, SiteAsked)>,
+) {
     sums.resize(sums.len().max(known as usize), SiteAsked::default());
-    // Room for what most items need: it would grow four times on the way there.
-    let mut asked = Vec::with_capacity(sums.len().min(32));
+    let first = asked.len();
     for (segment, &site) in segments.iter().zip(sites) {
         let sum = &mut sums[site as usize];
         if sum.transfers == 0 {
@@ -381,8 +386,7 @@ fn asked_of(segments: &[Segment], sites: &[u32], known: u32, sums: &mut Vec<Site
         }
         sum.add(SiteAsked { transfers: 1, octets: segment.octets().0 });
     }
-    for (site, found) in &mut asked {
+    for (site, found) in &mut asked[first..] {
         *found = std::mem::take(&mut sums[*site as usize]);
     }
-    asked
 }

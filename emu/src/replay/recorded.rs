@@ -2,7 +2,6 @@
 //! bounded, [`crate::run_all`] streams them instead.
 
 use std::sync::Arc;
-use std::sync::mpsc::channel;
 
 use super::feed::{Batch, Feed};
 use super::item::RecordLevel;
@@ -40,7 +39,7 @@ impl Recorded {
     /// Segments of all work items: computing, then a transfer or a message.
     pub fn segments(&self) -> usize {
         let batches = self.batches.iter().filter_map(|batch| batch.as_ref().as_ref().ok());
-        batches.flatten().map(|recording| recording.track.segments.len()).sum()
+        batches.flatten().map(|portion| portion.track.segments.len()).sum()
     }
 
     /// Replays them on a machine that computes as the one that they were recorded for.
@@ -146,14 +145,9 @@ impl Task for ReplayTask<'_> {
     type Result = super::Replayed;
 
     fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
-        // The channel holds all batches before anybody reads, so it must have no bound.
-        let (sender, receiver) = channel();
-        for batch in &self.recorded.batches {
-            sender.send(batch.clone()).expect("the receiver is below");
-        }
-        drop(sender);
+        let mut batches = self.recorded.batches.iter().cloned();
         let Recorded { prefix, cores, .. } = *self.recorded;
-        let feed = Feed::new(prefix, cores, self.setup.config.cores, receiver);
+        let feed = Feed::new(prefix, cores, self.setup.config.cores, || batches.next());
         super::on_clock::<T, O>(self.setup, self.codes, self.memory, arithmetic, feed, self.progress)
     }
 }

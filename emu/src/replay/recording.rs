@@ -1,7 +1,7 @@
 //! Recording of a work item, apart from its clocks: computing, transfers and messages one after the other. How it is put on the
 //! clock is not said here.
 
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 use crate::code::quantity::Octets;
@@ -114,6 +114,13 @@ pub struct Track {
     pub segments: Vec<Segment>,
     /// The site of each, 4 octets beside the 16 of a segment, where clocks of functions are measured; else none.
     pub sites: Vec<u32>,
+}
+
+/// Part of a track, which one item goes through.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Stretch {
+    /// Numbers of its segments.
+    pub segments: Range<usize>,
     /// From the first to the last octet of global memory that they read; empty where it does not matter who writes there meanwhile.
     pub reads: Range<u64>,
 }
@@ -123,25 +130,25 @@ pub struct Track {
 pub struct ItemClocks {
     /// Number of that observer.
     pub observer: u32,
-    /// Clocks of computing by cell; those that are not empty.
-    pub cells: Vec<(u32, u64)>,
-    /// Transfers by site, of the sites that have some: whatever the machine, the item asks for the same.
-    pub asked: Vec<(u32, SiteAsked)>,
+    /// Clocks of computing by cell, among those of its portion; those that are not empty.
+    pub cells: Range<usize>,
+    /// Transfers by site, among those of its portion, of the sites that have some: whatever the machine, the item asks for the same.
+    pub asked: Range<usize>,
     /// Number of sites that the observer knew at its end.
     pub known: u32,
 }
 
-/// A work item from its first message to its end.
+/// A work item from its first message to its end. What there are several of stands in its portion.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recording {
     /// The message that it began with.
     pub message: Message,
     /// Segments after that.
-    pub track: Arc<Track>,
+    pub stretch: Stretch,
     /// Octets of all of those.
     pub octets: Octets,
-    /// The messages that it sent to the main processor.
-    pub sent: Vec<Message>,
+    /// The messages that it sent to the main processor, among those of its portion.
+    pub sent: Range<usize>,
     /// Clocks by function, where they were asked for.
     pub clocks: Option<ItemClocks>,
     /// Clocks of computing after the last segment.
@@ -156,4 +163,61 @@ pub struct Recording {
     pub elementary: u64,
     /// Dependence of what it did on the number of cores is possible.
     pub depends_on_cores: bool,
+}
+
+/// Work items that were recorded one after the other, and take room together: so an item costs no room of its own, which one thread would take and
+/// another give back.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Portion {
+    /// The items.
+    pub items: Vec<Recording>,
+    /// Segments of all of them.
+    pub track: Arc<Track>,
+    /// Messages that they sent.
+    pub sent: Vec<Message>,
+    /// Clocks of computing by cell.
+    pub cells: Vec<(u32, u64)>,
+    /// Transfers by site.
+    pub asked: Vec<(u32, SiteAsked)>,
+}
+
+impl Portion {
+    /// The segments of an item.
+    pub fn segments(&self, item: &Recording) -> &[Segment] {
+        &self.track.segments[item.stretch.segments.clone()]
+    }
+
+    /// The messages that an item sent.
+    pub fn sent(&self, item: &Recording) -> &[Message] {
+        &self.sent[item.sent.clone()]
+    }
+}
+
+/// A work item of a portion, which stays as long as somebody has one of its items.
+#[derive(Clone, Debug)]
+pub struct RecordedItem {
+    portion: Arc<Portion>,
+    number: usize,
+}
+
+impl RecordedItem {
+    /// All items of a portion.
+    pub fn all(portion: &Arc<Portion>) -> impl Iterator<Item = RecordedItem> {
+        (0..portion.items.len()).map(|number| RecordedItem { portion: portion.clone(), number })
+    }
+
+    /// The portion that it belongs to.
+    #[inline]
+    pub fn portion(&self) -> &Portion {
+        &self.portion
+    }
+}
+
+impl Deref for RecordedItem {
+    type Target = Recording;
+
+    #[inline]
+    fn deref(&self) -> &Recording {
+        &self.portion.items[self.number]
+    }
 }

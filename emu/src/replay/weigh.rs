@@ -6,7 +6,7 @@ use super::budget::Budget;
 use super::item::RecordLevel;
 use super::prerun;
 use super::record::Recorder;
-use super::recording::Reason;
+use super::recording::{Portion, Reason};
 use crate::code::Code;
 use crate::code::octets::Memory;
 use crate::code::tally::Tally;
@@ -78,10 +78,12 @@ impl Task for WeighTask<'_> {
         let totals = prerun::run::<T, O>(setup, memory, arithmetic.clone(), RecordLevel::Passes, &mut |batch| {
             match batch.as_ref() {
                 Err(reason) => unfit = Some(*reason),
-                Ok(batch) if batch.iter().any(|recording| recording.end != Pause::Halt) => {
+                Ok(batch) if batch.iter().flat_map(|portion| &portion.items).any(|item| item.end != Pause::Halt) => {
                     unfit = Some("a work item traps")
                 }
-                Ok(batch) => messages.extend(batch.iter().map(|recording| recording.message)),
+                Ok(batch) => {
+                    messages.extend(batch.iter().flat_map(|portion| &portion.items).map(|item| item.message));
+                }
             }
             unfit.is_none()
         });
@@ -97,7 +99,7 @@ impl Task for WeighTask<'_> {
         let portion = |messages: &[Message], arithmetic: T| -> Result<Vec<WeighedItem>, Reason> {
             let mut recorder = Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic, RecordLevel::Passes);
             let one = |&message: &Message| {
-                recorder.record(message, &Budget::new(MOST_SEGMENTS))?;
+                recorder.record(message, &Budget::new(MOST_SEGMENTS), &mut Portion::default())?;
                 Ok(WeighedItem { subject: message.first(), weight: weights.of(&recorder.take_tally()) })
             };
             messages.iter().map(one).collect()

@@ -54,13 +54,20 @@ pub fn wander(steps: i32, spin: i32, octets: i32) -> Program {
     })
 }
 
-/// Runs both ways and yields the frame, with how the first was run.
+/// Result of work that the host does on one thread, where recording and replaying take turns.
+fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("there is a thread").install(work)
+}
+
+/// Runs both ways, and one of them on one thread as well, and yields the frame, with how the first was run.
 fn both(config: &Config, core: &Program, main: &Program) -> RunOutcome {
     let isa = Isa::base();
     let setup = setup(config, &isa, core, main);
     let run = emu::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     let mut stepped = emu::step(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     check_sums(&setup, &run);
+    let alone = on_one_thread(|| emu::run(&setup, memory(), &mut |_| {}));
+    assert!(alone.unwrap_or_else(|failure| panic!("{failure}")) == run, "{config:?} on one thread");
     stepped.method = run.method;
     assert!(run == stepped, "{config:?}\n{run:#?}\n{stepped:#?}");
     run
@@ -267,6 +274,8 @@ fn a_trap_is_the_same_either_way() {
         let config = Config { cores, ..Config::default() };
         let setup = setup(&config, &isa, &core, &main);
         let run = emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps");
+        let alone = on_one_thread(|| emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps"));
+        assert_eq!(alone.to_string(), run.to_string());
         let stepped = emu::step(&setup, memory(), &mut |_| {}).expect_err("it traps");
         assert_eq!(run.to_string(), stepped.to_string());
         assert!(run.to_string().contains("began with 33, 33, 33"), "{run}");

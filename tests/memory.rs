@@ -15,8 +15,9 @@ use lancer::job::Job;
 use lancer::load::Load;
 use lancer::sweep::contents::Contents;
 use lancer::sweep::dataset::DatasetForm;
+use lancer::sweep::plan::StudyPlan;
 use lancer::sweep::row::PointRow;
-use lancer::sweep::study::Study;
+use lancer::sweep::study::{self, Study};
 use lancer::sweep::{group, merge, part};
 use messages::Source;
 use peak_alloc::PeakAlloc;
@@ -245,6 +246,19 @@ fn rows_of_a_study_are_not_in_memory_while_they_are_merged() {
     });
     assert_eq!((rows, fs::read_to_string(&table).expect("the table is text").lines().count()), (ROWS, ROWS + 1));
     assert!(octets / ROWS < MOST_OF_ROW, "{} octets a row", octets / ROWS);
+}
+
+#[test]
+fn a_plan_takes_memory_for_the_points_that_it_has_and_not_for_those_that_it_claims() {
+    let _alone = ALONE.lock();
+    let text = "settings = { scene = \"triangle\" }\n[product]\ncores = \"1-9\"\n";
+    let study = Study::parse(&Source::new("s.toml", text), "s").unwrap_or_else(|report| panic!("{report:?}"));
+    let mut plan = StudyPlan::new(&study, &Contents::default()).unwrap_or_else(|failure| panic!("{failure:?}"));
+    plan.head.points = study::MOST_POINTS;
+    let text = String::from_utf8(plan.octets().collect::<Vec<_>>().concat()).expect("a plan is text");
+    let (octets, refused) = peak(|| StudyPlan::parse(&text, "plan.jsonl").expect_err("points are missing"));
+    assert!(refused.render(false).contains("9 points of the 10000000"), "{}", refused.render(false));
+    assert!(octets < 10 * text.len(), "{octets} octets for a text of {}", text.len());
 }
 
 /// Octets that the caches and buffers of many cores may take, of which one core does the work: its buffer of 512 KiB, two more for the program's data,

@@ -36,8 +36,10 @@ impl Range {
     fn at(&self, share: f64) -> Value {
         match self {
             Range::Whole(low, high) => {
-                let steps = (share * ((high - low) as f64 + 1.0)).floor() as i64;
-                (low + steps).min(*high).into()
+                // The widest range has more numbers than an i64.
+                let (low, high) = (i128::from(*low), i128::from(*high));
+                let steps = (share * ((high - low) as f64 + 1.0)).floor() as i128;
+                ((low + steps).min(high) as i64).into()
             }
             Range::Real(low, high) => Number::from_f64(low + share * (high - low)).map_or(Value::Null, Value::Number),
             Range::Choice(values) => values[((share * values.len() as f64) as usize).min(values.len() - 1)].clone(),
@@ -47,7 +49,7 @@ impl Range {
 
 /// The points of a hypercube; the same seed gives the same points.
 pub fn points(count: u64, seed: u64, columns: &[(String, Range)]) -> Vec<Assignments> {
-    let mut rows = vec![Assignments::new(); count as usize];
+    let mut rows: Vec<Assignments> = (0..count).map(|_| Vec::with_capacity(columns.len())).collect();
     for (number, (key, range)) in columns.iter().enumerate() {
         // A series a key, so that a further key leaves the others as they are.
         let mut lot = SplitMix64::new(seed.wrapping_mul(0x9e37_79b9).wrapping_add(number as u64));
@@ -66,6 +68,14 @@ pub fn points(count: u64, seed: u64, columns: &[(String, Range)]) -> Vec<Assignm
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_widest_range_has_both_ends() {
+        let widest = Range::new(&serde_json::json!([i64::MIN, i64::MAX])).unwrap();
+        assert_eq!([0.0, 0.5, 1.0].map(|share| widest.at(share)), [Value::from(i64::MIN), 0.into(), i64::MAX.into()]);
+        let positive = Range::new(&serde_json::json!([-1, i64::MAX])).unwrap();
+        assert_eq!([0.0, 1.0].map(|share| positive.at(share)), [Value::from(-1), i64::MAX.into()]);
+    }
 
     #[test]
     fn each_part_of_a_range_is_used_once() {

@@ -61,6 +61,9 @@ pub struct PlannedPoint {
     pub set: KeySet,
 }
 
+/// Octets of the shortest line of a point.
+const LEAST_LINE: usize = r#"{"point":"","recording":"","set":{}}"#.len();
+
 /// Points with what they share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyPlan {
@@ -175,7 +178,8 @@ impl StudyPlan {
         if head.points > MOST_POINTS {
             return Err(refuse(format!("it has {} points", head.points)));
         }
-        let mut points = Vec::with_capacity(head.points as usize);
+        // Room for as many as the rest can hold, whatever the first line says.
+        let mut points = Vec::with_capacity((head.points as usize).min(text.len() / LEAST_LINE));
         for (number, line) in lines {
             points.push(serde_json::from_str(line).map_err(|error| refuse(format!("line {number}: {error}")))?);
         }

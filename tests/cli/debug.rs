@@ -328,6 +328,19 @@ fn drive<R: Read, W: Write>(client: &mut Client<R, W>) {
     let lines =
         client.body("disassemble", json!({ "memoryReference": here, "instructionOffset": -1, "instructionCount": 3 }));
     assert_eq!((lines["instructions"].as_array().unwrap().len(), &lines["instructions"][1]["address"]), (3, &here));
+    // Numbers that no client means.
+    for (first, offset) in [(i64::MIN, -2), (i64::MAX, i64::MAX)] {
+        let arguments =
+            json!({ "memoryReference": first.to_string(), "instructionOffset": offset, "instructionCount": 8 });
+        let far = client.body("disassemble", arguments);
+        let all = far["instructions"].as_array().unwrap();
+        assert!(all.len() == 8 && all.iter().all(|one| one["presentationHint"] == "invalid"), "{far}");
+        let wanted = json!([{ "instructionReference": first.to_string(), "offset": offset }]);
+        let set = client.body("setInstructionBreakpoints", json!({ "breakpoints": wanted }));
+        assert_eq!(set["breakpoints"][0]["verified"], false, "{set}");
+    }
+    let far = client.ask("scopes", json!({ "frameId": u64::MAX }));
+    assert_eq!((&far["success"], &far["message"]), (&false.into(), &"there is no such frame".into()));
     assert!(client.ask("nonsense", json!({}))["message"].as_str().unwrap().contains("no request"));
     assert!(
         client.ask("evaluate", json!({ "expression": "contineu", "context": "repl" }))["message"]

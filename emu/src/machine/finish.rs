@@ -89,7 +89,7 @@ impl<W: Worker> Machine<'_, W> {
             processor.idle_until(clocks);
         }
         // Items ended in the order of clocks; they are listed by when they began.
-        self.items.sort_by_key(|item| (item.start, item.core));
+        self.items.sort_by_cached_key(|item| (item.start, item.core));
         let caches = self.processors.iter().filter_map(|processor| processor.cache.as_ref());
         let cache = caches.map(Cache::used).sum();
         let used = self.processors.iter().map(|processor| processor.used).collect();

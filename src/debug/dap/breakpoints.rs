@@ -98,7 +98,7 @@ pub fn of_words(session: &mut Session, owned: &mut Owned, arguments: &Value) -> 
     let all: Vec<Value> = (wanted(arguments).iter())
         .map(|wanted| {
             let at = numbered(wanted["instructionReference"].as_str().unwrap_or_default());
-            let at = at.map(|at| at + wanted["offset"].as_i64().unwrap_or(0));
+            let at = at.map(|at| at.saturating_add(wanted["offset"].as_i64().unwrap_or(0)));
             let event = at.and_then(|at| place::words(&session.target.program, &format!("*{at}"), 0)).map(Event::At);
             let text = wanted["instructionReference"].as_str().unwrap_or_default().to_owned();
             set(session, owned, "words", format!("*{text}"), event, wanted)

@@ -62,14 +62,27 @@ pub fn stack(session: &Session, arguments: &Value) -> Value {
     json!({ "stackFrames": shown, "totalFrames": all.len() })
 }
 
+/// Word of a frame by its number, from 1 on; without one, of the innermost.
+///
+/// # Errors
+/// There is no such frame.
+fn frame_word(session: &Session, frame: u64) -> Result<u32, String> {
+    let at = usize::try_from(frame.max(1) - 1).ok().and_then(|at| frames(session).get(at).copied());
+    at.ok_or_else(|| "there is no such frame".into())
+}
+
 /// The scopes of a frame.
-pub fn scopes(arguments: &Value) -> Value {
+///
+/// # Errors
+/// There is no such frame.
+pub fn scopes(session: &Session, arguments: &Value) -> Result<Value, String> {
     let frame = arguments["frameId"].as_u64().unwrap_or(1);
+    frame_word(session, frame)?;
     let scope = |(number, name): (usize, &&str)| {
         let hint = if number == 0 { "locals" } else { "registers" };
         json!({ "name": name, "presentationHint": hint, "variablesReference": frame * 8 + number as u64 + 1, "expensive": false })
     };
-    json!({ "scopes": SCOPES.iter().enumerate().map(scope).collect::<Vec<_>>() })
+    Ok(json!({ "scopes": SCOPES.iter().enumerate().map(scope).collect::<Vec<_>>() }))
 }
 
 /// A register as a variable: raw, real, and with a shadow how far it is from exact arithmetic.
@@ -92,8 +105,8 @@ fn variable(session: &Session, name: &str, shown: &ShownRegister, register: Opti
 /// A reference that is none.
 pub fn variables(session: &Session, arguments: &Value) -> Result<Value, String> {
     let reference = arguments["variablesReference"].as_u64().unwrap_or(0);
-    let (frame, scope) = ((reference / 8).max(1) as usize, (reference % 8) as usize);
-    let pc = *frames(session).get(frame - 1).ok_or("there is no such frame")?;
+    let (frame, scope) = (reference / 8, (reference % 8) as usize);
+    let pc = frame_word(session, frame)?;
     let (program, state) = (&session.target.program, session.stepper().state());
     let shown = |register| ShownRegister::at(program, &state.registers, register, pc);
     let variable = |name: &str, register| variable(session, name, &shown(register), Some(register));
@@ -179,10 +192,12 @@ pub fn source(session: &Session, arguments: &Value) -> Result<Value, String> {
 /// A reference that is no number.
 pub fn disassemble(session: &Session, arguments: &Value) -> Result<Value, String> {
     let base = crate::arguments::numbered(arguments["memoryReference"].as_str().unwrap_or_default())?;
-    let count = arguments["instructionCount"].as_u64().unwrap_or(0).min(4096) as i64;
-    let first = base + arguments["offset"].as_i64().unwrap_or(0) + arguments["instructionOffset"].as_i64().unwrap_or(0);
+    let count = i128::from(arguments["instructionCount"].as_u64().unwrap_or(0).min(4096));
+    // A client may ask for what lies far before the first word.
+    let number = |key: &str| i128::from(arguments[key].as_i64().unwrap_or(0));
+    let first = i128::from(base) + number("offset") + number("instructionOffset");
     let program = &session.target.program;
-    let line = |at: i64| {
+    let line = |at: i128| {
         let word = u32::try_from(at).ok().filter(|&pc| (pc as usize) < program.words.len());
         // As many as were asked for are expected, also where there are none.
         let Some(pc) = word else {

@@ -130,7 +130,7 @@ impl<'o> Server<'o> {
                         }
                         "threads" => Ok(json!({ "threads": [{ "id": THREAD, "name": door.session.target.name }] })),
                         "stackTrace" => Ok(inspect::stack(&door.session, arguments)),
-                        "scopes" => Ok(inspect::scopes(arguments)),
+                        "scopes" => inspect::scopes(&door.session, arguments),
                         "variables" => inspect::variables(&door.session, arguments),
                         "setVariable" => inspect::set_variable(&mut door, arguments),
                         "source" => inspect::source(&door.session, arguments),

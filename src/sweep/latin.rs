@@ -41,7 +41,12 @@ impl Range {
                 let steps = (share * ((high - low) as f64 + 1.0)).floor() as i128;
                 ((low + steps).min(high) as i64).into()
             }
-            Range::Real(low, high) => Number::from_f64(low + share * (high - low)).map_or(Value::Null, Value::Number),
+            Range::Real(low, high) => {
+                let width = high - low;
+                // The widest range is wider than the largest number.
+                let at = if width.is_finite() { low + share * width } else { low * (1.0 - share) + high * share };
+                Number::from_f64(at).map_or(Value::Null, Value::Number)
+            }
             Range::Choice(values) => values[((share * values.len() as f64) as usize).min(values.len() - 1)].clone(),
         }
     }
@@ -73,6 +78,8 @@ mod tests {
     fn the_widest_range_has_both_ends() {
         let widest = Range::new(&serde_json::json!([i64::MIN, i64::MAX])).unwrap();
         assert_eq!([0.0, 0.5, 1.0].map(|share| widest.at(share)), [Value::from(i64::MIN), 0.into(), i64::MAX.into()]);
+        let real = Range::new(&serde_json::json!([-1.7e308, 1.7e308])).unwrap();
+        assert_eq!([0.0, 0.5].map(|share| real.at(share)), [Value::from(-1.7e308), 0.0.into()]);
         let positive = Range::new(&serde_json::json!([-1, i64::MAX])).unwrap();
         assert_eq!([0.0, 1.0].map(|share| positive.at(share)), [Value::from(-1), i64::MAX.into()]);
     }

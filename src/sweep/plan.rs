@@ -61,7 +61,7 @@ pub struct PlannedPoint {
     pub set: KeySet,
 }
 
-/// Octets of the shortest line of a point.
+/// Octets of the shortest line of a point, as it is written.
 const LEAST_LINE: usize = r#"{"point":"","recording":"","set":{}}"#.len();
 
 /// Points with what they share.

@@ -88,7 +88,7 @@ impl<W: Worker> Machine<'_, W> {
             // All end at the same clock, so that busy, waiting and idle of each add up to the whole time.
             processor.idle_until(clocks);
         }
-        // Items ended in the order of clocks; they are listed by when they began.
+        // Items ended in the order of clocks; they are listed by when they began. Their keys are sorted apart, since an item is large.
         self.items.sort_by_cached_key(|item| (item.start, item.core));
         let caches = self.processors.iter().filter_map(|processor| processor.cache.as_ref());
         let cache = caches.map(Cache::used).sum();

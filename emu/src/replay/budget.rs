@@ -10,7 +10,7 @@ pub struct Budget {
 
 impl Budget {
     /// Segments that a long work item takes budget for at once.
-    pub(super) const PORTION: usize = 4096;
+    pub(super) const SHARE: usize = 4096;
 
     /// For that many segments.
     pub fn new(most: usize) -> Budget {

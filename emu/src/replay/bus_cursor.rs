@@ -16,7 +16,7 @@ use crate::machine::worker::{HandOver, ItemMaster, Played};
 pub struct BusCursor {
     /// The track; none while its processor goes through it.
     track: Option<Arc<Track>>,
-    /// Segments that are behind it, of all of the track; the last of them is the transfer that the master asks for.
+    /// Number of the next segment in the track; the one before it is the transfer that the master asks for.
     next: usize,
     /// The stretch of the track that it goes through.
     stretch: Stretch,
@@ -60,7 +60,7 @@ struct BesideTransfers {
 
 /// Account of a track that a bus cursor hands back to its processor.
 pub struct HandedBack {
-    /// Segments that are behind it.
+    /// Number of the next segment in the track.
     pub next: usize,
     /// Clocks since the track was handed over.
     pub played: Played,

@@ -30,7 +30,7 @@ pub struct ItemCursor<'a> {
     feed: Rc<RefCell<Feed<'a>>>,
     /// The work item; none before its message has come.
     recording: Option<RecordedItem>,
-    /// Segments that are behind it, of all of its portion.
+    /// Number of the next segment in the track of its portion.
     next: usize,
     progress: Progress,
     /// Sums of clocks, where those of functions are measured; the bus cursor has the waits of a part while it goes through the work item.
@@ -78,7 +78,8 @@ impl<'a> ItemCursor<'a> {
     /// Notes the site of what the core waits for.
     fn note_site(&mut self) {
         let Some(recording) = self.recording.as_ref() else { return };
-        let site = self.next.checked_sub(1).and_then(|at| recording.portion().track.sites.get(at));
+        let last = self.next.checked_sub(1).filter(|&last| last >= recording.stretch.segments.start);
+        let site = last.and_then(|last| recording.portion().track.sites.get(last));
         if let (Some(&site), Some(clocks)) = (site, &recording.clocks) {
             self.asked = (clocks.observer as usize, site);
         }

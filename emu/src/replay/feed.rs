@@ -7,10 +7,10 @@ use super::record::Prefix;
 use super::recording::{Portion, Reason, RecordedItem};
 use crate::semantics::Message;
 
-/// Recordings, or why there are no more.
+/// Portions of recordings, or why there are no more.
 pub type Batch = Result<Vec<Arc<Portion>>, Reason>;
 
-/// Recordings that a machine holds at once, at most.
+/// Recordings that a machine holds at once, at most; each keeps the others of its portion.
 const MOST_HELD: usize = 1 << 14;
 
 /// The recordings of one machine, each of which it uses once.
@@ -21,8 +21,8 @@ pub struct Feed<'a> {
     recorded_cores: u32,
     /// Number of cores of this machine.
     cores: u32,
-    /// The next batch; none when there are no more.
-    batches: Box<dyn FnMut() -> Option<Arc<Batch>> + 'a>,
+    /// Yields the next batch; none when there are no more.
+    next_batch: Box<dyn FnMut() -> Option<Arc<Batch>> + 'a>,
     /// In the order in which they were recorded.
     held: VecDeque<RecordedItem>,
     /// Reason for which the replay is worth nothing.
@@ -35,13 +35,17 @@ impl<'a> Feed<'a> {
         prefix: Prefix,
         recorded_cores: u32,
         cores: u32,
-        batches: impl FnMut() -> Option<Arc<Batch>> + 'a,
+        next_batch: impl FnMut() -> Option<Arc<Batch>> + 'a,
     ) -> Feed<'a> {
-        Feed { prefix, recorded_cores, cores, batches: Box::new(batches), held: VecDeque::new(), lost: None }
+        Feed { prefix, recorded_cores, cores, next_batch: Box::new(next_batch), held: VecDeque::new(), lost: None }
     }
 
     /// Takes the recording of the work item that begins with a message; `None` when the replay is lost.
     pub fn take(&mut self, message: &Message) -> Option<RecordedItem> {
+        // What is lost needs no more recordings.
+        if self.lost.is_some() {
+            return None;
+        }
         // Mostly it is the first: work is handed out in the order in which it was recorded.
         let mut from = 0;
         loop {
@@ -51,7 +55,7 @@ impl<'a> Feed<'a> {
             }
             // What was looked at does not match; only the next batch can have it.
             from = self.held.len();
-            let batch = (self.batches)().filter(|_| from < MOST_HELD);
+            let batch = if from < MOST_HELD { (self.next_batch)() } else { None };
             match batch.as_deref() {
                 Some(Ok(batch)) => self.hold(batch)?,
                 Some(Err(reason)) => return self.lose(reason),
@@ -79,6 +83,6 @@ impl<'a> Feed<'a> {
 
     /// True where each recording was used; waits for the last one.
     pub fn is_used_up(&mut self) -> bool {
-        self.held.is_empty() && (self.batches)().is_none()
+        self.held.is_empty() && (self.next_batch)().is_none()
     }
 }

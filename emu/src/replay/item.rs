@@ -26,8 +26,10 @@ pub(super) struct ItemRecord {
     pub message: Option<Message>,
     pub sent: Vec<Message>,
     pub track: Track,
-    /// Segments and messages of the items before it.
-    pub before_it: [usize; 2],
+    /// Number of its first segment in the track.
+    pub first_segment: usize,
+    /// Number of its first message among those that were sent.
+    pub first_message: usize,
     pub octets: Octets,
     pub before: u64,
     /// There was no room for a segment, so that the item was recorded in vain.
@@ -35,15 +37,15 @@ pub(super) struct ItemRecord {
 }
 
 impl ItemRecord {
-    /// Number of its segments.
+    /// Number of the item's segments.
     #[inline(always)]
     pub fn segments(&self) -> usize {
-        self.track.segments.len() - self.before_it[0]
+        self.track.segments.len() - self.first_segment
     }
 
-    /// Number of the messages that it has sent.
+    /// Number of the messages that the item has sent.
     pub fn messages(&self) -> usize {
-        self.sent.len() - self.before_it[1]
+        self.sent.len() - self.first_message
     }
 }
 
@@ -92,7 +94,7 @@ impl Quick for ItemRecorder<'_> {
     fn keep(&mut self, reads: &[NotedRead], before: u64) -> bool {
         let record = &mut *self.record;
         // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
-        let portions = record.segments() / Budget::PORTION;
+        let portions = record.segments() / Budget::SHARE;
         record.track.segments.extend(reads.iter().map(Segment::of_read));
         if let Some(sites) = &mut self.sites {
             let range = |address| self.kinds.range(address);
@@ -101,8 +103,8 @@ impl Quick for ItemRecorder<'_> {
         }
         record.octets += Octets(reads.iter().map(|read| u64::from(read.octets)).sum());
         record.before = before;
-        let more = record.segments() / Budget::PORTION - portions;
-        if more != 0 && !self.budget.take(more * Budget::PORTION) {
+        let more = record.segments() / Budget::SHARE - portions;
+        if more != 0 && !self.budget.take(more * Budget::SHARE) {
             record.is_without_room = true;
         }
         !record.is_without_room
@@ -130,7 +132,7 @@ impl ItemRecorder<'_> {
         let record = &mut *self.record;
         let clocks = self.time.clocks - record.before;
         let segment = Segment::new(clocks, self.time.pc, request, record.messages()).ok_or(Stop::Wait)?;
-        if (record.segments() + 1).is_multiple_of(Budget::PORTION) && !self.budget.take(Budget::PORTION) {
+        if (record.segments() + 1).is_multiple_of(Budget::SHARE) && !self.budget.take(Budget::SHARE) {
             return Err(Stop::Wait);
         }
         record.octets += segment.octets();

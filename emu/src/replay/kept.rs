@@ -7,7 +7,7 @@ use std::sync::Arc;
 use isa::number::Vector;
 
 use super::feed::Batch;
-use super::prerun::ItemTotals;
+use super::prerun::{AT_ONCE, ItemTotals};
 use super::record::Prefix;
 use super::recorded::Recorded;
 use super::recording::{Portion, Reason, Recording, Segment, Stretch, reads};
@@ -121,11 +121,15 @@ impl Recorded {
             if count == 0 {
                 return Err(IMPOSSIBLE);
             }
-            let mut portion = Portion { items: Vec::with_capacity(count), ..Portion::default() };
-            for _ in 0..count {
-                read_item(&mut reader, &shapes, slots, &mut portion)?;
+            let mut portions = Vec::new();
+            for at in (0..count).step_by(AT_ONCE) {
+                let mut portion = Portion::default();
+                for _ in at..count.min(at + AT_ONCE) {
+                    read_item(&mut reader, &shapes, slots, &mut portion)?;
+                }
+                portions.push(portion.closed());
             }
-            batches.push(Arc::new(Batch::Ok(vec![Arc::new(portion)])));
+            batches.push(Arc::new(Batch::Ok(portions)));
         }
         if !reader.rest.is_empty() {
             return Err("it is longer than it says");
@@ -293,7 +297,7 @@ fn totals(reader: &mut OctetReader, code: &Code, setup: &Setup) -> Result<ItemTo
 /// Reads an item into a portion; its octets and the range that it reads follow from its segments.
 fn read_item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32, portion: &mut Portion) -> Result<(), Reason> {
     let track = Arc::get_mut(&mut portion.track).expect("nobody else has it");
-    let starts = [track.segments.len(), portion.sent.len()];
+    let (first_segment, first_message) = (track.segments.len(), portion.sent.len());
     let message = reader.message()?;
     let [steps, elementary, last_clocks] = reader.numbers()?;
     let [last_pc] = reader.words()?;
@@ -310,7 +314,7 @@ fn read_item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32, portion:
         let segment = Segment::of_shape(*shape, u32::from_le_bytes([a0, a1, a2, a3]));
         track.segments.push(segment.ok_or(IMPOSSIBLE)?);
     }
-    let segments = &track.segments[starts[0]..];
+    let segments = &track.segments[first_segment..];
     // The address of a message is its number.
     let is_sent = |segment: &Segment| segment.is_read() || (segment.address as usize) < sent;
     if last_pc >= slots || !segments.iter().all(is_sent) {
@@ -320,8 +324,8 @@ fn read_item(reader: &mut OctetReader, shapes: &[[u32; 3]], slots: u32, portion:
     portion.items.push(Recording {
         message,
         octets,
-        stretch: Stretch { segments: starts[0]..track.segments.len(), reads: reads(segments) },
-        sent: starts[1]..portion.sent.len(),
+        stretch: Stretch { segments: first_segment..track.segments.len(), reads: reads(segments) },
+        sent: first_message..portion.sent.len(),
         clocks: None,
         last_clocks,
         last_pc,

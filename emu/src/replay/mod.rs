@@ -16,6 +16,7 @@ mod recording;
 pub mod weigh;
 
 use std::cell::RefCell;
+use std::panic::resume_unwind;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -91,8 +92,8 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 /// Outcome of one machine, or the reason for which it has to be stepped.
 type Replayed = Result<Result<EndedRun, RunFailure>, Reason>;
 
-/// Recordings and replays of machines that are alike: on one host thread in turns, batch by batch; on several, or for several machines, with the
-/// prerun on a thread of its own, the first machine on this one, and each other one on another.
+/// Recordings and replays of machines that are alike: of one machine on one host thread in turns, batch by batch; else with the prerun on a thread of
+/// its own, the first machine on this one, and each other one on another.
 fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
     codes: &[Code; 2],
@@ -101,9 +102,10 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
 ) -> (ItemTotals, Vec<Replayed>) {
-    let recorded_cores = setups[0].config.cores;
-    if let ([setup], 1) = (setups, rayon::current_num_threads()) {
-        let mut prerun = Prerun::<T, O>::new(setup, codes, memory, arithmetic.clone(), RecordLevel::Segments);
+    let (recorded_cores, threads) = (setups[0].config.cores, rayon::current_num_threads());
+    if let ([setup], 1) = (setups, threads) {
+        let level = RecordLevel::Segments;
+        let mut prerun = Prerun::<T, O>::new(setup, codes, memory, arithmetic.clone(), level, threads);
         let feed = Feed::new(prefix, recorded_cores, recorded_cores, || prerun.next_batch());
         let ending = on_clock::<T, O>(setup, codes, memory.clone(), arithmetic, feed, progress);
         return (prerun.into_totals().items, vec![ending]);
@@ -116,7 +118,11 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     std::thread::scope(|scope| {
         let own = arithmetic.clone();
         let prerun = scope.spawn(move || {
-            prerun::run::<T, O>(&setups[0], memory, own, RecordLevel::Segments, &mut |batch| {
+            // Programs of its own, so that it does not wait while a machine compiles those.
+            let codes = setups[0].codes();
+            let level = RecordLevel::Segments;
+            let prerun = Prerun::<T, O>::new(&setups[0], &codes, memory, own, level, threads);
+            prerun.run(&mut |batch| {
                 // The count goes over all senders, since `any` would stop at the first machine that takes the batch.
                 senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
             })
@@ -134,9 +140,9 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
         // The first machine stays on this thread, because only that may call `progress`.
         let feed = feed(first, batches);
         let mut endings = vec![on_clock::<T, O>(first, codes, memory.clone(), arithmetic, feed, progress)];
-        let panicless = "a machine does not panic";
-        endings.extend(others.into_iter().map(|other| other.join().expect(panicless)));
-        (prerun.join().expect("the prerun does not panic").items, endings)
+        // An instruction in Rust may panic: that goes on here, with its own message.
+        endings.extend(others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic))));
+        (prerun.join().unwrap_or_else(|panic| resume_unwind(panic)).items, endings)
     })
 }
 

@@ -27,8 +27,9 @@ const CORES: u32 = 1024;
 /// Segments in a batch, at most; 128 MiB of them. What is longer is stepped.
 const MOST_SEGMENTS: usize = 1 << 23;
 
-/// Work items that a host thread takes at a time.
-const AT_ONCE: usize = 32;
+/// Work items that a host thread takes at a time: a portion. Where portions begin decides what is recorded before a batch is given up, and so which
+/// reason is told; it must not depend on the number of threads.
+pub const AT_ONCE: usize = 32;
 
 const TOO_MANY_PATHS: Reason = "functions call each other in too many ways to record their clocks";
 
@@ -67,12 +68,15 @@ impl Link for InstantCores {
     }
 }
 
+/// Portion, or why there is none, by the number of its first item.
+type PortionFound = (usize, Result<Arc<Portion>, Reason>);
+
 /// Records work items on all host threads. The recordings are in the order of the messages, whoever made them.
 fn record<T: Watch + Send, O: Observer + Send>(recorders: &mut [Recorder<T, O>], work: &[(u32, Message)]) -> Batch {
     let (next, budget) = (AtomicUsize::new(0), Budget::new(MOST_SEGMENTS));
-    let mut found: Vec<Vec<(usize, Result<Portion, Reason>)>> = Vec::new();
+    let mut found: Vec<Vec<PortionFound>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
-    let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<(usize, Result<Portion, Reason>)>| {
+    let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<PortionFound>| {
         // Portions go to whoever is free: items differ much in length.
         while !budget.is_full()
             && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
@@ -81,7 +85,7 @@ fn record<T: Watch + Send, O: Observer + Send>(recorders: &mut [Recorder<T, O>],
             let mut portion = Portion::default();
             let mut messages = rest.iter().take(AT_ONCE).map(|(_, message)| *message);
             let recorded = messages.try_for_each(|message| recorder.record(message, &budget, &mut portion));
-            found.push((at, recorded.map(|()| portion)));
+            found.push((at, recorded.map(|()| portion.closed())));
         }
     };
     // Threads of their own: this may itself be a thread of a pool in which all others wait.
@@ -105,7 +109,7 @@ fn record<T: Watch + Send, O: Observer + Send>(recorders: &mut [Recorder<T, O>],
     let mut found: Vec<_> = found.into_iter().flatten().collect();
     // The order of the messages, so that results do not depend on which thread was faster.
     found.sort_unstable_by_key(|(at, _)| *at);
-    found.into_iter().map(|(_, portion)| portion.map(Arc::new)).collect()
+    found.into_iter().map(|(_, portion)| portion).collect()
 }
 
 /// True where clocks are measured and there are more calling contexts than one recorder has room for, whichever of them have seen which.
@@ -154,24 +158,25 @@ pub struct Prerun<'a, T, O> {
     state: State,
     tally: Tally,
     runner: EngineRunner<'a>,
-    /// End of the main processor's program, or what it waits for in vain; none while there may be more work.
+    /// Pause of the main processor after which there are no more batches; none while there may be some.
     end: Option<Pause>,
 }
 
 impl<'a, T: Watch + Clone + Send, O: Observer + Send> Prerun<'a, T, O> {
-    /// A main processor that has handed out nothing; codes are those of the cores and of its own.
+    /// A main processor that has handed out nothing, whose work is recorded on so many host threads; codes are those of the cores and of its own.
     pub fn new(
         setup: &'a Setup<'a>,
         codes: &'a [Code<'a>; 2],
         memory: &'a Memory,
         arithmetic: T,
         level: RecordLevel,
+        threads: usize,
     ) -> Prerun<'a, T, O> {
         let ([core_code, main_code], main) = (codes, &setup.config.main);
         let recorder = |number| Recorder::new(number, core_code, setup, memory, arithmetic.clone(), level);
         let demand = Demand::new(main_code, setup.options.wish(), arithmetic.computes(), main.buffer_octets);
         Prerun {
-            recorders: (0..rayon::current_num_threads() as u32).map(recorder).collect(),
+            recorders: (0..threads as u32).map(recorder).collect(),
             cores: InstantCores { memory: memory.clone(), work: Vec::new(), answers: VecDeque::new() },
             state: State::new(main_code, Buffer::new(&setup.main.buffer, main.buffer_octets)),
             tally: Tally::new(main_code),
@@ -212,7 +217,17 @@ impl<'a, T: Watch + Clone + Send, O: Observer + Send> Prerun<'a, T, O> {
         Some(Arc::new(batch))
     }
 
-    /// What all host threads counted; sums do not depend on who recorded what.
+    /// Hands over all batches, as long as somebody wants them, and yields the totals.
+    pub fn run(mut self, hand_over: &mut dyn FnMut(Arc<Batch>) -> bool) -> PrerunTotals {
+        while let Some(batch) = self.next_batch() {
+            if !hand_over(batch) {
+                break;
+            }
+        }
+        self.into_totals()
+    }
+
+    /// Totals of what all host threads counted; sums do not depend on who recorded what.
     pub fn into_totals(self) -> PrerunTotals {
         let code = &self.codes[0];
         let (tally, kinds, keys) = (Tally::new(code), Kinds::new(&self.setup.kinds), Vec::new());
@@ -231,7 +246,7 @@ impl<'a, T: Watch + Clone + Send, O: Observer + Send> Prerun<'a, T, O> {
     }
 }
 
-/// Runs ahead and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
+/// Runs ahead on all host threads and hands over what it records, batch by batch, until all work is done or nobody wants it any more.
 pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     setup: &Setup,
     memory: &Memory,
@@ -239,12 +254,6 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     level: RecordLevel,
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
 ) -> PrerunTotals {
-    let codes = setup.codes();
-    let mut prerun = Prerun::<T, O>::new(setup, &codes, memory, arithmetic, level);
-    while let Some(batch) = prerun.next_batch() {
-        if !hand_over(batch) {
-            break;
-        }
-    }
-    prerun.into_totals()
+    let (codes, threads) = (setup.codes(), rayon::current_num_threads());
+    Prerun::<T, O>::new(setup, &codes, memory, arithmetic, level, threads).run(hand_over)
 }

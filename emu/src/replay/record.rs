@@ -280,7 +280,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                     return Err(BEGINS);
                 }
                 let clocks = self.state.clocks - record.before;
-                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len() - record.before_it[1]);
+                let segment = Segment::new(clocks, self.state.pc, request, link.sent.len() - record.first_message);
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 record.octets += segment.octets();
                 if let (Some(sites), Some(profiler)) = (&mut self.sites, self.observer.profiler()) {
@@ -290,7 +290,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 self.kinds.add(self.state.pc, Some(request));
                 record.track.segments.push(segment);
                 // Room is taken in portions, since all host threads share one number.
-                if record.segments().is_multiple_of(Budget::PORTION) && !budget.take(Budget::PORTION) {
+                if record.segments().is_multiple_of(Budget::SHARE) && !budget.take(Budget::SHARE) {
                     return Err(WITHOUT_ROOM);
                 }
             }
@@ -311,8 +311,9 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         self.observer.begin(self.state.pc);
         let track = std::mem::take(Arc::get_mut(&mut portion.track).expect("nobody else has it"));
         let sent = std::mem::take(&mut portion.sent);
-        let starts = [track.segments.len(), sent.len()];
-        let mut record = ItemRecord { message: Some(message), track, sent, before_it: starts, ..ItemRecord::default() };
+        let (first_segment, first_message) = (track.segments.len(), sent.len());
+        let begun = ItemRecord { message: Some(message), track, sent, ..ItemRecord::default() };
+        let mut record = ItemRecord { first_segment, first_message, ..begun };
         let end = loop {
             let stopped = self.run_quickly(&mut record, budget);
             if record.is_without_room {
@@ -332,7 +333,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         }
         // Account for what was recorded
         self.observer.end();
-        budget.take(record.segments() % Budget::PORTION);
+        budget.take(record.segments() % Budget::SHARE);
         if self.observer.taint.depends_on_core {
             return Err("a work item asks which core it runs on");
         }
@@ -342,20 +343,20 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         let profiler = self.observer.profiler().filter(|_| self.sites.is_some());
         let cells = profiler.and_then(|profiler| profiler.contexts.cells.as_mut());
         let item_clocks = cells.map(|cells| {
-            let first = [portion.cells.len(), portion.asked.len()];
+            let (first_cell, first_asked) = (portion.cells.len(), portion.asked.len());
             cells.take(clocks, &mut portion.cells);
-            let (segments, sites) = (&track.segments[starts[0]..], &track.sites[starts[0]..]);
+            let (segments, sites) = (&track.segments[first_segment..], &track.sites[first_segment..]);
             add_asked(segments, sites, known, &mut self.asked, &mut portion.asked);
-            let (cells, asked) = (first[0]..portion.cells.len(), first[1]..portion.asked.len());
+            let (cells, asked) = (first_cell..portion.cells.len(), first_asked..portion.asked.len());
             ItemClocks { observer, cells, asked, known }
         });
-        let segments = starts[0]..track.segments.len();
+        let segments = first_segment..track.segments.len();
         portion.items.push(Recording {
             message,
             clocks: item_clocks,
             stretch: Stretch { reads: reads(&track.segments[segments.clone()]), segments },
             octets,
-            sent: starts[1]..sent.len(),
+            sent: first_message..sent.len(),
             last_clocks: clocks - before,
             last_pc: self.state.pc,
             end,

@@ -167,7 +167,7 @@ pub struct Recording {
 
 /// Work items that were recorded one after the other, and take room together: so an item costs no room of its own, which one thread would take and
 /// another give back.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Portion {
     /// The items.
     pub items: Vec<Recording>,
@@ -190,6 +190,18 @@ impl Portion {
     /// The messages that an item sent.
     pub fn sent(&self, item: &Recording) -> &[Message] {
         &self.sent[item.sent.clone()]
+    }
+
+    /// The portion, which nobody else has and which gets no more items, without room that it took in vain.
+    #[must_use]
+    pub fn closed(mut self) -> Arc<Portion> {
+        if let Some(track) = Arc::get_mut(&mut self.track)
+            && track.segments.len() < track.segments.capacity() / 2
+        {
+            track.segments.shrink_to_fit();
+            track.sites.shrink_to_fit();
+        }
+        Arc::new(self)
     }
 }
 

@@ -96,7 +96,7 @@ impl Task for WeighTask<'_> {
         // Run each item once more by itself, so that the passes of each are known apart
         let code = Code::new(setup.core, setup.isa, setup.config.timing());
         let each = messages.len().div_ceil(rayon::current_num_threads()).max(1);
-        let portion = |messages: &[Message], arithmetic: T| -> Result<Vec<WeighedItem>, Reason> {
+        let part = |messages: &[Message], arithmetic: T| -> Result<Vec<WeighedItem>, Reason> {
             let mut recorder = Recorder::<T, Unobserved>::new(0, &code, setup, memory, arithmetic, RecordLevel::Passes);
             let one = |&message: &Message| {
                 recorder.record(message, &Budget::new(MOST_SEGMENTS), &mut Portion::default())?;
@@ -104,14 +104,14 @@ impl Task for WeighTask<'_> {
             };
             messages.iter().map(one).collect()
         };
-        // Portions come back in their order, so the result does not depend on the number of threads.
+        // Parts come back in their order, so the result does not depend on the number of threads.
         std::thread::scope(|scope| {
-            let portion = &portion;
+            let part = &part;
             let threads: Vec<_> = messages
                 .chunks(each)
                 .map(|messages| {
                     let arithmetic = arithmetic.clone();
-                    scope.spawn(move || portion(messages, arithmetic))
+                    scope.spawn(move || part(messages, arithmetic))
                 })
                 .collect();
             let mut items = Vec::with_capacity(messages.len());

@@ -40,7 +40,15 @@ fn machines_run_inside_tasks_of_the_hosts_only_thread() {
     let alone = frame();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be had");
     let (one, other) = pool.install(|| rayon::join(frame, frame));
-    for inside in [one, other] {
+    // Machines that share recordings have threads of their own there.
+    let (isa, config) = (Isa::base(), Config::default());
+    let options = RunOptions { profile: ProfileLevel::Totals, has_items: true, ..RunOptions::default() };
+    let kinds = vec![(0..400, "answer".to_owned())];
+    let setup = Setup { config: &config, isa: &isa, core: &core, main: &main, kinds, options };
+    let both = [config.clone(), config.clone()];
+    let shared = pool.install(|| emu::run_all(&setup, &both, &Memory::new(vec![0; 1000]), &mut |_| {}));
+    let shared = shared.into_iter().map(|frame| frame.unwrap_or_else(|failure| panic!("{failure}")));
+    for inside in [one, other].into_iter().chain(shared) {
         assert_eq!(
             (inside.clocks, inside.tally, inside.memory),
             (alone.clocks, alone.tally.clone(), alone.memory.clone())

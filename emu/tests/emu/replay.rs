@@ -104,6 +104,25 @@ fn every_preset_and_arbiter_on_one_to_sixteen_cores() {
 }
 
 #[test]
+fn recordings_come_in_several_batches() {
+    // A batch has as much work as 1,024 cores take; the last one has less, and its last portion less than the others. Answers lie before the nodes.
+    let core = program(|p| {
+        p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[4, 0, 0]).emit(Op::andi, &[5, 4, 0xfc]);
+        p.emit(Op::ldw, &[6, 5, NODES]).emit(Op::andi, &[2, 6, 7]).emit(Op::iaddi, &[2, 2, 1]);
+        let again = p.here();
+        p.emit(Op::isubi, &[2, 2, 1]);
+        p.branch(Op::bne, &[2, 0], again);
+        p.emit(Op::andi, &[4, 4, 63]).emit(Op::cores, &[20]);
+        p.emit(Op::vsplat, &[6, 4]).emit(Op::vsplat, &[7, 6]).emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+    });
+    let main = dispatch(2_500);
+    for cores in [1, 4, 20] {
+        let frame = both(&with(ArbiterKind::RoundRobin, cores, Config::default()), &core, &main);
+        assert_eq!((frame.method, frame.item_count), (Method::Replayed, 2_500));
+    }
+}
+
+#[test]
 fn clocks_by_the_word_are_replayed_as_they_are_stepped() {
     let (core, main) = (wander(3, 31, 31), dispatch(25));
     let isa = Isa::base();

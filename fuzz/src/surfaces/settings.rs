@@ -6,7 +6,7 @@ use lancer::settings::Settings;
 use lancer::settings::read;
 use lancer::stress::progress::RunProgress;
 use lancer::stress::{CASES, CatalogueSize};
-use lancer::sweep::study::Study;
+use lancer::sweep::study::{MOST_POINTS, Study};
 use serde_json::{Value, json};
 
 use super::source;
@@ -128,7 +128,7 @@ fn read_study(input: &[u8], seen: &mut Seen) {
     // A hypercube takes memory for each point that it was asked for, a few hundred octets; those with many are left out here.
     let root = toml::from_str::<toml::Table>(&source.text).unwrap_or_default();
     let points = root.get("latin").and_then(|latin| latin.get("points")).and_then(toml::Value::as_integer);
-    if points.is_some_and(|points| points > 10_000) {
+    if points.is_some_and(|points| (10_001..=MOST_POINTS as i64).contains(&points)) {
         return;
     }
     match Study::parse(&source, "a") {

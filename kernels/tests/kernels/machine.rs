@@ -101,10 +101,13 @@ fn a_picture_needs_no_more_stack_than_the_page_says() {
     let options = GenerateOptions { level: Some(1), size: (6, 5), ..GenerateOptions::default() };
     let scene = generate::scene("mirrors", &options).expect("a scene of the list");
     let view = View::new((6, 5));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).stack_size(kib << 10).build();
-    let pool = pool.expect("threads can be had");
-    for &set in KernelSet::ALL {
-        let [found, expected] = pool.install(|| drawn(&scene, &view, set, 32, Skips::ALL));
-        assert_eq!(found, expected, "{set:?}");
+    // On one thread recording and replaying share its stack.
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(kib << 10).build();
+        let pool = pool.expect("threads can be had");
+        for &set in KernelSet::ALL {
+            let [found, expected] = pool.install(|| drawn(&scene, &view, set, 32, Skips::ALL));
+            assert_eq!(found, expected, "{set:?} on {threads} threads");
+        }
     }
 }

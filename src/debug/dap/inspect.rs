@@ -62,7 +62,7 @@ pub fn stack(session: &Session, arguments: &Value) -> Value {
     json!({ "stackFrames": shown, "totalFrames": all.len() })
 }
 
-/// Word of a frame by its number, from 1 on; without one, of the innermost.
+/// Word of a frame by its number, from 1 on; 0 means the innermost.
 ///
 /// # Errors
 /// There is no such frame.

@@ -76,6 +76,17 @@ const PARTS: &[Part] = &[
         commands: &["fuzz/run --time 600", "fuzz/run --self-check", "fuzz/run --coverage"],
     },
     Part {
+        name: "faults",
+        title: "Faults on purpose",
+        about: "Vulnerability of the three most vulnerable structures, without protection and with a code that corrects.",
+        commands: &[
+            "lancer inject cornell --size 48x36 --kind program,memory,bus --injections 100000 --timing",
+            "lancer inject cornell --size 48x36 --kind program,memory,bus --injections 100000 --protect program=ecc,memory=ecc,bus=ecc",
+            "lancer inject slabs --size 48x36 --kind program,memory,bus --injections 100000 --timing",
+            "lancer inject slabs --size 48x36 --kind program,memory,bus --injections 100000 --protect program=ecc,memory=ecc,bus=ecc",
+        ],
+    },
+    Part {
         name: "endurance",
         title: "Trials that take long",
         about: "Runs that are killed while they write, and the same run under other circumstances.",

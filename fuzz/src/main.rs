@@ -36,7 +36,7 @@ struct FuzzArguments {
     /// Seconds for each surface.
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     time: u64,
-    /// CPU time that a run may take, in milliseconds.
+    /// CPU time that an input may take with all its runs, in milliseconds.
     #[arg(long, value_name = "MILLISECONDS", default_value_t = 5_000)]
     longest: u64,
     /// Tries the input of a find again and says what goes wrong.

@@ -22,7 +22,7 @@ pub struct Surface {
     pub form: InputForm,
     /// Most octets of an input.
     pub longest: usize,
-    /// Most octets that a run may have allocated at once.
+    /// Most octets that an input may have allocated at once.
     pub memory: usize,
     /// Inputs to begin from.
     pub seeds: fn() -> Vec<Vec<u8>>,
@@ -33,7 +33,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A surface of text, with the most octets of an input and the most that a run may have allocated.
+    /// A surface of text, with the most octets of an input and the most that one may have allocated.
     pub const fn text(
         (longest, memory): (usize, usize),
         name: &'static str,

@@ -1,4 +1,4 @@
-//! Limits of a run: a thread looks at the clock of the process and at what is allocated, and ends the process where a run takes too much. What
+//! Limits of an input and all runs that it makes: a thread looks at the clock of the process and at what is allocated, and ends the process where one takes too much. What
 //! is being tried stands in a file, so that it is known whatever the end is.
 
 use std::fs::File;
@@ -15,7 +15,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 /// Run that is under way, 0 between runs.
 static RUN: AtomicU64 = AtomicU64::new(0);
 
-/// Octets that were allocated before the run.
+/// Octets that were allocated before the input was tried.
 static BEFORE: AtomicU64 = AtomicU64::new(0);
 
 /// Time between two looks.
@@ -39,7 +39,7 @@ pub struct RunWatch {
 }
 
 impl RunWatch {
-    /// Starts to watch: a run may take so many milliseconds of CPU time, and many times the octets that are allowed before it is cut off.
+    /// Starts to watch: an input may take so many milliseconds of CPU time, and many times the octets that are allowed before it is cut off.
     pub fn new(path: &Path, longest: u64, memory: usize) -> std::io::Result<RunWatch> {
         let file = File::create(path)?;
         std::thread::spawn(move || watch(longest, memory));
@@ -55,7 +55,7 @@ impl RunWatch {
         Ok(())
     }
 
-    /// Ends a run and yields the octets that it had allocated at once.
+    /// Ends an input and yields the octets that it had allocated at once.
     pub fn end(&mut self) -> usize {
         RUN.store(0, Ordering::Release);
         ALLOCATOR.peak_usage().saturating_sub(BEFORE.load(Ordering::Relaxed) as usize)
@@ -103,12 +103,12 @@ fn watch(longest: u64, memory: usize) {
         if current != run || current == 0 {
             (run, since) = (current, now);
         } else if now - since > longest {
-            eprintln!("a run takes more than {longest} ms of CPU time");
+            eprintln!("an input takes more than {longest} ms of CPU time");
             std::process::exit(ENDED);
         }
         let taken = (ALLOCATOR.current_usage() as u64).saturating_sub(BEFORE.load(Ordering::Relaxed));
         if current != 0 && taken > 4 * memory as u64 {
-            eprintln!("a run has allocated {taken} octets, of which {memory} are allowed");
+            eprintln!("an input has allocated {taken} octets, of which {memory} are allowed");
             std::process::exit(ENDED);
         }
     }

@@ -93,7 +93,7 @@ impl Quick for ItemRecorder<'_> {
 
     fn keep(&mut self, reads: &[NotedRead], before: u64) -> bool {
         let record = &mut *self.record;
-        // Many reads at once may cross the end of several portions: with 10 more after 4090, and portions of 4096, of one.
+        // Many reads at once may cross the end of several shares: with 10 more after 4090, and shares of 4096, of one.
         let portions = record.segments() / Budget::SHARE;
         record.track.segments.extend(reads.iter().map(Segment::of_read));
         if let Some(sites) = &mut self.sites {

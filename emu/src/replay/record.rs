@@ -289,7 +289,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 }
                 self.kinds.add(self.state.pc, Some(request));
                 record.track.segments.push(segment);
-                // Room is taken in portions, since all host threads share one number.
+                // Room is taken in shares, since all host threads take it from one number.
                 if record.segments().is_multiple_of(Budget::SHARE) && !budget.take(Budget::SHARE) {
                     return Err(WITHOUT_ROOM);
                 }

@@ -69,18 +69,22 @@ impl<'a> ItemCursor<'a> {
         self.log.as_mut()?.parts.get_mut(observer)
     }
 
-    /// The segment that asked for what the core waits for; none where that is its message.
+    /// Number in its track of the segment that asked for what the core waits for; none where that is its message.
+    fn last(&self) -> Option<usize> {
+        let first = self.recording.as_ref()?.stretch.segments.start;
+        self.next.checked_sub(1).filter(|&last| last >= first)
+    }
+
+    /// The segment that asked for what the core waits for.
     fn asked(&self) -> Option<&Segment> {
-        let recording = self.recording.as_ref()?;
-        recording.portion().segments(recording).get(self.next.checked_sub(recording.stretch.segments.start + 1)?)
+        let last = self.last()?;
+        self.recording.as_ref()?.portion().track.segments.get(last)
     }
 
     /// Notes the site of what the core waits for.
     fn note_site(&mut self) {
-        let Some(recording) = self.recording.as_ref() else { return };
-        let last = self.next.checked_sub(1).filter(|&last| last >= recording.stretch.segments.start);
-        let site = last.and_then(|last| recording.portion().track.sites.get(last));
-        if let (Some(&site), Some(clocks)) = (site, &recording.clocks) {
+        let (Some(last), Some(recording)) = (self.last(), &self.recording) else { return };
+        if let (Some(&site), Some(clocks)) = (recording.portion().track.sites.get(last), &recording.clocks) {
             self.asked = (clocks.observer as usize, site);
         }
     }

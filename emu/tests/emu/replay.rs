@@ -256,6 +256,43 @@ fn messages_and_barriers_in_the_middle_are_stepped() {
 }
 
 #[test]
+fn messages_that_other_cores_would_not_get_are_stepped() {
+    let takes = |p: &mut ProgramBuilder| {
+        p.emit(Op::recv5, &[0, 20]).emit(Op::halt, &[]);
+    };
+    // Work is recorded for many cores: one message for each of them, and one that says how many there are.
+    let each = program(|p| {
+        p.emit(Op::cores, &[3]).emit(Op::movi, &[1, 0]);
+        let next = p.here();
+        p.emit(Op::vsplat, &[0, 1]).emit(Op::send5, &[1, 0]).emit(Op::iaddi, &[1, 1, 1]);
+        p.branch(Op::bne, &[1, 3], next);
+        p.emit(Op::halt, &[]);
+    });
+    assert_eq!(why(takes, &each), "the main processor hands out other work than it would to many cores");
+    let told = program(|p| {
+        p.emit(Op::cores, &[3]).emit(Op::vsplat, &[0, 3]).emit(Op::movi, &[1, 0]).emit(Op::send5, &[1, 0]);
+        p.emit(Op::halt, &[]);
+    });
+    assert_eq!(why(takes, &told), "the main processor's messages depend on time or on the number of cores");
+}
+
+#[test]
+fn work_items_end_anywhere_in_their_share_of_a_batch() {
+    // Reads and one answer: a share has 4,096 segments.
+    for reads in [4_094, 4_095, 4_096, 8_190, 8_191, 8_192] {
+        let core = program(|p| {
+            p.emit(Op::recv5, &[0, 20]);
+            p.repeat(1, reads, |p| {
+                p.emit(Op::ldw, &[6, 0, NODES]);
+            });
+            answer(p);
+        });
+        let frame = both(&Config::default(), &core, &dispatch(3));
+        assert_eq!((frame.method, frame.item_count), (Method::Replayed, 3), "{reads} reads");
+    }
+}
+
+#[test]
 fn work_that_depends_on_the_number_of_cores_is_not_shared() {
     let isa = Isa::base();
     let core = program(|p| {

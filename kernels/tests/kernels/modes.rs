@@ -113,11 +113,10 @@ fn most_units(quantization: Quantization) -> i32 {
 fn secondary_rays_start_on_their_sides() {
     let mut random = SplitMix64::new(32);
     let mut moves = [0; 12];
+    let words: Vec<(Constants, Vec<Modes>)> = (16..=32).map(|word| (full(word), all_modes(word).collect())).collect();
     for n in 0..150_000 {
-        let word = 16 + random.below(17) as u32;
-        let all: Vec<Modes> = all_modes(word).collect();
-        let modes = all[n % all.len()];
-        let constants = full(word);
+        let (constants, all) = &words[random.below(words.len() as u64) as usize];
+        let (word, modes) = (constants.formats.word, all[n % all.len()]);
         let mut coordinate = |most: i64| random.below(2 * most as u64) as i64 - most;
         let most = 1i64 << (word - 2);
         let size = most >> (coordinate(4) + 4).min(word as i64 - 12).max(0);
@@ -133,14 +132,14 @@ fn secondary_rays_start_on_their_sides() {
         let one = f64::from(1 << constants.formats.direction);
         let direction = way.map(|x| (x / length * one).round() as i32);
         let ray = TwinRay::new(&modes, origin, direction);
-        let t = exact_triangle(&modes, &constants, &ray, &vertices);
+        let t = exact_triangle(&modes, constants, &ray, &vertices);
         if t == constants.missed || t >= constants.never {
             continue;
         }
         let (facing, _) = normal(&modes, constants.formats.direction, direction, &vertices);
         let axis = major_axis(facing);
-        let plain = point(&modes, &constants, &ray, t);
-        let (before, behind) = sides(&modes, &constants, &ray, t, facing, &vertices);
+        let plain = point(&modes, constants, &ray, t);
+        let (before, behind) = sides(&modes, constants, &ray, t, facing, &vertices);
         // The normal's component along the axis, by which a volume changes with each unit.
         let mut next = plain;
         next[axis] += 1;

@@ -186,7 +186,7 @@ impl<'a> Engine<'a> for Native<'a> {
     }
 
     fn prepare(&mut self) {
-        self.shared.compiled.get_or_init(|| Compiled::new(&self.plan, &self.shared.recipe));
+        self.shared.compile(&self.plan, self.patience);
     }
 
     fn patience(&self, core: CoreId, state: &State) -> u64 {
@@ -225,7 +225,14 @@ impl SharedCode {
         if self.rest(patience) != 0 {
             return None;
         }
-        self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe)).as_ref().ok()
+        self.compile(plan, patience).as_ref().ok()
+    }
+
+    /// Code, or why there is none; it is generated once. Without patience somebody looks at the code itself, so in builds with assertions it is
+    /// verified, which takes a third of a compilation.
+    fn compile(&self, plan: &Plan, patience: u64) -> &Result<Compiled, Refusal> {
+        let is_verified = cfg!(debug_assertions) && patience == 0;
+        self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe, is_verified))
     }
 }
 
@@ -234,7 +241,7 @@ impl Compiled {
     ///
     /// # Errors
     /// Refused, with the reason.
-    fn new(plan: &Plan, recipe: &Recipe) -> Result<Compiled, Refusal> {
+    fn new(plan: &Plan, recipe: &Recipe, is_verified: bool) -> Result<Compiled, Refusal> {
         let isa = host()?;
         let steps: Box<[Step]> = plan.steps().into();
         let extras: Box<[u64]> = (0..plan.exits()).map(|exit| plan.extra(exit).0).collect();
@@ -261,6 +268,9 @@ impl Compiled {
             profiling: profiling.as_ref(),
         };
         let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
+        if is_verified {
+            context.verify(&*isa).map_err(|_| "the program cannot be compiled")?;
+        }
         let compiled = context.compile(&*isa, &mut ControlPlane::default());
         let compiled = compiled.map_err(|_| "the program cannot be compiled")?;
         if !compiled.buffer.relocs().is_empty() {
@@ -296,8 +306,7 @@ fn host() -> Result<OwnedTargetIsa, Refusal> {
 fn find_host() -> Result<OwnedTargetIsa, Refusal> {
     const UNKNOWN: Refusal = "no compiler knows this host";
     let mut flags = settings::builder();
-    let verifies = if cfg!(debug_assertions) { "true" } else { "false" };
-    for (name, value) in [("opt_level", "speed"), ("enable_verifier", verifies), ("enable_probestack", "false")] {
+    for (name, value) in [("opt_level", "speed"), ("enable_verifier", "false"), ("enable_probestack", "false")] {
         flags.set(name, value).map_err(|_| UNKNOWN)?;
     }
     let isa = cranelift_native::builder().map_err(|_| UNKNOWN)?;

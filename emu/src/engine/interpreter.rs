@@ -30,7 +30,7 @@ enum After {
 /// without a profile pays nothing for it.
 pub fn run<T: Watch, O: Observer>(
     code: &Code,
-    seat: CoreId,
+    id: CoreId,
     state: &mut State,
     arithmetic: &T,
     link: &mut dyn Link,
@@ -54,8 +54,8 @@ pub fn run<T: Watch, O: Observer>(
             break Pause::Fault(Fault::OutsideProgram { words: code.words() });
         };
         // Before the instruction, so that a limit of n executes n instructions, and the trap names the next one.
-        if steps >= seat.step_limit {
-            break Pause::Fault(Fault::StepLimit(seat.step_limit));
+        if steps >= id.step_limit {
+            break Pause::Fault(Fault::StepLimit(id.step_limit));
         }
         let fields = &slot.fields;
         next = slot.next;
@@ -120,7 +120,7 @@ pub fn run<T: Watch, O: Observer>(
                 }
             };
             ({ control $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {{
-                let mut flow = Flow::new(pc, next, seat.core, seat.cores);
+                let mut flow = Flow::new(pc, next, id.core, id.cores);
                 let exit = finish!($trait::$name(&mut flow $(, read!(registers, fields, $letter $kind))*), $written);
                 (next, motion) = (flow.next, flow.motion);
                 if let Some(end) = flow.end {

@@ -65,7 +65,7 @@ pub trait Engine<'a>: Sized {
     fn prepare(&mut self) {}
 
     /// Steps that the interpreter is to take before the engine is asked again, where it has left something to the interpreter.
-    fn patience(&self, _seat: CoreId, _state: &State) -> u64 {
+    fn patience(&self, _id: CoreId, _state: &State) -> u64 {
         u64::MAX
     }
 

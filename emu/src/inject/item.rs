@@ -124,22 +124,22 @@ impl<'a, T: Watch> ItemRunner<'a, T> {
             met: None,
             reads,
         };
-        let seat = CoreId { core, cores: self.cores, step_limit: limit };
+        let id = CoreId { core, cores: self.cores, step_limit: limit };
         let mut hit = FlipHit::default();
         let mut end = None;
         match flip.map(|flip| (flip, flip.target)) {
             Some((flip, FaultKind::Bus)) => link.flips.push((flip.moment, flip.mask)),
             Some((flip, FaultKind::Registers | FaultKind::Buffer)) => {
-                end = self.advance(code, tally, &mut link, seat, flip.moment);
+                end = self.advance(code, tally, &mut link, id, flip.moment);
                 if end.is_none() {
                     hit = self.flip(code, flip);
                 }
             }
             Some((flip, FaultKind::Results)) => {
-                end = self.advance(code, tally, &mut link, seat, flip.moment);
+                end = self.advance(code, tally, &mut link, id, flip.moment);
                 if end.is_none() {
                     let slot = self.state.pc;
-                    end = self.advance(code, tally, &mut link, seat, flip.moment + 1);
+                    end = self.advance(code, tally, &mut link, id, flip.moment + 1);
                     if end.is_none() {
                         hit = self.flip_result(code, slot, flip);
                     }
@@ -148,7 +148,7 @@ impl<'a, T: Watch> ItemRunner<'a, T> {
             // Flips that last are in the program or in the memory that was handed over, and other faults are not in a work item.
             _ => {}
         }
-        let end = end.or_else(|| self.advance(code, tally, &mut link, seat, limit));
+        let end = end.or_else(|| self.advance(code, tally, &mut link, id, limit));
         let ItemLink { writes, sent, traffic, met, kept, .. } = link;
         hit.bus = met;
         ItemRun {
@@ -172,12 +172,12 @@ impl<'a, T: Watch> ItemRunner<'a, T> {
         code: &Code,
         tally: &mut Tally,
         link: &mut ItemLink,
-        seat: CoreId,
+        id: CoreId,
         ticks: u64,
     ) -> Option<Pause> {
-        let limit = ticks.min(seat.step_limit);
-        let seat = CoreId { step_limit: limit, ..seat };
-        let pause = interpreter::run(code, seat, &mut self.state, self.arithmetic, link, tally, &mut Unobserved);
+        let limit = ticks.min(id.step_limit);
+        let id = CoreId { step_limit: limit, ..id };
+        let pause = interpreter::run(code, id, &mut self.state, self.arithmetic, link, tally, &mut Unobserved);
         (pause != Pause::Fault(Fault::StepLimit(limit))).then_some(pause)
     }
 

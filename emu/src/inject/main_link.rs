@@ -127,9 +127,9 @@ pub(super) fn run_main<T: Watch>(
     limit: u64,
 ) -> (MainRun, Vec<(u32, u32)>) {
     let mut state = State::new(code, Buffer::new(&setup.main.buffer, setup.config.main.buffer_octets));
-    let seat = CoreId { step_limit: limit, ..setup.main_id() };
+    let id = CoreId { step_limit: limit, ..setup.main_id() };
     let mut tally = Tally::new(code);
-    let end = interpreter::run(code, seat, &mut state, arithmetic, link, &mut tally, &mut Unobserved);
+    let end = interpreter::run(code, id, &mut state, arithmetic, link, &mut tally, &mut Unobserved);
     let run = MainRun {
         end,
         pc: code.word(state.pc),

@@ -194,10 +194,10 @@ impl<'a, T: Watch + Clone + Send, O: Observer + Send> Prerun<'a, T, O> {
             return None;
         }
         let most = self.setup.config.main.step_limit;
-        let seat =
+        let id =
             CoreId { core: CORES, cores: CORES, step_limit: most.min(self.state.steps.saturating_add(MOST_STEPS)) };
         let (cores, nobody) = (&mut self.cores, &mut Unobserved);
-        let pause = self.runner.run(seat, &mut self.state, &self.arithmetic, cores, &mut self.tally, nobody);
+        let pause = self.runner.run(id, &mut self.state, &self.arithmetic, cores, &mut self.tally, nobody);
         if cores.work.is_empty() {
             self.end = Some(pause);
             return None;

@@ -124,7 +124,7 @@ pub struct Recorder<'a, T, O> {
     code: &'a Code<'a>,
     memory: &'a Memory,
     arithmetic: T,
-    seat: CoreId,
+    id: CoreId,
     state: State,
     initial: Buffer,
     level: RecordLevel,
@@ -153,7 +153,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         level: RecordLevel,
     ) -> Self {
         let config = setup.config;
-        let seat = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
+        let id = CoreId { core: 0, cores: config.cores, step_limit: config.step_limit };
         let initial = Buffer::new(&code.program.buffer, config.buffer_octets);
         let profile = if O::IS_ACTIVE { setup.options.profile } else { ProfileLevel::None };
         // Only segments need the time, and an engine that need not keep it is faster.
@@ -176,19 +176,19 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
             code,
             memory,
             arithmetic,
-            seat,
+            id,
             initial,
         }
     }
 
-    fn run(&mut self, seat: CoreId, link: &mut CheckedLink) -> Pause {
-        interpreter::run(self.code, seat, &mut self.state, &self.arithmetic, link, &mut self.tally, &mut self.observer)
+    fn run(&mut self, id: CoreId, link: &mut CheckedLink) -> Pause {
+        interpreter::run(self.code, id, &mut self.state, &self.arithmetic, link, &mut self.tally, &mut self.observer)
     }
 
     fn link(&self, message: Option<Message>) -> CheckedLink<'a> {
         CheckedLink {
             memory: self.memory,
-            main: self.seat.cores,
+            main: self.id.cores,
             message,
             is_permitted: false,
             request: None,
@@ -203,7 +203,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// Something else comes first.
     pub fn prefix(mut self) -> Result<Prefix, Reason> {
         let mut link = self.link(Some(Message::new([[0; 3]])));
-        match self.run(self.seat, &mut link) {
+        match self.run(self.id, &mut link) {
             // On another core an item might begin otherwise, and its prefix take other clocks.
             _ if self.observer.taint.depends_on_core || self.observer.taint.depends_on_cores => {
                 Err("what comes before the message depends on the core")
@@ -239,13 +239,13 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
 
     /// Runs a work item as far as it is nothing unusual; what comes after that is for the interpreter.
     fn run_quickly(&mut self, record: &mut ItemRecord, budget: &Budget) -> Option<Stopped> {
-        let (memory, main, level) = (self.memory, self.seat.cores, self.level);
+        let (memory, main, level) = (self.memory, self.id.cores, self.level);
         let time = RequestTime { pc: 0, context: 0, clocks: 0 };
         let (kinds, sites) = (&mut self.kinds, self.sites.as_mut());
         let mut link = ItemRecorder { memory, main, budget, kinds, sites, record, level, time };
-        let (seat, state) = (self.seat, &mut self.state);
+        let (id, state) = (self.id, &mut self.state);
         let TaintObserver { inner: observer, taint, .. } = &mut self.observer;
-        self.runner.run_ahead(seat, state, &self.arithmetic, &mut link, taint, observer.profiler())
+        self.runner.run_ahead(id, state, &self.arithmetic, &mut link, taint, observer.profiler())
     }
 
     /// Goes on with the interpreter, request by request, as long as the engine likes, and refuses what an item may not do. Yields the end of
@@ -255,12 +255,12 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
     /// Reason for which the item cannot be replayed.
     fn interpret(&mut self, record: &mut ItemRecord, budget: &Budget) -> Result<Option<Pause>, Reason> {
         let before = self.state.steps + self.state.inner_steps;
-        let mut limit = before.saturating_add(self.runner.patience(self.seat, &self.state));
+        let mut limit = before.saturating_add(self.runner.patience(self.id, &self.state));
         let mut link = CheckedLink { sent: std::mem::take(&mut record.sent), ..self.link(record.message) };
         let end = loop {
-            let seat = CoreId { step_limit: self.seat.step_limit.min(limit), ..self.seat };
-            let pause = self.run(seat, &mut link);
-            if limit < self.seat.step_limit && pause == Pause::Fault(Fault::StepLimit(limit)) {
+            let id = CoreId { step_limit: self.id.step_limit.min(limit), ..self.id };
+            let pause = self.run(id, &mut link);
+            if limit < self.id.step_limit && pause == Pause::Fault(Fault::StepLimit(limit)) {
                 if !link.is_permitted {
                     break None;
                 }

@@ -216,7 +216,7 @@ impl FrameRun<'_> {
             return Ok(Advanced::Not);
         }
         let limit = if number == main { config.main.step_limit } else { config.step_limit };
-        let seat = CoreId { core: number as u32, cores: config.cores, step_limit: limit };
+        let id = CoreId { core: number as u32, cores: config.cores, step_limit: limit };
         // Lend the processor what all share
         std::mem::swap(&mut processor.shadow.global, &mut self.numbers);
         if number != main {
@@ -234,7 +234,7 @@ impl FrameRun<'_> {
             meets: false,
         };
         let FrameCore { state, shadow, tally, .. } = processor;
-        let pause = interpreter::run(code, seat, state, &self.arithmetic, &mut link, tally, shadow);
+        let pause = interpreter::run(code, id, state, &self.arithmetic, &mut link, tally, shadow);
         let FrameLink { sent, has_acted, meets, .. } = link;
         std::mem::swap(&mut processor.shadow.global, &mut self.numbers);
         if number != main {

@@ -75,9 +75,9 @@ impl<'a> Lone<'a> {
         let mut state = State::new(&code, Buffer::new(&setup.main.buffer, config.main.buffer_octets));
         let mut memory = memory;
         let mut link = FirstMessage { memory: &mut memory, main: config.cores, message: None };
-        let seat = CoreId { core: config.cores, cores: config.cores, step_limit: config.main.step_limit };
+        let id = CoreId { core: config.cores, cores: config.cores, step_limit: config.main.step_limit };
         let (arithmetic, mut tally) = (arithmetic(config), Tally::new(&code));
-        let pause = interpreter::run(&code, seat, &mut state, &arithmetic, &mut link, &mut tally, observer);
+        let pause = interpreter::run(&code, id, &mut state, &arithmetic, &mut link, &mut tally, observer);
         let Some(message) = link.message else {
             return Err(match pause {
                 Pause::Fault(fault) => Trap::new(fault, config.cores, state.pc, &code).diagnostic().into(),
@@ -146,7 +146,7 @@ pub struct Stepper<'a> {
     pub code: Code<'a>,
     config: &'a Config,
     arithmetic: Watching,
-    seat: CoreId,
+    id: CoreId,
     state: State,
     link: LoneLink,
     tally: Tally,
@@ -175,7 +175,7 @@ impl<'a> Stepper<'a> {
             code,
             config,
             arithmetic: arithmetic(config),
-            seat: CoreId { core: 0, cores, step_limit },
+            id: CoreId { core: 0, cores, step_limit },
             state,
             link: LoneLink::new(memory, 0, largest, message),
             witness: Witness::default(),
@@ -188,7 +188,7 @@ impl<'a> Stepper<'a> {
     #[must_use]
     pub fn with_shadow(mut self, letter: Option<&ShadowLetter>) -> Stepper<'a> {
         let program = Arc::new(ShadowProgram::new(&self.code, self.config.arithmetic.modes(), 0));
-        let mut shadow = Shadow::new(program, self.seat.core);
+        let mut shadow = Shadow::new(program, self.id.core);
         shadow.inbox.extend(letter.map(|letter| letter.vectors.clone()));
         self.shadow = Some(Box::new(shadow));
         self
@@ -242,7 +242,7 @@ impl<'a> Stepper<'a> {
     pub fn trap(&self) -> Option<Trap> {
         match self.end? {
             LoneEnd::Halt => None,
-            LoneEnd::Fault(fault) => Some(Trap::new(fault, self.seat.core, self.state.pc, &self.code)),
+            LoneEnd::Fault(fault) => Some(Trap::new(fault, self.id.core, self.state.pc, &self.code)),
         }
     }
 
@@ -291,15 +291,15 @@ impl<'a> Stepper<'a> {
     /// Runs so many slots, steps of bodies counted.
     fn ticks(&mut self, more: u64) {
         let before = self.state.steps + self.state.inner_steps;
-        let limit = before.saturating_add(more).min(self.seat.step_limit);
-        let seat = CoreId { step_limit: limit, ..self.seat };
+        let limit = before.saturating_add(more).min(self.id.step_limit);
+        let id = CoreId { step_limit: limit, ..self.id };
         let mut link = TimedLone { link: &mut self.link, config: self.config };
         let Stepper { code, state, arithmetic, tally, witness, .. } = self;
         let pause = match self.shadow.take() {
-            None => interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, witness),
+            None => interpreter::run(code, id, state, &*arithmetic, &mut link, tally, witness),
             Some(shadow) => {
                 let mut both = ShadowWitness { witness: std::mem::take(witness), shadow };
-                let pause = interpreter::run(code, seat, state, &*arithmetic, &mut link, tally, &mut both);
+                let pause = interpreter::run(code, id, state, &*arithmetic, &mut link, tally, &mut both);
                 (*witness, self.shadow) = (both.witness, Some(both.shadow));
                 pause
             }
@@ -307,7 +307,7 @@ impl<'a> Stepper<'a> {
         self.end = match pause {
             Pause::Halt => Some(LoneEnd::Halt),
             Pause::Wait => Some(LoneEnd::Fault(Fault::Deadlock)),
-            Pause::Fault(Fault::StepLimit(met)) if met == limit && limit < self.seat.step_limit => None,
+            Pause::Fault(Fault::StepLimit(met)) if met == limit && limit < self.id.step_limit => None,
             Pause::Fault(fault) => Some(LoneEnd::Fault(fault)),
         };
     }

@@ -134,8 +134,8 @@ fn traced(program: &Program, memory: &[u8], isa: &Isa) -> Vec<Step> {
     let mut state = State::new(&code, Buffer::new(&program.buffer, config.buffer_octets));
     let mut trace = Trace { code: &code, steps: Vec::new() };
     let (mut link, mut tally) = (Alone(Memory::new(memory.to_vec())), Tally::new(&code));
-    let seat = CoreId { core: 0, cores: 1, step_limit: 10_000_000 };
-    let pause = run(&code, seat, &mut state, &Nearest32, &mut link, &mut tally, &mut trace);
+    let id = CoreId { core: 0, cores: 1, step_limit: 10_000_000 };
+    let pause = run(&code, id, &mut state, &Nearest32, &mut link, &mut tally, &mut trace);
     assert_eq!(pause, Pause::Halt);
     trace.steps
 }

@@ -213,9 +213,9 @@ fn late_answer(frame: &PieceSubject, set: KernelSet, column: u32, row: u32) -> (
     let mut state = State::new(&code, Buffer::new(&core.buffer, config.buffer_octets));
     let mut link = LateLink { memory: &memory, message: lone.message, sent: None, coming: None, loads: 0 };
     let mut tally = Tally::new(&code);
-    let seat = CoreId { core: 0, cores: config.cores, step_limit: 10_000_000 };
+    let id = CoreId { core: 0, cores: config.cores, step_limit: 10_000_000 };
     loop {
-        match run(&code, seat, &mut state, &Nearest32, &mut link, &mut tally, &mut Unobserved) {
+        match run(&code, id, &mut state, &Nearest32, &mut link, &mut tally, &mut Unobserved) {
             Pause::Wait => {
                 let (to, data) = link.coming.take().expect("it waits for a load");
                 let place = state.buffer.slice_mut(to, data.len() as u32).expect("it was there before");

@@ -23,9 +23,9 @@ pub enum Detail {
     Extremes,
     /// Totals of functions and regions.
     Functions,
-    /// Those, and their clocks of computing and waiting, which take some time.
+    /// Totals of functions and regions, and their clocks of computing and waiting, which take some time.
     Clocks,
-    /// Those, and the clocks of the bus over time.
+    /// Totals and clocks of functions and regions, and the clocks of the bus over time.
     Course,
     /// Nothing more.
     Totals,
@@ -63,7 +63,7 @@ pub struct Job {
     pub isa: Isa,
     /// Files from which some of them were loaded.
     pub extensions: Vec<FileSettings>,
-    /// Which kernels draw it.
+    /// Choices for the kernels that draw it.
     pub kernels: KernelOptions,
     /// Name of the machine.
     pub machine_name: String,

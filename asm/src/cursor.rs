@@ -29,7 +29,7 @@ impl<'t> Cursor<'t> {
         self.peek().map(|token| token.kind)
     }
 
-    /// This punctuation is here.
+    /// The token here is the punctuation `mark`.
     pub fn is_mark(&self, mark: &str) -> bool {
         matches!(self.kind(), Some(TokenKind::Mark(here)) if here == mark)
     }

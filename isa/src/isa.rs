@@ -57,7 +57,7 @@ impl Fields {
 /// A decoded word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// Which row.
+    /// The row that the word encodes.
     pub op: Op,
     /// The operands, as numbers of their fields.
     pub fields: Fields,

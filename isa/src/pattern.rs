@@ -25,7 +25,7 @@ pub struct PatternField {
 pub struct BitPattern {
     /// The fixed bits.
     pub value: u32,
-    /// Which bits are fixed, those drawn `-` included.
+    /// Mask of the fixed bits, those drawn `-` included.
     pub mask: u32,
     fields: [PatternField; MAX_FIELDS],
     count: u8,

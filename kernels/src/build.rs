@@ -84,7 +84,7 @@ pub struct Crop {
 /// Choices of a user for the kernels.
 #[derive(Clone, Debug)]
 pub struct KernelOptions {
-    /// Which file serves which function.
+    /// Set of kernels: the file that serves each function.
     pub profile: KernelSet,
     /// Files of the user's own that serve a function instead.
     pub replaced: Vec<(Function, Arc<Source>)>,

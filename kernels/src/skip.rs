@@ -76,7 +76,7 @@ impl FromStr for Skip {
     }
 }
 
-/// Which skips a program has.
+/// Set of skips that a program has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Skips(u32);
 
@@ -87,19 +87,19 @@ impl Skips {
     /// None of them.
     pub const NONE: Skips = Skips(0);
 
-    /// These and `skip`.
+    /// The set with `skip` added.
     #[must_use]
     pub const fn with(self, skip: Skip) -> Skips {
         Skips(self.0 | 1 << skip as u32)
     }
 
-    /// These without `skip`.
+    /// The set with `skip` taken out.
     #[must_use]
     pub const fn without(self, skip: Skip) -> Skips {
         Skips(self.0 & !(1 << skip as u32))
     }
 
-    /// Those that a profile's kernels know.
+    /// Skips of the set that a profile's kernels know.
     #[must_use]
     pub fn known_to(self, profile: KernelSet) -> Skips {
         // Unknown skips go, rather than fail: a user may switch all of them for every profile alike.

@@ -1,4 +1,4 @@
-//! Which variants are worth their cost: those that no other one beats in cost and error both, on each scene and on all scenes together.
+//! Variants that are worth their cost: those that no other one beats in cost and error both, on each scene and on all scenes together.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Which instructions there are beside the table's.
+//! Options that add instructions to the table's.
 
 use std::path::PathBuf;
 

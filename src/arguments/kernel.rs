@@ -1,4 +1,4 @@
-//! Which kernels run.
+//! Options that choose the kernels.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Which machine runs.
+//! Options that choose the machine and its engine.
 
 use std::path::{Path, PathBuf};
 

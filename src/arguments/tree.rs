@@ -13,7 +13,7 @@ pub struct TreeArguments {
     /// kernels, or layout where there are none].
     #[arg(long, value_name = "N", value_parser = depth)]
     pub kd_depth: Option<Depth>,
-    /// Which triangles a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node, `binned` as well, with planes
+    /// Triangles that a node of the kd tree holds: `report` goes by their boxes, `exact` by what of them lies in the node, `binned` as well, with planes
     /// found sooner and a bound on the references [default: binned; report with the report's kernels, or layout where there are none].
     #[arg(long, value_name = "METHOD", value_parser = method())]
     pub kd_build: Option<BuildMethod>,

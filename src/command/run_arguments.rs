@@ -63,7 +63,7 @@ pub fn memory(files: &[(u32, PathBuf)], size: u32) -> Result<Vec<u8>, Failure> {
 pub enum Dump {
     /// Registers that are not zero, or all.
     Registers {
-        /// Those that are zero as well.
+        /// Registers that are zero are shown as well.
         has_zeros: bool,
     },
     /// Octets of global memory.

@@ -26,7 +26,7 @@ pub struct ProtectionCost {
     pub octets: Option<u64>,
     /// Clocks that a frame takes in addition; less than 0 where what takes longer brings the requests of cores into a better order.
     pub clocks: Option<i64>,
-    /// Those as a share of the frame without protections.
+    /// Clocks in addition as a share of the frame without protections.
     pub clocks_share: Option<f64>,
     /// Nanojoules that a frame takes in addition; null where nobody has a figure for the structure, neither a table nor the machine.
     pub energy_nj: Option<FigureRange>,

@@ -161,7 +161,7 @@ pub struct GroupShare {
     pub injections: u64,
     /// Harmful ones: wrong_pixel, trap and hang.
     pub harmful: u64,
-    /// Those of them that leave no picture within 1/255.
+    /// Harmful ones that leave no picture within 1/255.
     pub beyond_step: u64,
     /// Share of the harmful ones.
     #[serde(flatten)]

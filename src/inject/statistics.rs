@@ -49,7 +49,7 @@ pub(super) struct GroupCount {
     pub injections: u64,
     /// Harmful ones.
     pub harmful: u64,
-    /// Those that leave no picture within 1/255.
+    /// Harmful ones that leave no picture within 1/255.
     pub beyond: u64,
 }
 

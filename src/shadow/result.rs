@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct ShadowResult {
     /// Numbers that were compared at the end: components of pixels, or registers and words of memory.
     pub compared: u64,
-    /// Those that differ from exact arithmetic.
+    /// Compared numbers that differ from exact arithmetic.
     pub different: u64,
     /// Largest error of them in units in the last place.
     pub largest_ulps: f64,
@@ -103,11 +103,11 @@ pub struct ShadowLine {
     pub results: u64,
     /// Largest error that the line brought in, in units in the last place of the register.
     pub brought_ulps: f64,
-    /// That error as a real number, where formats are known.
+    /// Largest error that the line brought in, as a real number, where formats are known.
     pub brought: f64,
     /// Largest error that arrived at the line, as its result has it, in units in the last place.
     pub arrived_ulps: f64,
-    /// That error as a real number, where formats are known.
+    /// Largest error that arrived at the line, as a real number, where formats are known.
     pub arrived: f64,
     /// Results that did not fit: they are off by a unit or more.
     pub saturated: u64,
@@ -147,11 +147,11 @@ pub struct ShadowFunction {
     pub share: f64,
     /// Largest error that one of its lines brought in, in units in the last place.
     pub brought_ulps: f64,
-    /// That of the lines with known formats, as a real number.
+    /// Largest error that one of its lines with known formats brought in, as a real number.
     pub brought: f64,
     /// Largest error that arrived at one of its lines, in units in the last place.
     pub arrived_ulps: f64,
-    /// That of the lines with known formats, as a real number.
+    /// Largest error that arrived at one of its lines with known formats, as a real number.
     pub arrived: f64,
     /// Results that did not fit.
     pub saturated: u64,

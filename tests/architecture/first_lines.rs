@@ -3,8 +3,10 @@
 use super::files;
 
 /// Words with which a first line does not begin.
-const WORDS: [&str; 12] =
-    ["What", "Whether", "How", "Where", "Why", "When", "Who", "Whose", "It", "Its", "They", "The same"];
+const WORDS: [&str; 18] = [
+    "What", "Whether", "How", "Where", "Why", "When", "Who", "Whose", "Which", "It", "Its", "They", "This", "That",
+    "These", "Those", "Nobody", "The same",
+];
 
 /// The first lines of a source's documentation, with their numbers.
 fn first_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {

@@ -86,8 +86,8 @@ impl Order {
     }
 }
 
-/// Which slots of the body that stands for a word control can come to. What a body's end is made of is not, where the step before it leads
-/// back itself.
+/// Slots of the body that stands for a word, each true where control can come to it. The slots of a body's end are not reached where the step
+/// before them leads back itself.
 fn reached(code: &Code, word: u32, body: &Range<u32>) -> Vec<bool> {
     let mut is_reached = vec![false; body.len()];
     // Search from the word on; each slot is opened once, so loops end.

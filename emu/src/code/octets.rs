@@ -30,7 +30,7 @@ pub(crate) fn words_of<const N: usize>(octets: &[u8]) -> [i32; N] {
 #[derive(Clone, Debug)]
 pub struct Buffer {
     octets: Vec<u8>,
-    /// Which pieces were written since it was last as at first, a bit each.
+    /// Pieces that were written since the buffer was made or last reset, a bit each.
     written: u64,
     /// A piece has 2^this octets, so that there are at most 64.
     piece: u32,

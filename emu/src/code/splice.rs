@@ -16,7 +16,7 @@ pub(crate) enum SpliceTarget {
     Inside(usize),
     /// Behind the extension instruction.
     Behind,
-    /// That many words from the extension instruction.
+    /// To the word at this distance from the extension instruction.
     Away(i32),
 }
 

@@ -29,7 +29,7 @@ pub enum HangLimit {
     MainWait,
     /// Work items that were handed out.
     Items,
-    /// Nobody on the machine can go on.
+    /// Neither a core nor the main processor can go on.
     MachineWait,
 }
 
@@ -132,10 +132,20 @@ impl<T: Watch> Injector<'_, T> {
     }
 
     /// Runs the main processor, with work items as the fault leaves them.
+    ///
+    /// Of four items, item 1 has a flipped register, and because of it writes to octets 400 to 403:
+    ///
+    /// | item | reads | answers |
+    /// | --- | --- | --- |
+    /// | 0 | 400 to 403 | as without the fault: it comes before |
+    /// | 1 | | it is run with the flip |
+    /// | 2 | 400 to 403 | it is run again, with what item 1 has written |
+    /// | 3 | 800 to 803 | as without the fault, if its message is the same |
     pub(super) fn frame(&mut self, mut fault: FrameFault) -> InjectedEnd {
         let golden = self.golden;
         let (setup, cores) = (golden.setup, golden.setup.config.cores);
         let mut memory = golden.image.clone();
+        // Answer each item when it is handed out; the first that ends the frame leaves its end here
         let mut stopped = None;
         let arithmetic = self.arithmetic;
         let mut item = |number: usize, core: u32, message: Message, memory: &mut Memory| {
@@ -143,6 +153,7 @@ impl<T: Watch> Injector<'_, T> {
                 stopped = Some(InjectedEnd::Hang { limit: HangLimit::Items, steps: number as u64 });
                 return None;
             }
+            // Flip memory before the item is answered, so that the main processor reads the flip from here on
             if number == fault.item && fault.flip.target == FaultKind::Memory {
                 flip_memory(memory, fault.flip);
             }
@@ -154,11 +165,13 @@ impl<T: Watch> Injector<'_, T> {
                 }
             }
         };
+        // Run the main processor; the end of an item comes before what that does to its end
         let mut link = MainLink::new(&mut memory, cores, &mut item);
         let (main, _) = run_main(setup, &golden.main_code, arithmetic, &mut link, golden.limits.main);
         if let Some(end) = stopped {
             return end;
         }
+        // Turn the main processor's end into that of the frame; where it halts, compare with the frame without the fault
         let hang = |limit| InjectedEnd::Hang { limit, steps: main.ticks };
         match main.end {
             Pause::Halt => {

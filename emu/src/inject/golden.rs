@@ -246,10 +246,15 @@ struct GoldenTask<'a> {
 impl<'a> Task for GoldenTask<'a> {
     type Result = Result<GoldenFrame<'a>, RunFailure>;
 
+    /// Runs the main processor, each work item when it is handed out, and adds up what limits and moments need.
+    ///
+    /// Three items that take 10, 30 and 20 ticks have the sums 0, 10, 40 and 60, so moment 25 of the frame is moment 15 of item 1. A faulty item
+    /// counts as hanging after 4 x 30 + 1,000 = 1,120 ticks, if the machine's own limit is not less, and a faulty frame after 2 x 3 + 16 = 22 items.
     fn run<T: Watch + Clone + Send, O: Observer + Send>(self, arithmetic: &T) -> Self::Result {
         let GoldenTask { setup, code, main_code, image, most_transfers } = self;
         let config = setup.config;
         let mut runner = ItemRunner::new(&code, arithmetic, config.buffer_octets, config.cores);
+        // Run each item when it is handed out, and stop at the first that goes wrong or depends on others
         let (mut items, mut failure): (Vec<GoldenItem>, Option<RunFailure>) = (Vec::new(), None);
         let (mut memory, mut transfers) = (image.clone(), 0);
         let mut item = |_: usize, core: u32, message: Message, _: &mut Memory| {
@@ -267,6 +272,7 @@ impl<'a> Task for GoldenTask<'a> {
                 }
                 Pause::Halt if transfers > most_transfers => failure = Some(too_long(most_transfers)),
                 Pause::Halt => {
+                    // Keep the words that it executes, a bit each, and what it reads
                     let answers = run.sent.iter().map(|&(_, answer)| (answer, core)).collect();
                     let mut words = vec![0; code.words().div_ceil(64) as usize];
                     for (pass, passes) in code.passes().iter().zip(tally.all()) {
@@ -278,6 +284,7 @@ impl<'a> Task for GoldenTask<'a> {
             }
             None
         };
+        // Run the main processor; what failed in an item comes before what that does to its end
         let mut link = MainLink::new(&mut memory, config.cores, &mut item);
         let (main, mut main_reads) = run_main(setup, &main_code, arithmetic, &mut link, config.main.step_limit);
         if let Some(failure) = failure {
@@ -288,6 +295,7 @@ impl<'a> Task for GoldenTask<'a> {
             Pause::Fault(fault) => return Err(Trap::new(fault, config.cores, main.pc, &main_code).into()),
             Pause::Wait => return Err(Trap::new(Fault::Deadlock, config.cores, main.pc, &main_code).into()),
         }
+        // Add up the items' moments, and derive the limits of faulty runs
         main_reads.retain(|(_, octets)| *octets != 0);
         let before = |of: fn(&ItemRun) -> u64| -> Vec<u64> {
             let sums = items.iter().scan(0, |sum, item| {

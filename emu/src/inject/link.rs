@@ -47,7 +47,7 @@ pub(super) struct ItemLink<'n> {
     pub flips: Vec<(u64, u32)>,
     /// Word of the traffic whose transfer's data are kept.
     pub kept_at: Option<u64>,
-    /// Those data, with the number of their first word in the traffic.
+    /// Data of the transfer at `kept_at`, with the number of their first word in the traffic.
     pub kept: Option<(u64, Vec<u32>)>,
     /// The word that did.
     pub met: Option<BusWord>,

@@ -37,7 +37,7 @@ pub struct ProcessorUse {
 pub struct Item {
     /// First vector of its first message: what it is about.
     pub subject: Vector,
-    /// That message; `None` of an item that got none.
+    /// First message of the item; `None` where it got none.
     pub message: Option<Message>,
     /// The core that did it.
     pub core: u32,

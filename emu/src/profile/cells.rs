@@ -11,7 +11,7 @@ pub struct ClockCells {
 }
 
 impl ClockCells {
-    /// Those of one context, all empty; each has so many.
+    /// Cells of one context, all empty; a context has `stride` of them.
     pub fn new(stride: usize) -> ClockCells {
         ClockCells { cells: vec![0; stride], stride, used: Vec::new() }
     }

@@ -39,7 +39,7 @@ pub enum ProfileLevel {
     None,
     /// Exclusive and inclusive totals, and calls.
     Totals,
-    /// Those, and clocks of computing and waiting by calling context: this takes some time.
+    /// Totals and calls, and clocks of computing and waiting by calling context: this takes some time.
     Clocks,
     /// Exclusive and inclusive totals, and least and most of one call, for which each call is measured by itself: this takes time.
     Extremes,
@@ -90,7 +90,7 @@ pub trait Observer {
     fn into_profile(self, code: &Code, tally: &Tally) -> Option<Profile>;
 }
 
-/// Nobody.
+/// Observer that looks at nothing and finds no profile.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 
@@ -221,13 +221,13 @@ impl Profile {
 }
 
 impl Extremes {
-    /// Those of one call that takes so much.
+    /// Extremes of one call, which has this cost.
     pub(crate) fn of(cost: Counts) -> Extremes {
         let elementary = cost.elementary();
         Extremes { least: cost, most: cost, least_elementary: elementary, most_elementary: elementary }
     }
 
-    /// Those of other calls as well.
+    /// Widens the extremes by those of other calls.
     pub(crate) fn widen(&mut self, other: &Extremes) {
         self.least.0.iter_mut().zip(other.least.0).for_each(|(least, other)| *least = other.min(*least));
         self.most.0.iter_mut().zip(other.most.0).for_each(|(most, other)| *most = other.max(*most));

@@ -23,7 +23,7 @@ pub enum FunctionChange {
 }
 
 impl RegionNesting {
-    /// Those of a program.
+    /// Finds the nesting of a program's regions.
     pub fn new(code: &Code) -> RegionNesting {
         let regions = &code.program.regions;
         let innermost = |slot: u32| code.program.region_of.get(code.word(slot) as usize).copied().flatten();

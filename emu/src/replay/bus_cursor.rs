@@ -22,7 +22,7 @@ pub struct BusCursor {
     stretch: Stretch,
     /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
     computing: Clocks,
-    /// That transfer's first burst; of no meaning with a cache, which says so when the transfer is asked for.
+    /// First burst of the next transfer; of no meaning with a cache, which says so when the transfer is asked for.
     ahead: Burst,
     /// Clock at which it was handed over.
     start: Clocks,

@@ -48,7 +48,19 @@ impl Recorded {
     /// The recording as octets. `None` for one that would not serve every machine that computes alike, or not with every result: where an
     /// item depends on the number of cores or ends in a fault, where the main processor does not come to its end, and where clocks of
     /// functions were measured.
+    ///
+    /// The first octets of a recording for 2 cores whose prefix takes 300 clocks up to the receive at word 7, and of a program with 5 outcomes:
+    ///
+    /// | octets | meaning |
+    /// | --- | --- |
+    /// | `02 00 00 00` | number of cores |
+    /// | `07 00 00 00` | word of the receive |
+    /// | `2c 01 00 00 00 00 00 00` | clocks of the prefix: 300 = 0x12c |
+    /// | `05 00 00 00` | number of counts, then three numbers for each |
+    ///
+    /// Losses, octets by kind, the table of shapes and the items come next, each with a number of its own in front.
     pub fn encode(&self) -> Option<Vec<u8>> {
+        // Refuse what other machines could not use
         let is_kept = |item: &Recording| item.end == Pause::Halt && !item.depends_on_cores && item.clocks.is_none();
         let batches: Vec<&Vec<Arc<Portion>>> =
             self.batches.iter().map(|batch| batch.as_ref().as_ref().ok()).collect::<Option<_>>()?;
@@ -95,11 +107,15 @@ impl Recorded {
     /// The recording that octets hold, for a machine that computes as the one that it was made for. Takes no more memory than five times
     /// the octets, whatever they are.
     ///
+    /// A number of things is believed only where the rest has room for them at their least: 1,000 batches in the last 5,000 octets are refused before
+    /// there is a place for any, since each takes at least its number of items, 4 octets, and one item, 49: together 53,000.
+    ///
     /// # Errors
     /// Octets that hold no recording of this program, with the reason.
     pub fn decode(setup: &Setup, octets: &[u8]) -> Result<Recorded, Reason> {
         check(setup).map_err(|_| "the machine cannot be used")?;
         let code = Code::new(setup.core, setup.isa, setup.config.timing());
+        // Read head and totals, which have to fit the program
         let mut reader = OctetReader { rest: octets, sum: 0 };
         let [cores, pc] = reader.words()?;
         let [clocks] = reader.numbers()?;
@@ -109,11 +125,13 @@ impl Recorded {
         if pc >= slots {
             return Err(FOREIGN);
         }
+        // Read the table of shapes, which items name by number
         let count = reader.length(SHAPE)?;
         let shapes = (0..count).map(|_| reader.words()).collect::<Result<Vec<[u32; 3]>, Reason>>()?;
         if shapes.iter().any(|&[_, pc, _]| pc >= slots) {
             return Err(FOREIGN);
         }
+        // Read the batches, in the portions in which a prerun would have recorded them
         let count = reader.length(4 + LEAST_ITEM)?;
         let mut batches = Vec::with_capacity(count);
         for _ in 0..count {

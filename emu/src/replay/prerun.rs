@@ -139,7 +139,7 @@ pub struct ItemTotals {
 
 /// Totals of a prerun, and how it ended.
 pub struct PrerunTotals {
-    /// Those of all work items.
+    /// Totals of all work items.
     pub items: ItemTotals,
     /// Global memory, with all answers in it where all of them came.
     pub memory: Memory,

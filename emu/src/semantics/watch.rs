@@ -71,7 +71,7 @@ impl Watching {
         }
     }
 
-    /// This arithmetic, counting what results lose.
+    /// Arithmetic in these modes that also counts what results lose.
     pub fn with_losses(self) -> Watching {
         Watching { counts_losses: true, ..self }
     }

@@ -25,7 +25,7 @@ pub enum Defect {
         step: usize,
         /// Letter of the destination.
         letter: u8,
-        /// Which of its registers.
+        /// Number of the register in the destination, from 0.
         offset: u8,
     },
     /// No outcome is reached.

@@ -122,7 +122,7 @@ macro_rules! outcome_type {
             #[doc = concat!("An outcome of `", stringify!($name), "`, with its number of units.")]
             #[derive(Clone, Copy, Debug, PartialEq, Eq)]
             pub struct Outcome {
-                /// Which outcome.
+                /// The outcome without its units.
                 pub way: Way,
                 /// Units of its cost for each; 0 where it has none.
                 pub units: u32,

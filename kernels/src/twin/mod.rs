@@ -41,13 +41,13 @@ use stage::TwinStage;
 /// All that the twins of a scene's kernels share.
 #[derive(Clone, Debug)]
 pub struct Twin<A> {
-    /// Which kernels it is the twin of.
+    /// Set of the kernels whose twin it is.
     pub profile: KernelSet,
     /// Word and modes.
     pub arithmetic: A,
     /// Shifts and limits.
     pub constants: Constants,
-    /// Which rays have children.
+    /// Features of the scene, by which rays have children or not.
     pub features: SceneFeatures,
     /// Tree, triangles, materials and lights.
     pub stage: TwinStage,

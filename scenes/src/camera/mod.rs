@@ -117,7 +117,7 @@ pub fn eye((low, high): Corners, camera: &Camera) -> Option<Vec3> {
     }))
 }
 
-/// This camera with its points moved into other units.
+/// The camera with its points moved into other units.
 pub fn mapped(camera: &Camera, map: impl Fn(Vec3) -> Vec3) -> Camera {
     match *camera {
         Camera::Orthographic => Camera::Orthographic,

@@ -41,7 +41,7 @@ pub struct Grid {
     unit: i32,
     /// The point that everything is computed from, after that multiplication.
     base: Vec3,
-    /// That point's distance from raw 0, in raw units.
+    /// Distance of `base` from raw 0, in raw units.
     offset: Vec3,
 }
 

@@ -95,7 +95,7 @@ impl MemoryImage {
         structure.read(self.bytes.get(address as usize..end as usize)?)
     }
 
-    /// Which element of a region lies at an address.
+    /// Number of the element of a region that begins at an address.
     fn number(&self, kind: MemoryKind, structure: &Structure, address: u32) -> Option<u32> {
         let region = self.region(kind);
         let offset = region.contains(&address).then(|| address - region.start)?;

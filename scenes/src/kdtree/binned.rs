@@ -139,6 +139,17 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
     ///
     /// Nobody can foresee on which side a part is, so there is no branch that asks: each part is written to both lists, of which only those grow that it
     /// belongs to. Parts on both sides are cut when all have their places.
+    ///
+    /// Four parts at a plane at 10, of which the left side is kept and flat parts go to the right. The lists are shown up to their lengths:
+    ///
+    /// | part | along the axis | `packet` | `moved` | `places` |
+    /// | --- | --- | --- | --- | --- |
+    /// | a | 2 to 8 | a | | |
+    /// | b | 4 to 14 | a b | b | (1, 0) |
+    /// | c | 10 to 10 | a b | b c | (1, 0) |
+    /// | d | 12 to 15 | a b | b c d | (1, 0) |
+    ///
+    /// Then b is cut: place 1 of `packet` gets its left half, place 0 of `moved` its right one, and the numbers are 2 and 3.
     fn divide(
         &self,
         packet: &mut [Part],
@@ -153,6 +164,7 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
             cuts.resize(count, [0; 2]);
         }
         let (moved, places) = (&mut moved[..count], &mut cuts[..count]);
+        // Write each part to both lists, in `packet` never ahead of what is read, and let those grow that it belongs to
         let [mut stay, mut go, mut cut] = [0; 3];
         for number in 0..count {
             let part = packet[number];
@@ -167,6 +179,7 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
             go += usize::from(is_moved);
             cut += usize::from(is_left & is_right);
         }
+        // Cut the parts on both sides
         let mut is_any_gone = false;
         for &[stays, goes] in &places[..cut] {
             let (stays, goes) = (&mut packet[stays as usize], &mut moved[goes as usize]);
@@ -174,6 +187,7 @@ impl<T: Triangles + ?Sized> BinnedBuilder<'_, T> {
             (stays.bounds, goes.bounds) = if kept == Side::Left { (left, right) } else { (right, left) };
             is_any_gone |= left.is_empty() | right.is_empty();
         }
+        // Close up what has lost halves: the triangle may leave its part's box before the plane
         if is_any_gone { [closed_up(&mut packet[..stay]), closed_up(&mut moved[..go])] } else { [stay, go] }
     }
 }

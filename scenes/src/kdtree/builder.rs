@@ -10,7 +10,7 @@ use super::{Bounds, MOST_REFERENCES};
 /// Triangles of a packet from which its two sides are worth a thread each.
 const WORTH_A_THREAD: usize = 4096;
 
-/// Which triangles belong to a node.
+/// Rule that says which triangles belong to a node.
 pub(super) trait Membership: Sync {
     /// A triangle in a node.
     type Member: Copy + Send + Sync;

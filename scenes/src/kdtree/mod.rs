@@ -124,7 +124,7 @@ impl Depth {
     }
 }
 
-/// Which triangles a node holds, and where it may be divided.
+/// Method of building a tree: which triangles a node holds, and where it may be divided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BuildMethod {
     /// The report's: a triangle is in a node when its box reaches into it, planes cross the longest axis.

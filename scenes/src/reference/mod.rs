@@ -40,7 +40,7 @@ pub struct RayCounts {
     pub camera: u64,
     /// Mirrored ones, totally reflected ones included.
     pub reflected: u64,
-    /// Those that passed a surface.
+    /// Refracted ones, which passed a surface.
     pub refracted: u64,
     /// Towards lights.
     pub shadow: u64,

@@ -44,13 +44,13 @@ pub struct TreePlace {
 pub trait RayWitness {
     /// A ray of the ray tree is followed.
     fn ray(&mut self, place: TreePlace, ray: &ShearedRay);
-    /// That ray meets a triangle; the normal faces it.
+    /// The followed ray meets a triangle; the normal faces the ray.
     fn hit(&mut self, hit: &Hit, triangle: &PreparedTriangle, ray: &ShearedRay, normal: Vec3);
     /// The surface faces a light, by its number, under an angle of this cosine.
     fn light(&mut self, light: usize, cosine: f64);
     /// A ray is sent to that light, which is `end` away, and is blocked or not.
     fn shadow(&mut self, search: &dyn Search, way: &ShearedRay, end: f64, is_blocked: bool);
-    /// That ray brings back this colour, before its weight.
+    /// The followed ray brings back this colour, before its weight.
     fn seen(&mut self, colour: Vec3);
 }
 

@@ -1,5 +1,5 @@
-//! Which triangle a ray meets first, and whether it meets any: what is asked, and the answer by trying all triangles. The quick answer is in
-//! [`super::hierarchy`]; it is the same, bit for bit, because both use the same test of one triangle and the same order of hits.
+//! Search for the triangle that a ray meets first, or for any that it meets: the questions, and the answer by trying all triangles. The quick
+//! answer is in [`super::hierarchy`]; it is the same, bit for bit, because both use the same test of one triangle and the same order of hits.
 
 use super::tie::TIE;
 use super::triangle::{PreparedTriangle, Shapes, ShearedRay};

@@ -31,7 +31,7 @@ impl ShearedRay<'_> {
         ShearedRay { origin, direction, sample: None, axes: [x, y, z], shear }
     }
 
-    /// This ray as the camera's through a sample.
+    /// The ray as the camera's through a sample.
     pub fn of(self, sample: Option<Sample<'_>>) -> ShearedRay<'_> {
         ShearedRay { sample, ..self }
     }

@@ -51,7 +51,7 @@ pub struct SuggestionEntry {
     pub functions: Vec<&'static str>,
     /// Places of the program where it stands.
     pub places: u64,
-    /// Those of them where other instructions stood between those of the sequence.
+    /// Places where other instructions stood between those of the sequence.
     pub apart: u64,
     /// Number of executions.
     pub executions: u64,

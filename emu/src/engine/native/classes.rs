@@ -29,7 +29,7 @@ pub(super) fn lanes(counts: &Counts) -> Lanes {
 }
 
 impl Classes {
-    /// Those of a plan.
+    /// Costs of the places of a plan, by class.
     pub fn new(plan: &Plan) -> Classes {
         let steps = &plan.steps()[..plan.end() as usize];
         let cost = |exit: usize| plan.pass(exit).map_or(Counts::ZERO, |pass| plan.code.pass_cost(pass).0);

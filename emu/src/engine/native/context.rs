@@ -44,7 +44,7 @@ pub(super) struct Context {
     pub since: i64,
     /// The cells of clocks by calling context, where clocks are measured: see `Contexts::cell`.
     pub cells: *mut u64,
-    /// Those of the current calling context.
+    /// The cells of clocks of the current calling context.
     pub own_cells: *mut u64,
     /// Address of the arithmetic that functions compute with.
     pub arithmetic: *const (),

@@ -17,7 +17,7 @@ pub(super) struct Profiling {
 }
 
 impl Profiling {
-    /// Those of a plan; `None` where nothing is asked.
+    /// Functions and regions of a plan; `None` where no profile is asked for.
     pub fn new(plan: &Plan, level: ProfileLevel) -> Option<Profiling> {
         let slots = plan.steps().iter().scan(0, |before, step| {
             // A hop is part of what stands before it.

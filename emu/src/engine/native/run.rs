@@ -289,6 +289,17 @@ fn end_of_notes(before: i64) -> u64 {
 impl Native<'_> {
     /// Runs until the program halts, waits or comes to something unusual. `taint` is what is known of the cores; it is followed where the
     /// recipe says so.
+    ///
+    /// Clocks up to a read, where the last transfer was at 970. [`Context::before`] counts from where the sums are 0, so it moves with them:
+    ///
+    /// | moment | `totals` | `sums` | `before` |
+    /// | --- | --- | --- | --- |
+    /// | code is entered at 1,000 | 1,000 | 0 | 970 - 1,000 = -30 |
+    /// | it leaves with 250 clocks in its sums | 1,000 | 250 | -30 |
+    /// | the sums are emptied, and it is entered again | 1,250 | 0 | -280 |
+    /// | a read 20 clocks later | 1,250 | 20 | -280 |
+    ///
+    /// The read is noted 20 + 280 = 300 clocks after the transfer, at 1,270.
     pub(super) fn run_code<T: Watch>(
         &mut self,
         core: CoreId,
@@ -301,6 +312,7 @@ impl Native<'_> {
         let Native { plan, shared, patience, counters, .. } = self;
         let plan = &*plan;
         let Some(code) = shared.code(plan, *patience) else { return Stopped::Bailout };
+        // Refuse places without an entry, a state near the step limit, and a profile that is not plain
         let is_inside = (state.pc as usize) < plan.slots().len();
         let mut place = plan.place_of(state.pc);
         let is_plain = |profiler: &Profiler| profiler.contexts.is_plain();
@@ -312,6 +324,7 @@ impl Native<'_> {
         if !profiler.as_deref().is_none_or(is_plain) {
             return Stopped::Bailout;
         }
+        // Lend the state to the functions that generated code calls
         let new = || Counters::new(code.layout, plan, code.site_places.len(), code.profiling.is_some());
         let counters = counters.get_or_insert_with(new);
         let State { steps, inner_steps, clocks, elementary, .. } = *state;
@@ -336,6 +349,7 @@ impl Native<'_> {
             profiler,
             is_full: false,
         };
+        // Fill in the context, with empty sums
         {
             // SAFETY: the frame has a context at its beginning, and nobody else looks at it.
             let context = unsafe { &mut *context };
@@ -353,6 +367,7 @@ impl Native<'_> {
             host.give_calls(context);
             context.host = (&raw mut host).cast();
         }
+        // Run; go on where only the sums were full, or where control went to a word that a register held
         let registers = &raw mut state.registers;
         let mut is_begun = true;
         let stopped = loop {
@@ -363,6 +378,7 @@ impl Native<'_> {
             // SAFETY: the code was generated for this plan and this layout; context, registers, buffer and memory live until it returns, and
             // the place is one at which it can be entered. The safe twin is `crate::engine::interpreter::run`.
             let status = Status::of(unsafe { (code.function)(context, registers, place) });
+            // Take over what it has added up, and the place at which it stopped
             // SAFETY: as above, and the code has returned.
             let context = unsafe { &mut *context };
             if let Some(panic) = host.panic.take() {
@@ -391,6 +407,7 @@ impl Native<'_> {
                 }
                 _ => {}
             }
+            // Take back the rest of the run: one that was begun at 0 and stops in front of 3 counts 1 at 0 and -1 at 3, so nothing comes to 3
             host.count_begun(context, place, -1);
             let classes = code.profiling.as_ref().and_then(|profiling| profiling.classes.as_ref());
             if status != Status::Full
@@ -405,6 +422,7 @@ impl Native<'_> {
                 _ => Stopped::Bailout,
             };
         };
+        // Hand over the last reads, and put everything back into the state
         // SAFETY: the code has returned.
         let context = unsafe { &mut *context };
         host.hand_over(context);

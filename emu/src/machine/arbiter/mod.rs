@@ -19,7 +19,7 @@ pub struct BusRequests {
 pub const NEVER: Clocks = Clocks(u64::MAX);
 
 impl BusRequests {
-    /// Nobody asks.
+    /// Requests of so many masters, none of which asks.
     pub fn new(masters: u32) -> BusRequests {
         BusRequests { arrivals: vec![NEVER; masters as usize], bursts: vec![Burst::default(); masters as usize] }
     }
@@ -87,7 +87,7 @@ impl BusRequests {
 pub enum Verdict {
     /// The bus goes to this master, which asks.
     Grant(u32),
-    /// Nobody may use the bus now; ask again at this later clock, or earlier when another master begins to ask.
+    /// No master may use the bus now; ask again at this later clock, or earlier when another master begins to ask.
     Later(Clocks),
 }
 

@@ -24,7 +24,7 @@ pub struct BusMasters<M> {
 struct SlotWalk {
     used: BusUse,
     waits: Waits,
-    /// That grant; none where the master asks for more.
+    /// Grant after which something else than a transfer is next; none where the master asks for more.
     last: Option<Grant>,
     /// Clock at which it asks for that.
     arrival: Clocks,

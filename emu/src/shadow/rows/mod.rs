@@ -80,7 +80,7 @@ pub struct RealFormulas<'a> {
     pub modes: Modes,
     /// Decisions on numbers of which one at least has a shadow.
     pub decisions: u32,
-    /// Those that the shadow would have taken otherwise.
+    /// Decisions that the shadow would have taken otherwise.
     pub turned: u32,
     /// Sites of the lines whose errors have turned comparisons.
     pub blamed: Vec<u32>,

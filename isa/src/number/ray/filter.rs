@@ -25,6 +25,15 @@ pub fn triangle(ray: &Ray, vertices: &[Vector; 3]) -> Meeting {
 }
 
 /// The way in which the ray misses the triangle, where double precision is sure of it. All sums stay below 2^101.
+///
+/// A sign is sure where a number is further from 0 than its error can be. With largest components of 2^20 in the direction, both edges and the start:
+///
+/// | number | bound on its error | sure |
+/// | --- | --- | --- |
+/// | determinant, u, v, t | 2^-48 x 2^60 = 4,096 | beyond 4,096 on either side |
+/// | w | 2^-47 x 2^20 x 3 x 2^40 = 24,576 | beyond 24,576 on either side |
+///
+/// Steps come in the order of the exact test, so a sign that is not sure ends this one: `None`, whatever later steps would say.
 fn surely_missed(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Option<TriangleEnd> {
     let direction = ray.direction.map(f64::from);
     let edge1 = exact(difference(v1, v0));
@@ -32,27 +41,32 @@ fn surely_missed(ray: &Ray, &[v0, v1, v2]: &[Vector; 3]) -> Option<TriangleEnd> 
     let start = exact(difference(ray.origin, v0));
     let [d, a, b, s] = [direction, edge1, edge2, start].map(largest);
 
+    // Determinant, of the direction and both edges: the bound is DETERMINANT d a b. Near 0 the ray may be parallel
     let p = cross(direction, edge2);
     let determinant = dot(p, edge1);
     let margin = DETERMINANT * d;
     if determinant.abs() <= margin * (a * b) {
         return None;
     }
+    // u, of the direction, the second edge and the start: DETERMINANT d b s
     let sign = determinant.signum();
     let u = dot(p, start);
     if u * sign <= margin * (b * s) {
         return (u * sign < -margin * (b * s)).then_some(TriangleEnd::OutsideU);
     }
+    // v, of the direction, the first edge and the start: DETERMINANT d a s
     let q = cross(start, edge1);
     let v = dot(q, direction);
     if v * sign <= margin * (a * s) {
         return (v * sign < -margin * (a * s)).then_some(TriangleEnd::OutsideV);
     }
+    // w, what is left of the determinant: DIFFERENCE times the sum of the three products
     let w = determinant - u - v;
     let error = DIFFERENCE * d * (a * b + b * s + a * s);
     if w * sign <= error {
         return (w * sign < -error).then_some(TriangleEnd::OutsideW);
     }
+    // t, of both edges and the start: DETERMINANT a b s. A hit is left to the exact test
     let t = dot(q, edge2);
     (t * sign < -DETERMINANT * (a * b * s)).then_some(TriangleEnd::Behind)
 }

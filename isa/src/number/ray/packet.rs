@@ -35,7 +35,7 @@ pub struct PacketHit {
 }
 
 impl PacketHit {
-    /// This hit comes before another one: its distance is less, or its name where the distances are the same.
+    /// The hit comes before another one: its distance is less, or its name where the distances are the same.
     fn is_before(self, other: PacketHit) -> bool {
         (self.t, self.name) < (other.t, other.name)
     }

@@ -160,7 +160,7 @@ pub fn across_box(ray: &Ray, low: Vector, high: Vector) -> (Plane, Plane, BoxEnd
     }
 }
 
-/// Which sides of a split a ray visits between two planes.
+/// Sides of a split that a ray visits between two planes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplitEnd {
     /// The node is a leaf: its plane has axis 3.

@@ -33,23 +33,41 @@ impl Lower<'_, '_> {
     }
 
     /// `value / 2^shift`, quantized, as 64 bits; `shift` at most 63.
+    ///
+    /// Six values at a shift of 2. The rest is that of the floor, so it is never negative, and 2 of 4 is a tie:
+    ///
+    /// | value | 6 | -6 | 10 | -10 | 7 | -7 |
+    /// | --- | --- | --- | --- | --- | --- | --- |
+    /// | exact | 1.5 | -1.5 | 2.5 | -2.5 | 1.75 | -1.75 |
+    /// | floor, rest | 1, 2 | -2, 2 | 2, 2 | -3, 2 | 1, 3 | -2, 1 |
+    /// | `Trn` | 1 | -2 | 2 | -3 | 1 | -2 |
+    /// | `TrnZero` | 1 | -1 | 2 | -2 | 1 | -1 |
+    /// | `Rnd` | 2 | -1 | 3 | -2 | 2 | -2 |
+    /// | `RndZero` | 1 | -1 | 2 | -2 | 2 | -2 |
+    /// | `RndInf` | 2 | -2 | 3 | -3 | 2 | -2 |
+    /// | `RndConv` | 2 | -2 | 2 | -2 | 2 | -2 |
+    /// | `RndMinInf` | 1 | -2 | 2 | -3 | 2 | -2 |
     pub fn rounded(&mut self, value: Value, shift: u32) -> Value {
         if shift == 0 {
             return value;
         }
+        // All modes begin with the floor; they differ in when 1 is added
         let floor = self.b.ins().sshr_imm_s(value, i64::from(shift));
         let quantization = self.source.recipe.computes.modes.quantization;
         let up = match quantization {
             Quantization::Trn => return floor,
             Quantization::Rnd => {
+                // The highest bit of the rest is the half: 1 for ties and for what is above
                 let half = self.b.ins().ushr_imm_s(value, i64::from(shift - 1));
                 self.b.ins().band_imm_s(half, 1)
             }
             _ => {
+                // Compare the rest with the middle
                 let rest = self.b.ins().band_imm_s(value, (1i64 << shift).wrapping_sub(1));
                 let middle = self.c64(1 << (shift - 1));
                 let is_tie = self.b.ins().icmp(IntCC::Equal, rest, middle);
                 let is_above = self.b.ins().icmp(IntCC::SignedGreaterThan, rest, middle);
+                // Decide ties; two modes ask for something else and return
                 let goes_up = match quantization {
                     Quantization::TrnZero => {
                         let is_negative = self.b.ins().icmp_imm_s(IntCC::SignedLessThan, value, 0);
@@ -69,6 +87,7 @@ impl Lower<'_, '_> {
                         return self.b.ins().iadd(floor, up);
                     }
                 };
+                // Go up from above the middle, and from those ties
                 let tie_up = self.b.ins().band(is_tie, goes_up);
                 let goes_up = self.b.ins().bor(is_above, tie_up);
                 self.one_if(goes_up)

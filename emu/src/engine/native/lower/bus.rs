@@ -129,6 +129,18 @@ impl Lower<'_, '_> {
     }
 
     /// A read of global memory: where its site knows the address, from where it lies, else by the meaning, which tells the site.
+    ///
+    /// A site has met data of one kind in the 200 octets from address 400 on, and knows start and length of that range. One unsigned comparison
+    /// decides both ends:
+    ///
+    /// | address | address - start | below 200 | way |
+    /// | --- | --- | --- | --- |
+    /// | 396 | -4, which is 2^32 - 4 | no | the meaning |
+    /// | 400 | 0 | yes | inline |
+    /// | 599 | 199 | yes | inline |
+    /// | 600 | 200 | no | the meaning |
+    ///
+    /// A site that has met nothing has length 0, so its first read goes by the meaning.
     fn read<const N: usize>(
         &mut self,
         a: S,
@@ -140,6 +152,7 @@ impl Lower<'_, '_> {
         if recipe.is_stepped() {
             return None;
         }
+        // Find out if the address lies in the range that the site knows
         let step = &self.source.steps[self.place as usize];
         let site = self.source.sites[self.place as usize];
         let at = self.source.layout.site(site);
@@ -153,6 +166,7 @@ impl Lower<'_, '_> {
         let found: [Value; N] = std::array::from_fn(|_| self.b.append_block_param(on, kind));
         self.b.ins().brif(is_known, quick, &[], slow, &[]);
 
+        // Read inline: note the read where time is kept, as long as there is room for notes, count it, and load
         self.b.switch_to_block(quick);
         if recipe.keeps_time() {
             let noted = self.b.ins().load(I64, aligned(), self.context, NOTED_AT);
@@ -170,6 +184,7 @@ impl Lower<'_, '_> {
         let values: Vec<BlockArg> = (0..N).map(|at| value(self, memory, at).into()).collect();
         self.b.ins().jump(on, &values);
 
+        // Read by the meaning, which has the sums of everything before it, and take what it wrote from the registers
         self.b.switch_to_block(slow);
         self.store_sums(self.rest());
         let status = self.call_function(calls::bus(self.op(step)), step);
@@ -188,6 +203,7 @@ impl Lower<'_, '_> {
             })
             .collect();
         self.b.ins().jump(on, &values);
+        // Go on with the values of whichever way was taken
         self.b.switch_to_block(on);
         Some(found)
     }

@@ -253,10 +253,42 @@ fn list() -> String {
     list.join("\n") + "\n"
 }
 
+/// Lines of required keys that are gone, or have another type, although their schema has kept its number.
+fn broken_schemas<'a>(before: &'a str, after: &str) -> Vec<&'a str> {
+    let schema = |line: &str| line.strip_prefix("json ")?.split(['.', ':']).next().map(str::to_owned);
+    let kept: BTreeSet<String> = after.lines().filter_map(schema).collect();
+    let is_there: BTreeSet<&str> = after.lines().collect();
+    let is_broken = |line: &&str| {
+        let is_required = !line.ends_with(", may be left out");
+        is_required && schema(line).is_some_and(|name| kept.contains(&name)) && !is_there.contains(line)
+    };
+    before.lines().filter(is_broken).collect()
+}
+
+#[test]
+fn a_required_key_that_goes_or_changes_raises_the_number_of_its_schema() {
+    let before = "json a-1.x: number\njson a-1.y: string, may be left out\nclass add";
+    for (after, broken) in [
+        ("json a-1.x: number\njson a-1.z: string", vec![]),
+        ("json a-1.x: string", vec!["json a-1.x: number"]),
+        ("json a-1.y: string, may be left out", vec!["json a-1.x: number"]),
+        ("json a-2.x: string", vec![]),
+    ] {
+        assert_eq!(broken_schemas(before, after), broken, "{after}");
+    }
+}
+
 #[test]
 fn what_users_type_and_scripts_read_is_what_it_was() {
     let (path, now) = (root().join("tests/contract.txt"), list());
     if std::env::var_os(BLESS).is_some_and(|value| value != "0") {
+        let before = read(&path);
+        let broken = broken_schemas(&before, &now);
+        assert!(
+            broken.is_empty(),
+            "keys that scripts rely on go or change, so the schema's number has to rise:\n{}",
+            broken.join("\n")
+        );
         std::fs::write(&path, &now).unwrap();
     }
     let written = read(&path);

@@ -35,11 +35,13 @@ fn the_page_names_rows_kernels_and_commands_that_are_there() {
     let text = std::fs::read_to_string(root().join("docs/report.md")).unwrap();
     let sections = table(&text, "## Sections");
     assert!(sections.len() > 10, "{sections:?}");
+    let mut of_sections = Vec::new();
     for line in &sections {
-        let [_, _, _, kernels, command] = &line[..] else { panic!("{line:?}") };
+        let [_, _, _, kernels, command, counted] = &line[..] else { panic!("{line:?}") };
         for kernel in quoted(kernels) {
             assert!(has_kernel(kernel), "there is no kernel {kernel}");
         }
+        of_sections.extend(quoted(counted));
         let command = quoted(command)[0];
         let parsed = Lancer::command().try_get_matches_from(command.split_whitespace());
         assert!(parsed.is_ok(), "{command}: {}", parsed.unwrap_err());
@@ -55,6 +57,11 @@ fn the_page_names_rows_kernels_and_commands_that_are_there() {
         let kernel = quoted(&line[3])[0];
         assert!(has_kernel(kernel), "there is no kernel {kernel}");
     }
+    // Each row belongs to one section.
+    let mut all: Vec<&str> = rows().iter().map(|row| row.id.as_str()).collect();
+    all.sort_unstable();
+    of_sections.sort_unstable();
+    assert_eq!(of_sections, all);
 }
 
 /// The pictures of an erratum on its scene; `None` of a number.

@@ -122,7 +122,7 @@ impl Claim {
         matches!(&self.subject, Subject::Said(head) if !head.starts_with("warning"))
     }
 
-    /// This claim about something else.
+    /// The claim with another value.
     pub fn with_value(&self, value: String) -> Claim {
         Claim { value, ..self.clone() }
     }

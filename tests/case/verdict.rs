@@ -7,7 +7,7 @@ use super::observation::{Observation, Said};
 /// Change that would make a comment right.
 #[derive(Clone, Debug)]
 pub enum Remedy {
-    /// This claim in its place.
+    /// Another claim, which takes its place.
     Replace(Claim),
     /// The claim left out.
     Remove,

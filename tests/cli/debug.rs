@@ -16,7 +16,7 @@ use super::session::Session;
 /// The pixel of a small Cornell box that most of these tests look at.
 pub const PIXEL: &str = "cornell --size 12x9 --shift 0.137,0.071 --pixel 5,4";
 
-/// That pixel for the library.
+/// The pixel of [`PIXEL`] as a target for the library.
 pub fn pixel() -> DebugTarget {
     let scene = lancer::scene("cornell", None, Some((12, 9))).unwrap().scene;
     let mut job = Job::new(scene);

@@ -19,7 +19,7 @@ fn ends(drawing: &Drawing) -> [Vec<i64>; 2] {
     [least, most]
 }
 
-/// That a row with these operands is the word of its bit pattern, and that word is nothing else.
+/// Checks that a row with these operands is the word of its bit pattern, and that this word is nothing else.
 fn check(isa: &Isa, op: Op, drawing: &Drawing, operands: &[i64]) {
     let (row, expected) = (drawing.row, drawing.word(operands));
     assert_eq!(isa.encode(op, operands), Ok(expected), "{} {operands:?}", row.name);

@@ -25,7 +25,23 @@ const PARTS: &[Part] = &[
         name: "pictures",
         title: "Pictures",
         about: "Engines beside the native twin and double precision, one host thread and two.",
-        commands: &["lancer bench --profiles ray,vector", "lancer bench slabs cornell --threads 2"],
+        commands: &[
+            "lancer bench --profiles ray,vector,packet,report",
+            "lancer bench --profiles ray,packet --threads 2",
+        ],
+    },
+    Part {
+        name: "growth",
+        title: "Growth",
+        about: "The same picture with sixteen times as many pixels, and landscapes of ten times as many triangles; numbers of cores are among the parts `replay` and `cores`.",
+        commands: &[
+            "lancer bench cornell --profiles packet --runs 3 --size 80x60",
+            "lancer bench cornell --profiles packet --runs 3 --size 320x240",
+            "lancer scene generate terrain --triangles 1000 -o target/growth/3",
+            "lancer scene generate terrain --triangles 10000 -o target/growth/4",
+            "lancer scene generate terrain --triangles 100000 -o target/growth/5",
+            "lancer bench target/growth/3/terrain.dsc target/growth/4/terrain.dsc target/growth/5/terrain.dsc --profiles packet --runs 3",
+        ],
     },
     Part {
         name: "demo",

@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
+#[cfg(unix)]
+use std::sync::{Arc, atomic::AtomicBool};
 
 use lancer::command::invocation;
 use lancer::command::{self, Lancer};
@@ -11,6 +13,10 @@ use lancer::terminal::{StreamArguments, Terminal};
 use messages::{Diagnostic, Report};
 
 fn main() -> ExitCode {
+    // A file beyond the size that the system allows is an error of writing, with a message, and no end of the program. Where the signal cannot be
+    // taken, all stays as it was.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::new(AtomicBool::new(false)));
     let words: Vec<OsString> = std::env::args_os().collect();
     let streams = StreamArguments::sniffed(&words);
     let mut terminal = Terminal::new(streams);

@@ -293,7 +293,60 @@ const FAULTS: &[Fault] = &[
         says: &["a.toml is larger than 256 KiB"],
         ..QUIET
     },
+    Fault {
+        files: &[("a.toml", &[b'['; 3 << 20])],
+        command: "render cornell --settings a.toml",
+        exit: 1,
+        says: &["a.toml is larger than 2 MiB"],
+        ..QUIET
+    },
+    Fault {
+        files: &[("a.toml", &[b'['; 3 << 20])],
+        command: "sweep a.toml",
+        exit: 1,
+        says: &["a.toml is larger than 2 MiB"],
+        ..QUIET
+    },
+    Fault {
+        files: &[("a.toml", &[b'['; 3 << 20])],
+        command: "diff a.toml a.toml",
+        exit: 1,
+        says: &["a.toml is larger than 2 MiB"],
+        ..QUIET
+    },
+    // Extensions in the text of old systems, and in other encodings.
+    Fault { files: &[("a.isa", &EXTENSION_OF_OLD)], command: "extension check a.isa", says: &["twice"], ..QUIET },
+    Fault {
+        files: &[("a.isa", b"\xff\xfe;\0;\0")],
+        command: "extension check a.isa",
+        exit: 1,
+        says: &["a.isa is UTF-16 text"],
+        ..QUIET
+    },
+    Fault {
+        files: &[("a.isa", b"\x1f\x8b\x08\0")],
+        command: "extension check a.isa",
+        exit: 1,
+        says: &["a.isa is compressed (gzip)"],
+        ..QUIET
+    },
+    // Words in hexadecimal that are piped.
+    Fault { input: b"// 1 words of 32 bits\nd0000004\n", command: "disassemble -", says: &["halt"], ..QUIET },
 ];
+
+/// An extension whose lines end in carriage returns alone, with a Ctrl-Z at its end.
+const EXTENSION_OF_OLD: [u8; EXTENSION.len()] = {
+    let (mut text, mut at) = (*EXTENSION, 0);
+    while at < text.len() {
+        if text[at] == b'\n' {
+            text[at] = b'\r';
+        }
+        at += 1;
+    }
+    text
+};
+
+const EXTENSION: &[u8; 117] = b".extension a\n.instr twice (d: S, a: S)  \"custom0 ddddd aaaaa ----- ----- ------\"  [Done(body)]\n    add d, a, a\n.end\n\x1a";
 
 #[test]
 fn every_input_gives_what_is_right() {
@@ -348,6 +401,20 @@ fn notes_of_an_extension_are_text_in_the_page() {
     assert_eq!(page.code, 0, "{}", page.messages);
     assert!(!page.out.contains("<script>") && page.out.contains("&lt;script&gt;"));
     assert!(!page.out.contains("href=\"javascript:"));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_beyond_the_size_that_a_shell_allows_is_told_and_leaves_nothing() {
+    let session = Session::new();
+    let lancer = session.command("").get_program().to_owned();
+    let line = "ulimit -f 8; exec \"$0\" manual -o big.md";
+    let output = std::process::Command::new("sh").args(["-c", line]).arg(lancer).current_dir(session.path("")).output();
+    let output = output.unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("big.md") && said.contains("File too large"), "{said}");
+    assert_eq!(session.names(), Vec::<String>::new());
 }
 
 #[cfg(target_os = "linux")]

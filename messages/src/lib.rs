@@ -12,7 +12,7 @@ mod visible;
 
 pub use diagnostic::{Diagnostic, Severity};
 pub use document::{plain, read_toml};
-pub use packed::{packed_by, refuse_packed, refuse_utf16};
+pub use packed::{packed_by, refuse_packed, refuse_utf16, with_plain_ends};
 pub use report::Report;
 pub use source::{Place, Source};
 pub use suggestion::{did_you_mean, nearest, question};

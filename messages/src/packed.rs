@@ -34,18 +34,69 @@ pub fn refuse_packed(bytes: &[u8], name: &str) -> Result<(), Report> {
     Err(Diagnostic::error(format!("{name} is compressed ({program})")).hint("unpack it first").into())
 }
 
-/// Refuses UTF-16 text, which would otherwise look like words with gaps; `name` is the file's.
+/// Refuses UTF-16 and UTF-32 text, which would otherwise look like words with gaps; `name` is the file's.
 pub fn refuse_utf16(bytes: &[u8], name: &str) -> Result<(), Report> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        let error = Diagnostic::error(format!("{name} is UTF-16 text, which is not read"));
-        return Err(error.hint("save it as UTF-8 or ASCII").into());
+    // Without a mark, text shows by its zeros: four ASCII characters, each beside one.
+    let (pairs, _) = bytes.get(..8).unwrap_or_default().as_chunks::<2>();
+    let has_zeros = |at: usize| !pairs.is_empty() && pairs.iter().all(|pair| pair[at] == 0 && is_text(pair[1 - at]));
+    let encoding = match bytes {
+        [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => "UTF-32",
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "UTF-16",
+        _ if has_zeros(0) || has_zeros(1) => "UTF-16",
+        _ => return Ok(()),
+    };
+    let error = Diagnostic::error(format!("{name} is {encoding} text, which is not read"));
+    Err(error.hint("save it as UTF-8 or ASCII").into())
+}
+
+fn is_text(octet: u8) -> bool {
+    octet.is_ascii_graphic() || octet.is_ascii_whitespace()
+}
+
+/// Text as new systems would have it: lines that end in a carriage return alone end in a line feed, and a Ctrl-Z at the end is dropped.
+/// Places in the text stay where they are.
+pub fn with_plain_ends(mut text: String) -> String {
+    if text.contains('\r') && !text.contains('\n') {
+        text = text.replace('\r', "\n");
     }
-    Ok(())
+    let end = text.trim_end_matches(['\u{1a}', '\0']).len();
+    if text[end..].contains('\u{1a}') {
+        text.truncate(end);
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wide_characters_are_known_with_and_without_a_mark() {
+        for (bytes, encoding) in [
+            (b"\xff\xfev\0 \0".as_slice(), Some("UTF-16")),
+            (b"\xfe\xff\0v\0 ", Some("UTF-16")),
+            (b"v\0 \x000\0 \0", Some("UTF-16")),
+            (b"\0v\0 \x000\0 ", Some("UTF-16")),
+            (b"\xff\xfe\0\0v\0\0\0", Some("UTF-32")),
+            (b"\0\0\xfe\xff\0\0\0v", Some("UTF-32")),
+            (b"v\0 \0", None),
+            (b"v 0 0 0\n", None),
+            (b"\0\0\0\0\0\0\0\0", None),
+            (b"", None),
+        ] {
+            let message = refuse_utf16(bytes, "a.obj").err().map(|report| report.render(false));
+            assert_eq!(message.is_some(), encoding.is_some(), "{bytes:?}");
+            assert!(encoding.is_none_or(|name| message.unwrap_or_default().contains(&format!("a.obj is {name} text"))));
+        }
+    }
+
+    #[test]
+    fn text_of_old_systems_has_plain_ends() {
+        for (text, plain) in [("a\rb\r", "a\nb\n"), ("a\r\nb\r", "a\r\nb\r"), ("a\n\u{1a}\0\0", "a\n"), ("a\0", "a\0")]
+        {
+            assert_eq!(with_plain_ends(text.to_owned()), plain, "{text:?}");
+        }
+    }
 
     #[test]
     fn packed_files_are_known_by_their_first_octets() {

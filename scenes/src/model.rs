@@ -91,12 +91,10 @@ impl Scene {
                 .position(|v| !v.iter().all(|x| x.is_finite()))
                 .map(|k| format!("vertex {k} is not finite: {:?}", self.vertices[k])),
         );
-        refuse(
-            self.lights
-                .iter()
-                .position(|l| !l.position.iter().chain(&l.colour).all(|x| x.is_finite()))
-                .map(|k| format!("light {k} is not finite: {:?}", self.lights[k])),
-        );
+        refuse(self.lights.iter().position(|l| !l.position.iter().chain(&l.colour).all(|x| x.is_finite())).map(|k| {
+            let Light { position, colour } = self.lights[k];
+            format!("light {k} is not finite: its position is {position:?}, its colour {colour:?}")
+        }));
         refuse(
             self.lights
                 .iter()

@@ -12,7 +12,7 @@ use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use messages::{Diagnostic, Report, Source, refuse_packed, refuse_utf16};
+use messages::{Diagnostic, Report, Source, refuse_packed, refuse_utf16, with_plain_ends};
 
 pub use self::set::{FileStream, write, write_all, write_through};
 
@@ -89,16 +89,7 @@ pub fn source_of(path: &Path, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
     let name = shown(path);
     refuse_packed(&octets, &name)?;
     refuse_utf16(&octets, &name)?;
-    let mut text = text(octets);
-    // Lines of old systems end in a carriage return alone; places stay where they are.
-    if text.contains('\r') && !text.contains('\n') {
-        text = text.replace('\r', "\n");
-    }
-    let end = text.trim_end_matches(['\u{1a}', '\0']).len();
-    if text[end..].contains('\u{1a}') {
-        text.truncate(end);
-    }
-    Ok(Source::new(name, text))
+    Ok(Source::new(name, with_plain_ends(text(octets))))
 }
 
 /// Octets as text; those that are not UTF-8 are replaced.

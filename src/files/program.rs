@@ -115,10 +115,19 @@ pub fn load_any(path: &Path) -> Result<LoadedFile, Report> {
         return format.load(path).map(|program| LoadedFile::Program(Box::new(program)));
     }
     let octets = read(path)?;
-    match octets.starts_with(object::MAGIC) {
-        true => ProgramFile::Object.decode(path, octets).map(|program| LoadedFile::Program(Box::new(program))),
-        false => Ok(LoadedFile::Other(octets)),
-    }
+    let format = match () {
+        () if octets.starts_with(object::MAGIC) => ProgramFile::Object,
+        () if begins_with_word(&octets) => ProgramFile::Hexadecimal,
+        () => return Ok(LoadedFile::Other(octets)),
+    };
+    format.decode(path, octets).map(|program| LoadedFile::Program(Box::new(program)))
+}
+
+/// The first line behind comments is eight hexadecimal digits, as no line of assembly is.
+fn begins_with_word(octets: &[u8]) -> bool {
+    let lines = octets.split(|octet| *octet == b'\n').map(<[u8]>::trim_ascii);
+    let first = lines.into_iter().find(|line| !line.is_empty() && !line.starts_with(b"//"));
+    first.is_some_and(|line| line.len() == 8 && line.iter().all(u8::is_ascii_hexdigit))
 }
 
 fn binary(octets: &[u8]) -> Option<Vec<u32>> {

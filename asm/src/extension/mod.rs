@@ -48,7 +48,9 @@ pub const MOST_COST: u64 = 1_000_000;
 /// # Errors
 /// Octets that are not UTF-8, with their place.
 pub fn source(name: &str, octets: Vec<u8>) -> Result<Arc<Source>, Report> {
-    String::from_utf8(octets).map(|text| Source::new(name, text)).map_err(|error| {
+    messages::refuse_packed(&octets, name)?;
+    messages::refuse_utf16(&octets, name)?;
+    String::from_utf8(octets).map(|text| Source::new(name, messages::with_plain_ends(text))).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let source = Source::new(name, String::from_utf8_lossy(error.as_bytes()));
         let message = format!("octet {} of the file is not UTF-8", at + 1);

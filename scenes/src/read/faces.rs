@@ -23,8 +23,6 @@ pub(super) struct Faces {
     drawn: u32,
     left_out: usize,
     is_too_many: bool,
-    /// The first face that would take too long to be cut, counted without those left out, and its corners.
-    too_long: Option<(u32, usize)>,
 }
 
 impl Faces {
@@ -44,19 +42,12 @@ impl Faces {
             return false;
         }
         self.is_too_many |= self.triangles.len() + corners.len() - 2 > most;
-        if self.is_too_many || self.too_long.is_some() {
+        if self.is_too_many {
             return false;
         }
-        let (triangles, origins, face) = (&mut self.triangles, &mut self.origins, self.drawn);
+        self.cutter.fan(vertices, corners, &mut self.triangles);
         // A triangle knows the face that it comes from, because attributes are given by face.
-        let is_cut = self.cutter.cut(vertices, corners, |triangle| {
-            triangles.push(triangle);
-            origins.push(face);
-        });
-        if !is_cut {
-            self.too_long = Some((face, corners.len()));
-            return false;
-        }
+        self.origins.resize(self.triangles.len(), self.drawn);
         self.colours.push(self.drawn as usize, colour);
         self.drawn += 1;
         true
@@ -80,11 +71,13 @@ impl Faces {
             let error = Diagnostic::error(format!("{name}: its faces are more than {MOST} triangles"));
             warnings.push(error.hint("polygons count as the triangles that they are cut into"));
         }
-        if let Some((face, corners)) = self.too_long {
+        if let Some(largest) = self.cutter.excess() {
             let message = format!("{name}: its concave polygons have too many corners to be cut into triangles");
+            let (face, corners) = (self.origins[largest.first as usize], largest.corners);
             let hint = format!("face {face}, counted from 0, has {corners}: cut them where the file was made");
             warnings.push(Diagnostic::error(message).hint(hint));
         }
+        let is_refused = !warnings.is_empty();
         if self.left_out > 0 {
             let subject = counted(self.left_out, "face has", "faces have");
             warnings.push(Diagnostic::warning(format!("{name}: {subject} fewer than 3 corners and cannot be seen")));
@@ -102,7 +95,11 @@ impl Faces {
             true => Vec::new(),
             false => self.spread(&of_faces),
         };
-        warnings.extend(census(name, &vertices, &self.triangles));
+        // A mesh that is refused stays as it was read.
+        if !is_refused {
+            self.cutter.cut(&vertices, &mut self.triangles);
+            warnings.extend(census(name, &vertices, &self.triangles));
+        }
         Mesh {
             vertices,
             triangles: self.triangles,
@@ -131,5 +128,31 @@ mod tests {
         assert_eq!(mesh.triangles.len(), 3);
         let error = mesh.warnings.0[0].message.as_str();
         assert!(mesh.warnings.has_errors() && error == "a.off: its faces are more than 16777216 triangles", "{error}");
+    }
+
+    #[test]
+    fn a_file_of_many_concave_faces_is_refused_before_any_is_cut() {
+        let zigzag = |n: u32| [f64::from(n), if n == 0 { 2.0 } else { f64::from(n % 2) }, 0.0];
+        let vertices: Vec<Vec3> = (0..1_010).map(zigzag).collect();
+        let corners: Vec<u32> = (0..1_010).collect();
+        let read = |count: usize| {
+            let mut faces = Faces::default();
+            assert!(!faces.push(&vertices, &corners[..2], Spec::Default), "left out, and not counted");
+            for n in 0..count {
+                let size = if n == 2 { 1_010 } else { 1_000 };
+                assert!(faces.push(&vertices, &corners[..size], Spec::Default));
+            }
+            faces.into_mesh("a.off", vertices.clone(), None)
+        };
+        let is_fan = |mesh: &Mesh| mesh.triangles[..998].iter().all(|triangle| triangle[0] == 0);
+        let mesh = read(130);
+        let [error, left_out] = &mesh.warnings.0[..] else { panic!("{:?}", mesh.warnings) };
+        assert_eq!(error.message, "a.off: its concave polygons have too many corners to be cut into triangles");
+        let hint = "face 2, counted from 0, has 1010: cut them where the file was made";
+        assert_eq!(error.hint.as_deref(), Some(hint));
+        assert_eq!(left_out.message, "a.off: 1 face has fewer than 3 corners and cannot be seen");
+        assert!(mesh.warnings.has_errors() && is_fan(&mesh));
+        let mesh = read(3);
+        assert!(!mesh.warnings.has_errors() && !is_fan(&mesh));
     }
 }

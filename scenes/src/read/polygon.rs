@@ -1,51 +1,80 @@
 //! Polygons as triangles: n corners always give n - 2, so that neighbours still share every edge. Concave outlines are
-//! cut into ears in the plane of the two axes that the polygon faces most.
+//! cut into ears in the plane of the two axes that the polygon faces most, after all are known.
 
 use earcut::Earcut;
 
 use crate::model::Vec3;
 
-/// Work that the concave polygons of a file may take, in squares of their numbers of corners: the time that the worst
-/// outlines take. About two seconds.
-const WORK: u64 = 1_000_000_000;
+/// Work that the concave polygons of a file may take: a polygon takes its corners times their square root, as random outlines of 100 to
+/// 20,000 corners do. About a second.
+const WORK: u64 = 2_500_000;
 
 /// Work beyond that for each corner of a concave polygon: a file of many is large in itself.
-const WORK_PER_CORNER: u64 = 200;
+const WORK_PER_CORNER: u64 = 10;
 
-/// Cuts polygons one after another and keeps its memory between them.
+/// Corners of the largest outline that is cut although it crosses itself, which may take the cube of the corners.
+const MOST_CROSSED: usize = 1_000;
+
+/// Turns polygons into fans one after another, then the fans of concave ones into ears.
 #[derive(Default)]
 pub(super) struct Cutter {
+    concave: Vec<Concave>,
+    /// Work that cutting takes, and what the corners allow.
+    work: u64,
+    allowance: u64,
+    corners: Vec<u32>,
     flat: Vec<[f64; 2]>,
     ears: Vec<u32>,
     earcut: Option<Earcut<f64>>,
-    work: u64,
-    allowance: u64,
+}
+
+/// A polygon to be cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Concave {
+    /// Number of the first triangle of its fan.
+    pub(super) first: u32,
+    pub(super) corners: u32,
 }
 
 impl Cutter {
-    /// The triangles of a polygon with at least three corners, given by vertex number, in the polygon's sense of
-    /// rotation: corners.len() - 2 of them. False, without any, where the concave polygons so far have too many corners.
-    pub(super) fn cut(&mut self, vertices: &[Vec3], corners: &[u32], mut triangle: impl FnMut([u32; 3])) -> bool {
-        let count = corners.len();
-        if count > 3 {
+    /// Puts the fan of a polygon with at least three corners, given by vertex number, behind the other triangles, in the
+    /// polygon's sense of rotation: corners.len() - 2 of them. A concave one is noted.
+    pub(super) fn fan(&mut self, vertices: &[Vec3], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
+        if corners.len() > 3 {
             self.project(vertices, corners);
-            if !is_convex(&self.flat) {
-                // Cutting ears takes time by the square of the corners. Each corner of a file buys some, so files of many
-                // small polygons are never refused.
-                self.work += (count as u64).pow(2);
-                self.allowance += count as u64 * WORK_PER_CORNER;
-                if self.work > WORK + self.allowance {
-                    return false;
-                }
-                if self.cut_ears() {
-                    self.ears.chunks_exact(3).for_each(|ear| triangle([0, 1, 2].map(|k| corners[ear[k] as usize])));
-                    return true;
-                }
+            if !is_convex(&self.flat) && (corners.len() <= MOST_CROSSED || turns_once(&self.flat)) {
+                // Each corner of a file buys some work, so files of many small polygons are never refused.
+                let count = corners.len() as u64;
+                self.work += count * count.isqrt();
+                self.allowance += count * WORK_PER_CORNER;
+                self.concave.push(Concave { first: triangles.len() as u32, corners: corners.len() as u32 });
             }
         }
-        // A fan from the first corner covers a convex outline, and keeps the edges of one that could not be cut.
-        (1..count - 1).for_each(|n| triangle([corners[0], corners[n], corners[n + 1]]));
-        true
+        triangles.extend((1..corners.len() - 1).map(|n| [corners[0], corners[n], corners[n + 1]]));
+    }
+
+    /// The largest concave polygon, the first of several, where all of them take too much work.
+    pub(super) fn excess(&self) -> Option<Concave> {
+        let is_too_much = self.work > WORK + self.allowance;
+        self.concave.iter().rev().max_by_key(|polygon| polygon.corners).filter(|_| is_too_much).copied()
+    }
+
+    /// Cuts the concave polygons in place of their fans, among all triangles so far.
+    pub(super) fn cut(&mut self, vertices: &[Vec3], triangles: &mut [[u32; 3]]) {
+        for polygon in std::mem::take(&mut self.concave) {
+            let fan = &mut triangles[polygon.first as usize..][..polygon.corners as usize - 2];
+            let mut corners = std::mem::take(&mut self.corners);
+            corners.clear();
+            corners.extend(&fan[0][..2]);
+            corners.extend(fan.iter().map(|triangle| triangle[2]));
+            self.project(vertices, &corners);
+            // The fan keeps the edges of an outline that cannot be cut.
+            if self.cut_ears() {
+                let ears = self.ears.chunks_exact(3).map(|ear| [0, 1, 2].map(|k| corners[ear[k] as usize]));
+                fan.iter_mut().zip(ears).for_each(|(triangle, ear)| *triangle = ear);
+            }
+            self.corners = corners;
+        }
     }
 
     /// The corners along the two axes that the polygon faces most, turned counter-clockwise.
@@ -143,6 +172,20 @@ fn split(ear: &[u32], outer: &[usize], count: u32, out: &mut Vec<u32>) {
     split(&left, rest, count, out);
 }
 
+/// The outline turns once on its way round, as each does that does not cross itself.
+fn turns_once(flat: &[[f64; 2]]) -> bool {
+    let edge = |n: usize| {
+        let (from, to) = (flat[n % flat.len()], flat[(n + 1) % flat.len()]);
+        [to[0] - from[0], to[1] - from[1]]
+    };
+    let turn = |n: usize| {
+        let ([ax, ay], [bx, by]) = (edge(n), edge(n + 1));
+        (ax * by - ay * bx).atan2(ax * bx + ay * by)
+    };
+    let turns = (0..flat.len()).map(turn).sum::<f64>() / std::f64::consts::TAU;
+    turns.round().abs() == 1.0
+}
+
 /// Every corner of a counter-clockwise outline turns strictly left, and the outline turns once.
 fn is_convex(flat: &[[f64; 2]]) -> bool {
     let count = flat.len();
@@ -163,8 +206,10 @@ mod tests {
     use super::*;
 
     fn cut(vertices: &[Vec3], corners: &[u32]) -> Vec<[u32; 3]> {
-        let mut triangles = Vec::new();
-        assert!(Cutter::default().cut(vertices, corners, |triangle| triangles.push(triangle)));
+        let (mut cutter, mut triangles) = (Cutter::default(), Vec::new());
+        cutter.fan(vertices, corners, &mut triangles);
+        assert_eq!(cutter.excess(), None);
+        cutter.cut(vertices, &mut triangles);
         triangles
     }
 
@@ -215,25 +260,64 @@ mod tests {
         assert!(triangles.iter().all(|t| area(&vertices, t, [0.0, 0.0, 1.0]) >= 0.0), "{triangles:?}");
     }
 
+    fn zigzag(count: u32) -> Vec<Vec3> {
+        (0..count).map(|n| [f64::from(n), if n == 0 { 2.0 } else { f64::from(n % 2) }, 0.0]).collect()
+    }
+
     #[test]
-    fn concave_polygons_of_too_many_corners_are_refused_before_they_are_cut() {
-        let zigzag = |count: u32| -> Vec<Vec3> {
-            (0..count).map(|n| [f64::from(n), if n == 0 { 2.0 } else { f64::from(n % 2) }, 0.0]).collect()
+    fn concave_polygons_of_too_many_corners_are_known_before_they_are_cut() {
+        let vertices = zigzag(20_000);
+        let corners: Vec<u32> = (0..20_000).collect();
+        let excess = |sizes: &[(usize, usize)]| {
+            let (mut cutter, mut triangles) = (Cutter::default(), Vec::new());
+            for &(size, count) in sizes {
+                (0..count).for_each(|_| cutter.fan(&vertices, &corners[..size], &mut triangles));
+            }
+            cutter.excess()
         };
-        let corners: Vec<u32> = (0..40_000).collect();
-        let mut found = 0;
-        assert!(!Cutter::default().cut(&zigzag(40_000), &corners, |_| found += 1));
-        assert_eq!(found, 0);
+        assert_eq!(excess(&[(19_000, 1)]), None);
+        assert_eq!(excess(&[(20_000, 1)]), Some(Concave { first: 0, corners: 20_000 }));
+        assert_eq!(excess(&[(1_000, 115)]), None);
+        assert_eq!(excess(&[(1_000, 125)]), Some(Concave { first: 0, corners: 1_000 }));
+        // Their order does not matter: the largest is told, and small ones allow for themselves only.
+        let largest = Concave { first: 998 * 30, corners: 15_000 };
+        assert_eq!(excess(&[(1_000, 30), (15_000, 2), (8, 20_000)]), Some(largest));
         // Many small ones are cut however many they are, and so is a convex one of any size.
-        let (mut cutter, small) = (Cutter::default(), zigzag(8));
-        assert!((0..20_000).all(|_| cutter.cut(&small, &corners[..8], |_| {})));
-        let circle = |n: &u32| {
-            let angle = f64::from(*n) / 40_000.0 * std::f64::consts::TAU;
+        assert_eq!(excess(&[(100, 20_000)]), None);
+        let circle = |n: u32| {
+            let angle = f64::from(n) / 20_000.0 * std::f64::consts::TAU;
             [angle.cos(), angle.sin(), 0.0]
         };
-        let circle: Vec<Vec3> = corners.iter().map(circle).collect();
-        assert!(Cutter::default().cut(&circle, &corners, |_| found += 1));
-        assert_eq!(found, 39_998);
+        let circle: Vec<Vec3> = (0..20_000).map(circle).collect();
+        assert_eq!(cut(&circle, &corners).len(), 19_998);
+    }
+
+    #[test]
+    fn long_outlines_that_cross_themselves_become_fans() {
+        // A star of one stroke goes round its middle once for each third corner.
+        let star = |count: u32| {
+            let place = |n: u32| f64::from(n * (count / 3 + 1) % count) / f64::from(count) * std::f64::consts::TAU;
+            let vertices: Vec<Vec3> = (0..count).map(|n| [place(n).cos(), place(n).sin(), 0.0]).collect();
+            let corners: Vec<u32> = (0..count).collect();
+            cut(&vertices, &corners).iter().all(|triangle| triangle[0] == 0)
+        };
+        assert!(star(7_001));
+        // A zigzag turns once, however long it is.
+        let corners: Vec<u32> = (0..1_100).collect();
+        assert!(cut(&zigzag(1_100), &corners).iter().any(|triangle| triangle[0] != 0));
+    }
+
+    #[test]
+    fn polygons_are_cut_among_others() {
+        // An arrow head between convex outlines, and one that crosses itself.
+        let points = [[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [0.5, 1.0], [-1.0, 1.0]];
+        let vertices: Vec<Vec3> = points.iter().map(|p| [p[0], p[1], 0.0]).collect();
+        let polygons: [&[u32]; 4] = [&[0, 1, 2, 4], &[0, 1, 2, 3], &[0, 1, 2], &[0, 2, 1, 4, 3]];
+        let (mut cutter, mut triangles) = (Cutter::default(), Vec::new());
+        polygons.iter().for_each(|corners| cutter.fan(&vertices, corners, &mut triangles));
+        cutter.cut(&vertices, &mut triangles);
+        let alone: Vec<[u32; 3]> = polygons.iter().flat_map(|corners| cut(&vertices, corners)).collect();
+        assert_eq!(triangles, alone);
     }
 
     proptest! {

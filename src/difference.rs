@@ -9,6 +9,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::settings::read::check_toml_size;
+
 /// Version of [`DiffResult`].
 pub const SCHEMA: &str = "lancer-diff-1";
 
@@ -147,6 +149,7 @@ pub struct DiffSide<'a> {
 pub fn parse(source: &Arc<Source>) -> Result<Value, Report> {
     let is_json = source.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
     if !is_json {
+        check_toml_size(source)?;
         return read_toml(source, |_: &Value| Vec::new());
     }
     serde_json::from_str(&source.text).map_err(|error| {

@@ -65,15 +65,24 @@ fn json(source: &Arc<Source>) -> Result<Map<String, Value>, Report> {
 /// Octets of a TOML text, at most: its tables take up to seventy times as many. The longest lists of a study are ranges, which are short.
 const LARGEST_TOML: usize = 2 << 20;
 
+/// Check that a TOML text is not too large to be read.
+///
+/// # Errors
+/// A text of more than 2 MiB.
+pub fn check_toml_size(source: &Source) -> Result<(), Report> {
+    if source.text.len() <= LARGEST_TOML {
+        return Ok(());
+    }
+    let message = Diagnostic::error(format!("{} is larger than {} MiB", source.name, LARGEST_TOML >> 20));
+    Err(message.hint("that is the most for TOML; results as JSON may be larger").into())
+}
+
 /// The tables of a TOML text.
 ///
 /// # Errors
-/// A text that is no TOML, or larger than [`LARGEST_TOML`].
+/// A text that is no TOML, or too large.
 pub fn toml(source: &Arc<Source>) -> Result<Map<String, Value>, Report> {
-    if source.text.len() > LARGEST_TOML {
-        let message = Diagnostic::error(format!("{} is larger than {} MiB", source.name, LARGEST_TOML >> 20));
-        return Err(message.hint("that is the most for TOML; results as JSON may be larger").into());
-    }
+    check_toml_size(source)?;
     toml::from_str(&source.text).map_err(|error| {
         let message = Diagnostic::error(error.message().lines().next().unwrap_or_default().to_owned());
         match error.span() {

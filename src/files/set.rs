@@ -214,11 +214,8 @@ fn behind_links(path: &Path) -> PathBuf {
 fn refusal(path: &Path, error: &io::Error) -> Diagnostic {
     let reason = match error.kind() {
         ErrorKind::PermissionDenied => "this user must not write there".to_owned(),
-        // The reason of an error that names the temporary file beside the user's own, or the whole of any other.
-        _ => match error.get_ref().and_then(|error| error.source()) {
-            Some(reason) => reason.to_string(),
-            None => error.to_string(),
-        },
+        // Errors of `tempfile` name the temporary file, which means nothing to a user.
+        _ => error.to_string().split(" at path ").next().unwrap_or_default().to_owned(),
     };
     match path == Path::new(STANDARD) {
         true => Diagnostic::error(format!("standard output cannot be written: {reason}")),

@@ -37,10 +37,10 @@ const PARTS: &[Part] = &[
         commands: &[
             "lancer bench cornell --profiles packet --runs 3 --size 80x60",
             "lancer bench cornell --profiles packet --runs 3 --size 320x240",
-            "lancer scene generate terrain --triangles 1000 -o target/growth/3",
-            "lancer scene generate terrain --triangles 10000 -o target/growth/4",
-            "lancer scene generate terrain --triangles 100000 -o target/growth/5",
-            "lancer bench target/growth/3/terrain.dsc target/growth/4/terrain.dsc target/growth/5/terrain.dsc --profiles packet --runs 3",
+            "lancer scene generate terrain --triangles 1000 -o target/growth-3",
+            "lancer scene generate terrain --triangles 10000 -o target/growth-4",
+            "lancer scene generate terrain --triangles 100000 -o target/growth-5",
+            "lancer bench target/growth-3/terrain.dsc target/growth-4/terrain.dsc target/growth-5/terrain.dsc --profiles packet --runs 3",
         ],
     },
     Part {

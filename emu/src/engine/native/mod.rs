@@ -229,7 +229,7 @@ impl SharedCode {
     }
 
     /// Code, or why there is none; it is generated once. Without patience somebody looks at the code itself, so in builds with assertions it is
-    /// verified, which takes a third of a compilation.
+    /// verified.
     fn compile(&self, plan: &Plan, patience: u64) -> &Result<Compiled, Refusal> {
         let is_verified = cfg!(debug_assertions) && patience == 0;
         self.compiled.get_or_init(|| Compiled::new(plan, &self.recipe, is_verified))

@@ -40,7 +40,7 @@ for scene in "$@"; do
     for _ in $(seq "$runs"); do
         timed tracer.times "$folder/tracer" "$folder/$scene.dsc" "$folder/$scene.off" "$folder/tracer.pfm"
         for profile in ray packet; do
-            timed "$profile.times" "$LANCER" render "$folder/$scene.dsc" --profile "$profile" --no-error -o "$folder/$profile.pfm"
+            timed "$profile.times" "$LANCER" render "$folder/$scene.dsc" --profile "$profile" --threads 1 --no-error -o "$folder/$profile.pfm"
         done
     done
     apart=$("$folder/tracer" --compare "$folder/tracer.pfm" "$folder/packet.pfm")

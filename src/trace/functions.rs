@@ -60,14 +60,14 @@ struct LoneItem {
 
 /// Functions of one item.
 fn of_item(trace: &Trace, load: &Load, config: &Config, item: &Item) -> Result<Vec<FunctionSlice>, Report> {
-    let Some(message) = item.message else { return Ok(Vec::new()) };
+    let Some(message) = item.message.as_deref() else { return Ok(Vec::new()) };
     let lone = Lone {
         config,
         isa: &load.isa,
         program: &load.build.cores,
         registers: Registers::default(),
         memory: load.memory.clone(),
-        message: Some(message),
+        message: Some(*message),
         step_limit: config.step_limit,
     };
     let program = &load.build.cores;

@@ -70,6 +70,23 @@ pub struct Turns {
     pub elementary: u64,
 }
 
+impl Turns {
+    /// Units that take nothing.
+    pub const FREE: Turns = Turns { at_once: 1, clocks: 0, elementary: 0 };
+
+    /// Clocks and elementary operations of so many units.
+    #[inline]
+    pub fn cost(&self, units: u32) -> (Clocks, u64) {
+        let (units, at_once) = (u64::from(units), u64::from(self.at_once));
+        // A division takes longer than all the rest.
+        let turns = match at_once.is_power_of_two() {
+            true => (units + at_once - 1) >> at_once.trailing_zeros(),
+            false => units.div_ceil(at_once),
+        };
+        (Clocks(self.clocks * turns), self.elementary * units)
+    }
+}
+
 /// Owner of a pass, and what the pass counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pass {
@@ -417,13 +434,16 @@ impl<'a> Code<'a> {
     }
 
     /// Clocks and elementary operations that `units` units add to a pass.
+    #[inline]
     pub fn unit_cost(&self, pass: usize, units: u32) -> (Clocks, u64) {
-        if let Some(OutcomeCost { turns: Some(turns), .. }) = self.costs.get(pass) {
-            return (
-                Clocks(turns.clocks * u64::from(units.div_ceil(turns.at_once))),
-                turns.elementary * u64::from(units),
-            );
+        match self.costs.get(pass) {
+            Some(OutcomeCost { turns: Some(turns), .. }) => turns.cost(units),
+            _ => self.uneven_unit_cost(pass, units),
         }
+    }
+
+    /// Clocks and elementary operations that `units` units add to a pass, where they have no [`Turns`].
+    pub fn uneven_unit_cost(&self, pass: usize, units: u32) -> (Clocks, u64) {
         let (cost, each) = self.pass_cost(pass);
         let each = each.times(units.into());
         (self.timing.clocks(&(cost + each)) - self.timing.clocks(&cost), each.elementary())

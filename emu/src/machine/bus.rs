@@ -45,14 +45,6 @@ impl BusUse {
         self.bursts += more.bursts;
         self.longest_wait = self.longest_wait.max(more.longest_wait);
     }
-
-    #[inline(always)]
-    fn add_alone(&mut self, alone: &Alone) {
-        self.busy += alone.held;
-        self.moved += alone.octets;
-        self.transfers += alone.transfers;
-        self.bursts += alone.bursts;
-    }
 }
 
 /// A burst that was granted.
@@ -84,8 +76,10 @@ pub struct Burst {
 }
 
 /// Lengths of bursts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Lengths {
+    /// First bursts of the transfers of few octets, by their number.
+    short: Vec<Burst>,
     longest_burst: Octets,
     octets_per_beat: u64,
     /// Binary logarithm of the octets of a beat, where it is whole.
@@ -96,19 +90,32 @@ pub struct Lengths {
 }
 
 impl Lengths {
+    /// Transfers of fewer octets are looked up.
+    const SHORT: u64 = 256;
+
     fn new(config: &BusConfig, check_bits: u32) -> Lengths {
-        Lengths {
+        let mut lengths = Lengths {
+            short: Vec::new(),
             longest_burst: config.longest_burst(check_bits),
             octets_per_beat: config.octets_per_beat,
             beat_shift: config.octets_per_beat.is_power_of_two().then(|| config.octets_per_beat.trailing_zeros()),
             setup: Clocks(config.setup_clocks),
             clocks_of_words: config.clocks_of_words(check_bits),
-        }
+        };
+        lengths.short = (0..Lengths::SHORT).map(|octets| lengths.measured(Octets(octets))).collect();
+        lengths
     }
 
     /// The first burst of a transfer.
     #[inline(always)]
     pub fn burst(&self, transfer: Octets) -> Burst {
+        match self.short.get(transfer.0 as usize) {
+            Some(&burst) => burst,
+            None => self.measured(transfer),
+        }
+    }
+
+    fn measured(&self, transfer: Octets) -> Burst {
         let octets = transfer.min(self.longest_burst);
         // Dividing takes longer than all the rest.
         let beats = match self.beat_shift {
@@ -122,9 +129,9 @@ impl Lengths {
 
 /// A master of the bus that may go from one transfer to the next by itself.
 pub trait NextTransfer: Clone + Default {
-    /// Goes on from a transfer that ended at a clock to the next one, and yields the clocks between them and the first burst; `None` when something else
+    /// Goes on from a transfer that ended at a clock to the next one, and yields the clocks between them and its octets; `None` when something else
     /// is next.
-    fn next_transfer(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)>;
+    fn next_transfer(&mut self, end: Clocks) -> Option<(Clocks, Octets)>;
 
     /// Goes on while it asks before `limit`, where nobody else does, so that it never waits; with `first`, the burst that it asks for from
     /// `arrival` on. Where something else than a transfer comes next, the last burst before that is left. A master may leave all bursts.
@@ -136,7 +143,10 @@ pub trait NextTransfer: Clone + Default {
     /// Is told how long it waited for a grant.
     fn note_wait(&mut self, waited: Clocks);
 
-    /// The longest wait for a grant since this was asked last.
+    /// The longest wait for a grant since it was taken last.
+    fn longest_wait(&self) -> Clocks;
+
+    /// The longest wait for a grant, which begins anew.
     fn take_longest_wait(&mut self) -> Clocks;
 }
 
@@ -315,10 +325,10 @@ impl Bus {
             let master = &mut masters[grant.master as usize];
             master.note_wait(grant.waited);
             if grant.is_last {
-                let Some((computing, burst)) = master.next_transfer(grant.end, &self.lengths) else {
+                let Some((computing, octets)) = master.next_transfer(grant.end) else {
                     return Some(grant);
                 };
-                self.requests.ask(grant.master, grant.end + computing, burst);
+                self.requests.ask(grant.master, grant.end + computing, self.lengths.burst(octets));
             }
         }
         None

@@ -33,12 +33,12 @@ pub struct ProcessorUse {
 }
 
 /// One work item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Item {
     /// First vector of its first message: what it is about.
     pub subject: Vector,
-    /// First message of the item; `None` where it got none.
-    pub message: Option<Message>,
+    /// First message of the item, where the run is traced; `None` where it got none.
+    pub message: Option<Box<Message>>,
     /// The core that did it.
     pub core: u32,
     /// Clock at which it got its first message, or was begun when it got none.

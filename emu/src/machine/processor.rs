@@ -137,7 +137,7 @@ impl<'a, W: Worker> Processor<'a, W> {
         let Progress { steps, elementary, .. } = self.worker.progress();
         Item {
             subject: self.work.message.map_or([0; 3], |message| message.first()),
-            message: self.work.message,
+            message: self.work.message.filter(|_| self.spans.is_some()).map(Box::new),
             core: self.core.core,
             start: self.work.start,
             end: self.clock,

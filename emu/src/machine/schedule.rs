@@ -275,9 +275,9 @@ impl<'a, W: Worker> Machine<'a, W> {
         }
         self.bus.request(number as u32, processor.clock, octets);
         let is_handed_over = self.masters.as_mut().is_some_and(|masters| {
-            let (written, lengths) = (&self.shared.written, &self.bus.lengths);
+            let written = &self.shared.written;
             let (clock, overlaps) = (processor.clock, self.setup.config.bus.overlap);
-            let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut processor.cache };
+            let transfer = HandOver { clock, written, overlaps, cache: &mut processor.cache };
             processor.worker.hand_over(&mut masters.all[number], transfer)
         });
         if is_ahead && !is_handed_over {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::bus::{Lengths, NextTransfer};
+use super::bus::NextTransfer;
 use super::cache::Cache;
 use super::kinds::Kinds;
 use super::port::{CorePort, Shared};
@@ -63,8 +63,6 @@ pub struct HandOver<'a> {
     pub clock: Clocks,
     /// Part of global memory that was written so far.
     pub written: &'a Range<u64>,
-    /// Lengths of bursts.
-    pub lengths: &'a Lengths,
     /// Workers go on computing while their loads are on their way.
     pub overlaps: bool,
     /// Cache of the processor, which goes with the work item.
@@ -150,12 +148,16 @@ pub struct PlainMaster {
 impl ItemMaster for PlainMaster {}
 
 impl NextTransfer for PlainMaster {
-    fn next_transfer(&mut self, _: Clocks, _: &Lengths) -> Option<(Clocks, super::bus::Burst)> {
+    fn next_transfer(&mut self, _: Clocks) -> Option<(Clocks, Octets)> {
         None
     }
 
     fn note_wait(&mut self, waited: Clocks) {
         self.longest_wait = self.longest_wait.max(waited);
+    }
+
+    fn longest_wait(&self) -> Clocks {
+        self.longest_wait
     }
 
     fn take_longest_wait(&mut self) -> Clocks {

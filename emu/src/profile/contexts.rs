@@ -238,7 +238,11 @@ impl Contexts {
 
     #[cold]
     fn pass_slowly(&mut self, pc: u32, exit: usize, units: UnitCount) {
-        let Some(crowd) = &self.crowd else { return self.add_passes(self.current, exit, 1, units) };
+        let Some(crowd) = &self.crowd else {
+            let mut passes = ContextPasses::default();
+            passes.add(1, units);
+            return self.add_passes(self.current, exit, passes);
+        };
         let (cost, each) = self.costs[exit];
         let cost = cost + each.times(units.units.into());
         let clocks = u64::from(self.clocks[exit]) + units.clocks;
@@ -257,12 +261,12 @@ impl Contexts {
     }
 
     /// Passes through an exit that were counted elsewhere, with their units.
-    pub fn add_passes(&mut self, context: u32, exit: usize, count: u64, units: UnitCount) {
+    pub fn add_passes(&mut self, context: u32, exit: usize, more: ContextPasses) {
         let passes = &mut self.contexts[context as usize].passes;
         if passes.is_empty() {
             passes.resize(self.costs.len(), ContextPasses::default());
         }
-        passes[exit].add(count, units);
+        passes[exit].merge(more);
     }
 
     /// A region was entered so often.

@@ -20,6 +20,8 @@ pub(crate) use contexts::CallStack;
 #[cfg(feature = "native")]
 pub(crate) use extremes::{CallMeter, Near};
 pub use log::{ClockKeys, ClockLog, LogPart, TransferMeter};
+#[cfg(feature = "native")]
+pub(crate) use passes::ContextPasses;
 pub use profiler::Profiler;
 #[cfg(feature = "native")]
 pub(crate) use regions::{FunctionChange, RegionNesting};

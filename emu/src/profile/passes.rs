@@ -21,4 +21,11 @@ impl ContextPasses {
         self.units += u64::from(units.units);
         self.unit_clocks += units.clocks;
     }
+
+    /// Adds passes that were counted elsewhere.
+    pub fn merge(&mut self, more: ContextPasses) {
+        self.count += more.count;
+        self.units += more.units;
+        self.unit_clocks += more.unit_clocks;
+    }
 }

@@ -1,6 +1,7 @@
 //! Recorded transfers, one after the other, as long as nothing but the arbiter stands between them: the processor that goes through them
 //! hands them over when it asks for a transfer, and takes them back when something else is next.
 
+use std::hint::black_box;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -22,8 +23,8 @@ pub struct BusCursor {
     stretch: Stretch,
     /// Clocks of computing before the next transfer; [`NEVER`] where something else comes next.
     computing: Clocks,
-    /// First burst of the next transfer; of no meaning with a cache, which says so when the transfer is asked for.
-    ahead: Burst,
+    /// Octets of the next transfer; of no meaning with a cache, which says so when the transfer is asked for.
+    ahead: Octets,
     /// Clock at which it was handed over.
     start: Clocks,
     /// Clock at which the transfer that is on its way was asked for.
@@ -83,13 +84,22 @@ fn add_wait(waits: &mut [u64], track: &Track, at: usize, waiting: Clocks) {
     }
 }
 
-/// Clocks of computing before a transfer that reads, and its first burst; [`NEVER`] before anything else.
+/// Clocks of computing before a transfer that reads, and its octets; [`NEVER`] before anything else.
 #[inline(always)]
-fn ahead_of(segments: &[Segment], next: usize, lengths: &Lengths) -> (Clocks, Burst) {
+fn ahead_of(segments: &[Segment], next: usize) -> (Clocks, Octets) {
     match segments.get(next) {
-        Some(segment) if segment.is_read() => (Clocks(segment.clocks.into()), lengths.burst(segment.octets())),
-        _ => (NEVER, Burst::default()),
+        Some(segment) if segment.is_read() => (Clocks(segment.clocks.into()), segment.octets()),
+        _ => (NEVER, Octets(0)),
     }
+}
+
+/// Reads a little of each line of the host's cache that segments take, so that it waits for many of them at once. The bus's loop, which decides on
+/// each segment, would wait for one after the other.
+fn warm(segments: &[Segment]) {
+    const LINE: usize = 64 / size_of::<Segment>();
+    const MOST: usize = 64 * LINE;
+    let first = &segments[..segments.len().min(MOST)];
+    black_box(first.iter().step_by(LINE).fold(0, |all, segment| all ^ segment.clocks));
 }
 
 /// True where two ranges have an octet in common.
@@ -100,7 +110,7 @@ pub fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
 impl Default for BusCursor {
     fn default() -> BusCursor {
         let none = Clocks(0);
-        let (computing, ahead) = (NEVER, Burst::default());
+        let (computing, ahead) = (NEVER, Octets(0));
         BusCursor {
             track: None,
             next: 0,
@@ -167,9 +177,12 @@ impl BusCursor {
     /// Takes over a track, when its processor begins to ask for the last of the segments that are behind it, with waits by site where
     /// clocks of functions are measured.
     pub fn begin(&mut self, (track, stretch): (Arc<Track>, Stretch), next: usize, transfer: HandOver, waits: Vec<u64>) {
-        let HandOver { clock, lengths, overlaps, cache, .. } = transfer;
+        let HandOver { clock, overlaps, cache, .. } = transfer;
         (self.next, self.start, self.asked, self.busy, self.waits) = (next, clock, clock, Clocks(0), waits);
         self.stretch = stretch;
+        if next == self.stretch.segments.start + 1 {
+            warm(&track.segments[self.stretch.segments.clone()]);
+        }
         if overlaps || cache.is_some() {
             // The box stays from one work item to the next.
             let beside = self.beside.get_or_insert_default();
@@ -178,15 +191,15 @@ impl BusCursor {
             (beside.answered, beside.is_lost, beside.cache) = (0..0, false, cache.take());
         }
         self.track = Some(track);
-        self.look(lengths);
+        self.look();
     }
 
     #[inline(always)]
-    fn look(&mut self, lengths: &Lengths) {
+    fn look(&mut self) {
         let end = self.stretch.segments.end;
         let segments = self.track.as_ref().map_or(&[][..], |track| &track.segments[..end]);
         match &mut self.beside {
-            None => (self.computing, self.ahead) = ahead_of(segments, self.next, lengths),
+            None => (self.computing, self.ahead) = ahead_of(segments, self.next),
             Some(beside) => self.computing = beside.look(segments, self.next),
         }
     }
@@ -209,7 +222,7 @@ impl BusCursor {
 
     /// Goes on with a cache, or with loads that are not waited for.
     #[inline(never)]
-    fn next_beside(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+    fn next_beside(&mut self, end: Clocks) -> Option<(Clocks, Octets)> {
         let (track, beside) = (self.track.as_ref()?, self.beside.as_mut()?);
         let segment = track.segments.get(beside.hits.end)?;
         let (asked, waiting, octets) = beside.go_on([self.asked, end, self.computing], segment);
@@ -217,8 +230,8 @@ impl BusCursor {
         add_wait(&mut self.waits, track, self.next - 1, waiting);
         self.busy += self.computing + beside.after_hit;
         (self.next, self.asked) = (beside.hits.end + 1, asked);
-        self.look(lengths);
-        Some((asked - end, lengths.burst(octets)))
+        self.look();
+        Some((asked - end, octets))
     }
 }
 
@@ -239,14 +252,14 @@ impl ItemMaster for BusCursor {
 
 impl NextTransfer for BusCursor {
     #[inline(always)]
-    fn next_transfer(&mut self, end: Clocks, lengths: &Lengths) -> Option<(Clocks, Burst)> {
+    fn next_transfer(&mut self, end: Clocks) -> Option<(Clocks, Octets)> {
         // What comes next was worked out when the last transfer began, so that the bus's loop need not wait for it.
         let (computing, ahead) = (self.computing, self.ahead);
         if computing == NEVER {
             return None;
         }
         if self.beside.is_some() {
-            return self.next_beside(end, lengths);
+            return self.next_beside(end);
         }
         self.busy += computing;
         if let Some(track) = &self.track {
@@ -254,7 +267,7 @@ impl NextTransfer for BusCursor {
         }
         self.asked = end + computing;
         self.next += 1;
-        self.look(lengths);
+        self.look();
         Some((computing, ahead))
     }
 
@@ -284,11 +297,11 @@ impl NextTransfer for BusCursor {
                 (alone.burst, alone.arrival) = (lengths.burst(rest), alone.free);
                 continue;
             }
-            (alone.burst, alone.arrival) = (ahead, alone.free + computing);
+            (alone.burst, alone.arrival) = (lengths.burst(ahead), alone.free + computing);
             add_wait(&mut self.waits, track, next - 1, alone.free - self.asked);
             self.asked = alone.arrival;
             next += 1;
-            (computing, ahead) = ahead_of(segments, next, lengths);
+            (computing, ahead) = ahead_of(segments, next);
         }
         // Put back what has changed: all that was not holding the bus was computing
         alone.transfers = (next - before.0) as u64;
@@ -300,6 +313,11 @@ impl NextTransfer for BusCursor {
     #[inline(always)]
     fn note_wait(&mut self, waited: Clocks) {
         self.longest_wait = self.longest_wait.max(waited);
+    }
+
+    #[inline(always)]
+    fn longest_wait(&self) -> Clocks {
+        self.longest_wait
     }
 
     fn take_longest_wait(&mut self) -> Clocks {
@@ -364,10 +382,10 @@ mod tests {
                         let cursor = &mut cursors.all[master as usize];
                         let _ = cursor.end(arrival);
                         bus.request(master, arrival, item.0.segments[1].octets());
-                        let (clock, written, lengths) = (arrival, &(0..0), &bus.lengths);
+                        let (clock, written) = (arrival, &(0..0));
                         let kinds = [(0..128, "nodes".to_owned())];
                         let mut cache = Cache::new(&CacheConfig { octets, line_octets: 16, ..CacheConfig::default() }, &kinds);
-                        let transfer = HandOver { clock, written, lengths, overlaps, cache: &mut cache };
+                        let transfer = HandOver { clock, written, overlaps, cache: &mut cache };
                         cursor.begin(item.clone(), 2, transfer, vec![0; 9]);
                     }
                 }

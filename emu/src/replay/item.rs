@@ -1,7 +1,9 @@
 //! The link of work items that an engine records, and what it does.
 
+use std::ops::Range;
+
 use super::budget::Budget;
-use super::recording::{Segment, Track};
+use super::recording::{Segment, Track, widen};
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
@@ -31,6 +33,8 @@ pub(super) struct ItemRecord {
     /// Number of its first message among those that were sent.
     pub first_message: usize,
     pub octets: Octets,
+    /// From the first to the last octet of global memory that it has read; empty where it has read none.
+    pub reads: Range<u64>,
     pub before: u64,
     /// There was no room for a segment, so that the item was recorded in vain.
     pub is_without_room: bool,
@@ -96,6 +100,9 @@ impl Quick for ItemRecorder<'_> {
         // Many reads at once may cross the end of several shares: with 10 more after 4090, and shares of 4096, of one.
         let portions = record.segments() / Budget::SHARE;
         record.track.segments.extend(reads.iter().map(Segment::of_read));
+        let ends = reads.iter().map(|read| (read.address, u64::from(read.address) + u64::from(read.octets)));
+        let (start, end) = ends.fold((u32::MAX, 0), |(start, end), (from, to)| (start.min(from), end.max(to)));
+        widen(&mut record.reads, start.into()..end);
         if let Some(sites) = &mut self.sites {
             let range = |address| self.kinds.range(address);
             let site = |read: &NotedRead| sites.at(read.context, read.slot, read.address, range);
@@ -136,6 +143,9 @@ impl ItemRecorder<'_> {
             return Err(Stop::Wait);
         }
         record.octets += segment.octets();
+        if segment.is_read() {
+            widen(&mut record.reads, segment.range());
+        }
         record.before = self.time.clocks;
         record.track.segments.push(segment);
         if let Some(sites) = &mut self.sites {

@@ -77,15 +77,18 @@ fn record<T: Watch + Send, O: Observer + Send>(recorders: &mut [Recorder<T, O>],
     let mut found: Vec<Vec<PortionFound>> = Vec::new();
     found.resize_with(recorders.len(), Vec::new);
     let work_off = |recorder: &mut Recorder<T, O>, found: &mut Vec<PortionFound>| {
+        let mut previous: Option<Arc<Portion>> = None;
         // Portions go to whoever is free: items differ much in length.
         while !budget.is_full()
             && let at = next.fetch_add(AT_ONCE, Ordering::Relaxed)
             && let Some(rest) = work.get(at..).filter(|rest| !rest.is_empty())
         {
-            let mut portion = Portion::default();
+            let mut portion = Portion::with_room(previous.as_deref());
             let mut messages = rest.iter().take(AT_ONCE).map(|(_, message)| *message);
             let recorded = messages.try_for_each(|message| recorder.record(message, &budget, &mut portion));
-            found.push((at, recorded.map(|()| portion.closed())));
+            let recorded = recorded.map(|()| portion.closed());
+            previous = recorded.as_ref().ok().cloned();
+            found.push((at, recorded));
         }
     };
     // Threads of their own: this may itself be a thread of a pool in which all others wait.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::budget::Budget;
 use super::item::{ItemRecord, ItemRecorder, RecordLevel};
-use super::recording::{ItemClocks, Portion, Reason, Recording, Segment, Stretch, reads};
+use super::recording::{ItemClocks, Portion, Reason, Recording, Segment, Stretch, widen};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -283,6 +283,9 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
                 let segment = Segment::new(clocks, self.state.pc, request, link.sent.len() - record.first_message);
                 let segment = segment.ok_or("a segment of a work item is too long")?;
                 record.octets += segment.octets();
+                if segment.is_read() {
+                    widen(&mut record.reads, segment.range());
+                }
                 if let (Some(sites), Some(profiler)) = (&mut self.sites, self.observer.profiler()) {
                     let context = profiler.contexts.current();
                     record.track.sites.push(self.kinds.site(sites, context, self.state.pc, request));
@@ -339,7 +342,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         }
         let (observer, clocks) = (self.number, self.state.clocks);
         let known = self.sites.as_ref().map_or(0, |sites| sites.all().len() as u32);
-        let ItemRecord { track, sent, octets, before, .. } = record;
+        let ItemRecord { track, sent, octets, reads, before, .. } = record;
         let profiler = self.observer.profiler().filter(|_| self.sites.is_some());
         let cells = profiler.and_then(|profiler| profiler.contexts.cells.as_mut());
         let item_clocks = cells.map(|cells| {
@@ -354,7 +357,7 @@ impl<'a, T: Watch, O: Observer> Recorder<'a, T, O> {
         portion.items.push(Recording {
             message,
             clocks: item_clocks,
-            stretch: Stretch { reads: reads(&track.segments[segments.clone()]), segments },
+            stretch: Stretch { reads, segments },
             octets,
             sent: first_message..sent.len(),
             last_clocks: clocks - before,

@@ -103,8 +103,17 @@ impl Segment {
 
 /// From the first to the last octet of global memory that segments read.
 pub fn reads(segments: &[Segment]) -> Range<u64> {
-    let ranges = segments.iter().filter(|segment| segment.is_read()).map(Segment::range);
-    ranges.reduce(|all, range| all.start.min(range.start)..all.end.max(range.end)).unwrap_or_default()
+    let mut all = 0..0;
+    segments.iter().filter(|segment| segment.is_read()).for_each(|segment| widen(&mut all, segment.range()));
+    all
+}
+
+/// Makes a range reach over another one as well; empty ones count for nothing.
+#[inline]
+pub fn widen(all: &mut Range<u64>, more: Range<u64>) {
+    if !more.is_empty() {
+        *all = if all.is_empty() { more } else { all.start.min(more.start)..all.end.max(more.end) };
+    }
 }
 
 /// Segments one after the other, which a core or the bus goes through.
@@ -182,6 +191,23 @@ pub struct Portion {
 }
 
 impl Portion {
+    /// No items, with room for about as much as the portion before had, since room that grows is copied again and again.
+    pub fn with_room(previous: Option<&Portion>) -> Portion {
+        let Some(previous) = previous else { return Portion::default() };
+        let room = |length: usize| length + length / 8;
+        let Track { segments, sites } = &*previous.track;
+        Portion {
+            items: Vec::with_capacity(previous.items.len()),
+            track: Arc::new(Track {
+                segments: Vec::with_capacity(room(segments.len())),
+                sites: Vec::with_capacity(room(sites.len())),
+            }),
+            sent: Vec::with_capacity(room(previous.sent.len())),
+            cells: Vec::with_capacity(room(previous.cells.len())),
+            asked: Vec::with_capacity(room(previous.asked.len())),
+        }
+    }
+
     /// The segments of an item.
     pub fn segments(&self, item: &Recording) -> &[Segment] {
         &self.track.segments[item.stretch.segments.clone()]

@@ -17,7 +17,7 @@ use crate::engine::plan::{Plan, Step};
 use crate::engine::taint::Taint;
 use crate::engine::{CoreId, State};
 use crate::extension::Units;
-use crate::profile::{CallMeter, CallStack, Profiler, UnitCount};
+use crate::profile::{CallMeter, CallStack, Profiler};
 use crate::semantics::{Motion, Numbers, Watch};
 
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
@@ -221,23 +221,23 @@ impl<'a> NativeHost<'a> {
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        let Some(pass) = self.plan.pass(exit) else { return };
-        let is_busy = self.plan.code.costs()[pass].has_busy_units;
-        let (Clocks(clocks), elementary) = if is_busy { self.plan.code.unit_cost(pass, units) } else { (Clocks(0), 0) };
-        let counters = &mut self.counters;
-        if let Some((count, sum)) = counters.units.get_mut(exit) {
-            *count += u64::from(units);
-            *sum += clocks;
+        let counter = self.counters.unit_counter(context.current, exit);
+        let (clocks, elementary) = match counter.turns {
+            Some(turns) => turns.cost(units),
+            None => self.plan.pass(exit).map_or((Clocks(0), 0), |pass| self.plan.code.uneven_unit_cost(pass, units)),
+        };
+        counter.add(units, clocks);
+        self.totals.elementary += elementary;
+        self.add_clocks(context, clocks.0);
+        if self.profiler.is_some() {
+            self.meter_units(exit, units);
         }
-        if let Some(profiler) = &mut self.profiler {
-            profiler.contexts.add_passes(context.current, pass, 0, UnitCount { units, clocks });
-        }
-        if let Some(meter) = self.meter() {
+    }
+
+    /// Tells who measures each call of units.
+    fn meter_units(&mut self, exit: usize, units: u32) {
+        if let (Some(pass), Some(meter)) = (self.plan.pass(exit), self.meter()) {
             meter.add_units(pass, units);
-        }
-        if is_busy {
-            self.totals.elementary += elementary;
-            self.add_clocks(context, clocks);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Service of masters whom an arbiter ranks: round the circle, by number, or by when they began to ask.
 
 use super::super::arbiter::{NEVER, Ranking};
-use super::{Burst, Bus, Grant, NextTransfer};
+use super::{Burst, Bus, BusUse, Grant, NextTransfer};
 use crate::code::quantity::{Clocks, Octets};
 
 impl Bus {
@@ -19,7 +19,7 @@ impl Bus {
         // Take what the loop works on into variables of its own
         const RANK: u32 = 6;
         let masters = self.requests.masters() as usize;
-        let (lengths, waits, all_masters) = (self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
+        let (lengths, waits, all_masters) = (&self.lengths, &mut self.waits[..masters], &mut all_masters[..masters]);
         let (all, bursts) = (&mut self.requests.arrivals[..masters], &mut self.requests.bursts[..masters]);
         // Places behind the last master stay beyond every clock and never win.
         let mut arrivals = [NEVER.0; SIZE];
@@ -34,7 +34,9 @@ impl Bus {
         // What decides among those that wait, their rank or since when they do; and whether the rank depends on who came last.
         let by_rank = if ranking == Some(Ranking::Arrival) { 0 } else { u64::MAX };
         let is_circle = matches!(ranking, Some(Ranking::Circle(_)));
-        let (mut free, mut used) = (self.free_at, self.used);
+        // The longest wait is known to the masters, and what is no last burst of its transfer is the exception.
+        let mut free = self.free_at;
+        let (mut busy, mut moved, mut bursts_granted, mut rests) = (Clocks(0), Octets(0), 0, 0);
         // Where nobody asks, the smallest number is beyond every clock.
         let until = until.min(Clocks(NEVER.0 >> RANK));
         let granted = loop {
@@ -70,31 +72,35 @@ impl Bus {
             let (burst, one) = (&mut bursts[master], &mut all_masters[master]);
             let (waited, end) = (start - Clocks(arrivals[master]), start + burst.length);
             let Burst { octets, rest, .. } = *burst;
-            let is_last = rest == Octets(0);
-            let grant = Grant { master: master as u32, start, end, waited, octets, is_last };
             free = end;
-            used.add(&grant);
+            busy += burst.length;
+            moved += octets;
+            bursts_granted += 1;
             waits[master].add(waited);
             one.note_wait(waited);
             // Ask for what comes next: the rest of the transfer, or the next one after some computing
-            let (computing, next) = if is_last {
-                let Some(ahead) = one.next_transfer(end, &lengths) else {
+            let (computing, next) = if rest == Octets(0) {
+                let Some(ahead) = one.next_transfer(end) else {
                     arrivals[master] = NEVER.0;
-                    break Some(grant);
+                    break Some(Grant { master: master as u32, start, end, waited, octets, is_last: true });
                 };
                 ahead
             } else {
-                (Clocks(0), lengths.burst(rest))
+                rests += 1;
+                (Clocks(0), rest)
             };
             arrivals[master] = (end + computing).0;
-            *burst = next;
+            *burst = lengths.burst(next);
             if SIZE == 2 && masters == 2 {
                 // With one rival it often asks again before that does.
                 let limit = Clocks(arrivals[1 - master]).min(until);
-                let alone = one.go_alone(&lengths, *burst, Clocks(arrivals[master]), limit);
+                let alone = one.go_alone(lengths, *burst, Clocks(arrivals[master]), limit);
                 if alone.bursts != 0 {
                     (free, *burst, arrivals[master]) = (alone.free, alone.burst, alone.arrival.0);
-                    used.add_alone(&alone);
+                    busy += alone.held;
+                    moved += alone.octets;
+                    bursts_granted += alone.bursts;
+                    rests += alone.bursts - alone.transfers;
                     waits[master].add_none(alone.bursts);
                 }
             }
@@ -106,7 +112,10 @@ impl Bus {
         if let Some(Ranking::Circle(turn)) = ranking {
             *turn = first as u32;
         }
-        (self.free_at, self.used, self.not_before) = (free, used, Clocks(0));
+        let longest_wait = all_masters.iter().map(|one| one.longest_wait()).max().unwrap_or_default();
+        let transfers = bursts_granted - rests;
+        self.used.merge(&BusUse { busy, moved, transfers, bursts: bursts_granted, longest_wait });
+        (self.free_at, self.not_before) = (free, Clocks(0));
         granted
     }
 }

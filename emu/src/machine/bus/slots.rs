@@ -114,7 +114,7 @@ impl Bus {
 
     /// Goes through the bursts of a master that begin before a clock. The requests stay as they are.
     fn walk<M: NextTransfer>(&self, slots: Tdma, masters: &mut BusMasters<M>, master: u32, until: Clocks) {
-        let (lengths, mut own) = (self.lengths, slots.slots_of(master));
+        let (lengths, mut own) = (&self.lengths, slots.slots_of(master));
         let (walk, one) = (&mut masters.walks[master as usize], &mut masters.all[master as usize]);
         let (mut arrival, mut burst) = (self.requests.arrival(master), self.requests.bursts[master as usize]);
         let (mut used, mut last) = (BusUse::default(), None);
@@ -131,11 +131,11 @@ impl Bus {
             walk.waits.add(waited);
             one.note_wait(waited);
             (arrival, burst) = if is_last {
-                let Some((computing, next)) = one.next_transfer(end, &lengths) else {
+                let Some((computing, octets)) = one.next_transfer(end) else {
                     last = Some(grant);
                     break;
                 };
-                (end + computing, next)
+                (end + computing, lengths.burst(octets))
             } else {
                 (end, lengths.burst(rest))
             };

@@ -24,7 +24,8 @@ impl RealFormulas<'_> {
         let (first, octets) =
             (self.buffer.word(block).ok()? as u32, self.buffer.word(block.wrapping_add(4)).ok()? as u32);
         let mut exit = Plane::from_pattern(self.pattern(note)?);
-        let mut descent = Descent::new(&machine_ray(a), entry, exit);
+        let exact = machine_ray(a);
+        let mut descent = Descent::new(&exact, entry, exit);
         loop {
             let inside = node.wrapping_sub(first);
             if octets < NODE || inside > octets - NODE {

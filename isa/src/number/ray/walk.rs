@@ -8,8 +8,9 @@ const LEAF: usize = 3;
 
 /// A ray on its way down, between the plane by which it came and the one by which it leaves.
 #[derive(Clone, Copy, Debug)]
-pub struct Descent {
-    ray: Ray,
+pub struct Descent<'a> {
+    // A copy would be read while it is being written, which hosts wait for.
+    ray: &'a Ray,
     entry: PlaneCrossed,
     exit: PlaneCrossed,
 }
@@ -31,11 +32,11 @@ pub enum Children {
     },
 }
 
-impl Descent {
+impl Descent<'_> {
     /// The walk of a ray from where it came by `entry` up to where it leaves by `exit`.
     #[inline]
-    pub fn new(ray: &Ray, entry: Plane, exit: Plane) -> Descent {
-        Descent { ray: *ray, entry: PlaneCrossed::new(entry, ray), exit: PlaneCrossed::new(exit, ray) }
+    pub fn new(ray: &Ray, entry: Plane, exit: Plane) -> Descent<'_> {
+        Descent { ray, entry: PlaneCrossed::new(entry, ray), exit: PlaneCrossed::new(exit, ray) }
     }
 
     /// Goes on in a node that is divided at a plane, with the decisions of [`super::step`]. Where the ray visits both children, it leaves the
@@ -45,7 +46,7 @@ impl Descent {
         if split.axis == LEAF {
             return Children::None;
         }
-        let crossing = PlaneCrossed::new(split, &self.ray);
+        let crossing = PlaneCrossed::new(split, self.ray);
         let is_backwards = crossing.is_backwards();
         if !crossing.is_ahead() || !self.entry.is_before(crossing) {
             Children::One { is_right: !is_backwards }

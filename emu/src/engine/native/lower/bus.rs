@@ -11,6 +11,7 @@ use crate::engine::cost::CLOCKS;
 use crate::engine::native::NotedRead;
 use crate::engine::native::calls::{self, RowCall, STOPPED};
 use crate::engine::native::context::{BEFORE, MEMORY, NOTED_AT, NOTED_END, READS};
+use crate::engine::native::count::has_units;
 use crate::engine::plan::Step;
 
 impl Lower<'_, '_> {
@@ -51,13 +52,7 @@ impl Lower<'_, '_> {
 
     /// Counts the exit, and its units, by which a function said that a row ended: the exit in the low half, the units in the high one.
     fn ended(&mut self, step: &Step, exit: Value) {
-        let has_units = self
-            .source
-            .plan
-            .code
-            .slot_row(step.slot)
-            .is_some_and(|row| row.outcomes.iter().any(|exit| exit.each != isa::Counts::ZERO));
-        if !has_units {
+        if !has_units(self.source.plan, step) {
             return self.pass_dynamic(exit);
         }
         let units = self.b.ins().ushr_imm_s(exit, 32);

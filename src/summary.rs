@@ -95,9 +95,13 @@ pub fn brief(result: &Render) -> String {
         ),
     };
     let most = format!("most in: {}\n", functions.join(", "));
-    // Who has asked for another engine is told that it did not run.
-    let engine = result.engine_because.map_or(String::new(), |why| format!("engine: {} ({why})\n", result.engine));
+    let engine = engine(result.engine, result.engine_because);
     title(result) + &rays(result) + &operations + &most + &time + &engine + &cores + &bus + &error + &hashes(result)
+}
+
+/// The engine that ran, and why a faster one that was wanted did not; nothing where that ran.
+pub fn engine(name: &str, because: Option<&str>) -> String {
+    because.map_or(String::new(), |why| format!("engine: {name} ({why})\n"))
 }
 
 /// Calls, inclusive operations and the classes of own ones, function by function: first those of the cores, then

@@ -4,7 +4,7 @@
 #   benches/peers/tracer.sh                     the five scenes, 320 x 240 pixels
 #   benches/peers/tracer.sh cornell slabs       some of them
 #
-# tracer.cpp beside this file is that tracer, compiled with -O3 for this host. One table comes out: milliseconds of CPU time of the tracer, and those of
+# tracer.cpp beside this file is that tracer, compiled with -O3 for this host. Both take one host thread. One table comes out: milliseconds of CPU time of the tracer, and those of
 # `lancer render --no-error` with the profiles `ray` and `packet` as multiples of it; then how far the pictures of both are apart. Anything that is missing is named
 # before something runs.
 #

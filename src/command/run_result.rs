@@ -185,7 +185,7 @@ impl RunResult {
             grouped(self.waiting),
             grouped(self.counts.0[Class::Octet]),
         ));
-        parts.join("\n")
+        parts.join("\n") + &summary::engine(self.engine, self.engine_because)
     }
 
     fn register_text(&self) -> String {

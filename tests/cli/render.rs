@@ -217,12 +217,17 @@ fn another_engine_and_an_even_weighted_arbiter_are_said() {
     let session = Session::new();
     let picture = format!("{TINY} --no-error -o x.png");
     // Whatever keeps native code from running is said, as the JSON says it.
-    let losses = session.json(&format!("{TINY} --no-error --flags --engine native"));
-    let run = session.run(&format!("{picture} --flags --engine native"));
-    let because =
-        losses["engine_because"].as_str().map(|why| format!("engine: {} ({why})", losses["engine"].as_str().unwrap()));
-    assert!(because.is_none_or(|line| run.out.contains(&line)), "{}", run.out);
+    session.write("m.toml", "[clocks]\nadd = 1000000\n");
+    let why = "an instruction takes more clocks than the sums have room for";
+    let slow = session.json(&format!("{TINY} --no-error --machine m.toml --engine native"));
+    assert_eq!((&slow["engine"], &slow["engine_because"]), (&"checked".into(), &why.into()));
+    let run = session.run(&format!("{picture} --machine m.toml --engine native"));
+    assert!(run.out.contains(&format!("\nengine: checked ({why})\n")), "{}", run.out);
     assert_eq!(run.messages, "");
+    session.write("add.s", "add s1, s2, s3\nhalt\n");
+    let run = session.run("run add.s --machine m.toml --engine native");
+    assert!(run.out.ends_with(&format!("\nengine: checked ({why})\n")), "{}", run.out);
+    assert!(!session.succeed("run add.s --engine native").contains("engine"));
     session.write("m.toml", "[bus]\narbiter = \"weighted\"\n");
     let run = session.run(&format!("{picture} --machine m.toml"));
     assert!(run.messages.contains("all weights are 1, which is round-robin"), "{}", run.messages);

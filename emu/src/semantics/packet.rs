@@ -27,7 +27,7 @@ fn beyond_end(buffer: &Buffer, address: u32, triangles: i32) -> Fault {
 }
 
 impl<T: Arithmetic> PacketRoom for T {
-    #[inline]
+    #[inline(always)]
     fn rnear(
         &self,
         buffer: &mut Buffer,
@@ -44,7 +44,7 @@ impl<T: Arithmetic> PacketRoom for T {
         Ok(([found.t, found.name as i32, x[2]], Outcome { way, units: c as u32 }))
     }
 
-    #[inline]
+    #[inline(always)]
     fn rany(
         &self,
         buffer: &mut Buffer,

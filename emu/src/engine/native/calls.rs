@@ -85,7 +85,8 @@ macro_rules! row_function {
         ///
         /// # Safety
         /// Context and registers are those of a run, whose arithmetic is a `T`, and the step lives.
-        #[inline]
+        // What is called from `wide` has the host's vectors only where it stands inside.
+        #[inline(always)]
         pub unsafe extern "C" fn $name<T: Watch>(
             context: *mut Context,
             registers: *mut Registers,

@@ -143,10 +143,11 @@ impl<'a> PacketWords<'a> {
         let mut first = 0;
         while first < self.count {
             let judged = beam.judge(self, first);
-            for lane in 0..LANES.min(self.count - first) {
-                if judged.is_missed(lane) {
-                    continue;
-                }
+            // Most triangles are surely missed; the others come in their order.
+            let mut left = judged.candidates() & !(u32::MAX << LANES.min(self.count - first));
+            while left != 0 {
+                let lane = left.trailing_zeros() as usize;
+                left &= left - 1;
                 let triangle = first + lane;
                 let t = match judged.distance(lane, shift) {
                     Distance::Between(low, _) if low >= end_of(most) => continue,
@@ -220,9 +221,15 @@ struct Judged {
 }
 
 impl Judged {
+    /// The lanes that are not surely missed, a bit each.
     #[inline(always)]
-    fn is_missed(&self, lane: usize) -> bool {
-        (self.most[lane] < 0.0) & (self.sure[lane] > 0.0) | (self.beyond[lane] > 0.0)
+    fn candidates(&self) -> u32 {
+        let mut candidates = 0;
+        for lane in 0..LANES {
+            let is_missed = (self.most[lane] < 0.0) & (self.sure[lane] > 0.0) | (self.beyond[lane] > 0.0);
+            candidates |= u32::from(!is_missed) << lane;
+        }
+        candidates
     }
 
     /// The quotient of t and the determinant, scaled by 2^shift, where both have sure signs.

@@ -13,6 +13,7 @@ mod splice;
 pub mod tally;
 pub mod timing;
 pub mod trap;
+mod turns;
 
 use std::any::Any;
 use std::fmt;
@@ -25,6 +26,7 @@ use messages::{Diagnostic, Place};
 use quantity::Clocks;
 use splice::{Passing, SpliceTarget, splice};
 use timing::Timing;
+pub use turns::Turns;
 
 /// Most slots of all bodies of a program.
 pub const MOST_BODY_SLOTS: usize = 1 << 18;
@@ -55,36 +57,6 @@ pub struct OutcomeCost {
     pub is_inner: bool,
     /// Cost of the units where one takes as long as another, several of them at once.
     pub turns: Option<Turns>,
-}
-
-/// Units that are worked off turn by turn: triangles on the lanes of a packet unit, which wait for each other, or nodes one after the other.
-///
-/// 9 triangles on 4 lanes take three turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Turns {
-    /// Units of a turn at most.
-    pub at_once: u32,
-    /// Time of a turn.
-    pub clocks: u64,
-    /// Elementary operations of a unit.
-    pub elementary: u64,
-}
-
-impl Turns {
-    /// Units that take nothing.
-    pub const FREE: Turns = Turns { at_once: 1, clocks: 0, elementary: 0 };
-
-    /// Clocks and elementary operations of so many units.
-    #[inline]
-    pub fn cost(&self, units: u32) -> (Clocks, u64) {
-        let (units, at_once) = (u64::from(units), u64::from(self.at_once));
-        // A division takes longer than all the rest.
-        let turns = match at_once.is_power_of_two() {
-            true => (units + at_once - 1) >> at_once.trailing_zeros(),
-            false => units.div_ceil(at_once),
-        };
-        (Clocks(self.clocks * turns), self.elementary * units)
-    }
 }
 
 /// Owner of a pass, and what the pass counts.

@@ -14,6 +14,10 @@ pub(super) const NOTED: usize = 512;
 pub(super) struct Context {
     /// Steps, inner steps, clocks and elementary operations since they were last emptied, packed as [`crate::engine::cost::Cost`].
     pub sums: u64,
+    /// Clocks before the sums were last emptied, and those of units.
+    pub total_clocks: u64,
+    /// Elementary operations before the sums were last emptied, and those of units.
+    pub total_elementary: u64,
     /// The place at which generated code stopped.
     pub place: u32,
     /// Number of this core.
@@ -70,6 +74,8 @@ macro_rules! offsets {
 
 offsets! {
     SUMS sums
+    TOTAL_CLOCKS total_clocks
+    TOTAL_ELEMENTARY total_elementary
     PLACE place
     CORE core
     CORES cores
@@ -105,6 +111,8 @@ pub(super) struct CounterLayout {
     /// Behind the counts of runs that were begun and that no exit leads to whose target is known, one a place: how often regions were entered by
     /// ways that no other count tells.
     entered: i32,
+    /// Units of exits that may have them, and clocks of those: two numbers of 64 bits a number of [`super::units::UnitExits`].
+    units: i32,
     /// The contexts of callees by innermost region of the caller, 32 bits each; 0 where it is not known.
     callees: i32,
     /// All of a node.
@@ -112,14 +120,15 @@ pub(super) struct CounterLayout {
 }
 
 impl CounterLayout {
-    /// The layout for so many exits, places, regions and reads; `None` for a program so large that offsets do not fit 31 bits.
-    pub fn new(exits: usize, places: usize, regions: usize, sites: usize) -> Option<CounterLayout> {
+    /// The layout for so many exits, those of them with units, places, regions and reads; `None` for a program so large that offsets do not fit 31 bits.
+    pub fn new([exits, units]: [usize; 2], places: usize, regions: usize, sites: usize) -> Option<CounterLayout> {
         let fit = |octets: usize| i32::try_from(octets).ok();
         let site = size_of::<Context>().next_multiple_of(8);
         let frame = site.checked_add(sites.checked_mul(16)?)?;
         let begun = exits.checked_mul(8)?;
         let entered = begun.checked_add(places.checked_mul(8)?)?;
-        let callees = entered.checked_add(regions.checked_mul(8)?)?;
+        let unit_counters = entered.checked_add(regions.checked_mul(8)?)?;
+        let callees = unit_counters.checked_add(units.checked_mul(16)?)?;
         let node = callees.checked_add(regions.checked_add(1)?.checked_mul(4)?)?.checked_next_multiple_of(64)?;
         // Nodes are counted in 32 bits, and the frame has one behind it.
         fit(frame.checked_add(node)?)?;
@@ -128,6 +137,7 @@ impl CounterLayout {
             frame: fit(frame)?,
             begun: fit(begun)?,
             entered: fit(entered)?,
+            units: fit(unit_counters)?,
             callees: fit(callees)?,
             node: fit(node)?,
         })
@@ -146,6 +156,11 @@ impl CounterLayout {
     /// Counter of a region, from the beginning of a node.
     pub fn entered(&self, region: u16) -> i32 {
         self.entered + 8 * i32::from(region)
+    }
+
+    /// Counter of the units of an exit by its number among those that may have them, from the beginning of a node; the one of their clocks is behind it.
+    pub fn unit(&self, number: usize) -> i32 {
+        self.units + 16 * number as i32
     }
 
     /// Context of callees, from the beginning of a node.
@@ -174,6 +189,8 @@ pub(super) struct ContextCounters<'a> {
     pub exits: &'a mut [u64],
     pub begun: &'a mut [u64],
     pub entered: &'a mut [u64],
+    /// Units and their clocks, by number.
+    pub units: &'a mut [[u64; 2]],
 }
 
 impl ContextFrame {
@@ -217,10 +234,12 @@ impl ContextFrame {
 
     /// Counters of a node.
     pub fn node(&mut self, context: u32) -> ContextCounters<'_> {
-        let CounterLayout { begun, entered, callees, .. } = self.layout;
+        let CounterLayout { begun, entered, units, callees, .. } = self.layout;
         let (exits, rest) = self.node_words(context).split_at_mut(begun as usize / 8);
         let (begun, rest) = rest.split_at_mut((entered - begun) as usize / 8);
-        ContextCounters { exits, begun, entered: &mut rest[..(callees - entered) as usize / 8] }
+        let (entered, rest) = rest.split_at_mut((units - entered) as usize / 8);
+        let (units, _) = rest[..(callees - units) as usize / 8].as_chunks_mut();
+        ContextCounters { exits, begun, entered, units }
     }
 
     /// Notes the context of calls of a context.

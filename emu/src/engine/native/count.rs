@@ -1,11 +1,9 @@
 //! Counts of a core in generated code, and how they fold into passes, calling contexts and octets.
 
-use isa::{Counts, InstructionDef, Op};
+use isa::Op;
 
 use super::context::{ContextFrame, CounterLayout};
 use super::{AddOctets, Native, blocks, run};
-use crate::code::Turns;
-use crate::code::quantity::Clocks;
 use crate::code::tally::{Losses, Tally};
 use crate::engine::plan::{Plan, Step};
 use crate::profile::{ContextPasses, Profiler};
@@ -14,12 +12,6 @@ use crate::profile::{ContextPasses, Profiler};
 #[derive(Clone, Debug)]
 pub(super) struct Counters {
     pub frame: ContextFrame,
-    /// Units by calling context and number; passes are counted in the frame.
-    units: Vec<UnitCounter>,
-    /// The exits that may have units; their places here are the numbers.
-    unit_exits: Vec<u32>,
-    /// By exit: its number among those.
-    unit_numbers: Vec<u32>,
     /// Losses of results by slot, where those are counted.
     pub losses: Vec<Losses>,
     /// Kinds of the data that each site has met last.
@@ -29,83 +21,11 @@ pub(super) struct Counters {
 impl Counters {
     /// Nothing yet.
     pub fn new(layout: CounterLayout, plan: &Plan, sites: usize, has_contexts: bool) -> Counters {
-        let unit_steps = plan.steps()[..plan.end() as usize].iter().filter(|step| has_units(plan, step));
-        let unit_exits: Vec<u32> = unit_steps.flat_map(|step| (step.exit..).take(step.exits.into())).collect();
-        let mut unit_numbers = vec![u32::MAX; plan.exits()];
-        for (number, &exit) in (0..).zip(&unit_exits) {
-            unit_numbers[exit as usize] = number;
-        }
         Counters {
             frame: ContextFrame::new(layout, has_contexts),
-            units: unit_exits.iter().map(|&exit| UnitCounter::new(plan, exit as usize)).collect(),
-            unit_exits,
-            unit_numbers,
             losses: vec![Losses::default(); plan.slots().len()],
             kinds: vec![0; sites],
         }
-    }
-
-    /// The counter of an exit that may have units in a calling context, which is 0 where functions are not measured.
-    #[inline]
-    pub fn unit_counter(&mut self, context: u32, exit: usize) -> &mut UnitCounter {
-        let at = context as usize * self.unit_exits.len() + self.unit_numbers[exit] as usize;
-        if at >= self.units.len() {
-            self.make_room(context);
-        }
-        &mut self.units[at]
-    }
-
-    #[cold]
-    fn make_room(&mut self, context: u32) {
-        let kinds = self.unit_exits.len();
-        let new: Vec<_> = self.units[..kinds].iter().map(UnitCounter::emptied).collect();
-        while self.units.len() < (context as usize + 1) * kinds {
-            self.units.extend_from_slice(&new);
-        }
-    }
-}
-
-/// True where a step may end with units: its row says so, or its meaning is in Rust.
-pub(super) fn has_units(plan: &Plan, step: &Step) -> bool {
-    let has_some = |row: &InstructionDef| row.outcomes.iter().any(|exit| exit.each != Counts::ZERO);
-    step.row == Step::UNIT || plan.code.slot_row(step.slot).is_some_and(has_some)
-}
-
-/// Units of an exit, with what they cost beside the sums: one look at memory is all that counting them takes.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct UnitCounter {
-    units: u64,
-    clocks: u64,
-    /// Cost of the units, where one takes as long as another.
-    pub turns: Option<Turns>,
-}
-
-impl UnitCounter {
-    fn new(plan: &Plan, exit: usize) -> UnitCounter {
-        let turns = plan.pass(exit).and_then(|pass| {
-            let cost = plan.code.costs()[pass];
-            if cost.has_busy_units { cost.turns } else { Some(Turns::FREE) }
-        });
-        UnitCounter { units: 0, clocks: 0, turns }
-    }
-
-    fn emptied(&self) -> UnitCounter {
-        UnitCounter { units: 0, clocks: 0, ..*self }
-    }
-
-    /// Counts units that take so many clocks together.
-    #[inline]
-    pub fn add(&mut self, units: u32, clocks: Clocks) {
-        self.units += u64::from(units);
-        self.clocks += clocks.0;
-    }
-
-    /// What was counted, which is forgotten.
-    fn take(&mut self) -> ContextPasses {
-        let passes = ContextPasses { count: 0, units: self.units, unit_clocks: self.clocks };
-        *self = self.emptied();
-        passes
     }
 }
 
@@ -182,6 +102,15 @@ impl Native<'_> {
                 }
             }
             node.begun.fill(0);
+            for (&exit, units) in code.units.exits().iter().zip(node.units) {
+                let [units, unit_clocks] = std::mem::take(units);
+                let Some(pass) = plan.pass(exit as usize).filter(|_| units != 0) else { continue };
+                passes[pass].units += units;
+                passes[pass].unit_clocks += unit_clocks;
+                if let Some(profiler) = &mut profiler {
+                    profiler.contexts.add_passes(context, pass, ContextPasses { count: 0, units, unit_clocks });
+                }
+            }
             for (exit, count) in node.exits.iter_mut().map(std::mem::take).enumerate().filter(|(_, count)| *count != 0)
             {
                 let Some(pass) = plan.pass(exit) else { continue };
@@ -194,17 +123,6 @@ impl Native<'_> {
                 for (region, times) in (0..).zip(node.entered.iter_mut().map(std::mem::take)) {
                     profiler.contexts.add_entered(region, times);
                 }
-            }
-        }
-        let exits = &counters.unit_exits;
-        for (at, more) in
-            counters.units.iter_mut().map(UnitCounter::take).enumerate().filter(|(_, more)| more.units != 0)
-        {
-            let Some(pass) = plan.pass(exits[at % exits.len()] as usize) else { continue };
-            passes[pass].units += more.units;
-            passes[pass].unit_clocks += more.unit_clocks;
-            if let (Some(profiler), Some(_)) = (&mut profiler, profiling) {
-                profiler.contexts.add_passes((at / exits.len()) as u32, pass, more);
             }
         }
         for (losses, more) in tally.parts_mut().1.iter_mut().zip(&mut counters.losses) {

@@ -15,6 +15,7 @@ mod lower;
 mod operands;
 mod profiling;
 mod run;
+mod units;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -37,6 +38,7 @@ use context::{Context, CounterLayout};
 use count::Counters;
 use executable::Executable;
 use profiling::Profiling;
+use units::UnitExits;
 
 /// Settings that code is generated for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -124,6 +126,8 @@ struct Compiled {
     sites: Vec<u32>,
     /// The place of each of them.
     site_places: Vec<u32>,
+    /// The exits that may have units.
+    units: UnitExits,
     /// By place: the end of its block.
     ends: Vec<u32>,
     /// Functions and regions, where they are measured.
@@ -254,7 +258,9 @@ impl Compiled {
         }
         let profiling = Profiling::new(plan, recipe.profile);
         let regions = profiling.as_ref().map_or(0, Profiling::regions);
-        let layout = CounterLayout::new(plan.exits(), steps.len(), regions, site_places.len());
+        let units = UnitExits::new(plan);
+        let exits = [plan.exits(), units.exits().len()];
+        let layout = CounterLayout::new(exits, steps.len(), regions, site_places.len());
         let layout = layout.ok_or("the program is too large")?;
         let blocks = Blocks::new(plan, recipe, profiling.as_ref());
         let source = lower::LowerSource {
@@ -265,6 +271,7 @@ impl Compiled {
             layout,
             blocks: &blocks,
             sites: &sites,
+            units: &units,
             profiling: profiling.as_ref(),
         };
         let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
@@ -287,6 +294,7 @@ impl Compiled {
             profiling,
             sites,
             site_places,
+            units,
             _steps: steps,
             _extras: extras,
             _executable: executable,

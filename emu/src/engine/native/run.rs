@@ -6,6 +6,7 @@ use std::panic::resume_unwind;
 use super::classes::Lanes;
 use super::context::{Context, CounterLayout, NOTED};
 use super::count::Counters;
+use super::units::UnitExits;
 use super::{NO_SITE, Native, NotedRead, Status, Stopped, TimedLink};
 use crate::code::octets::Buffer;
 use crate::code::quantity::Clocks;
@@ -23,13 +24,11 @@ use crate::semantics::{Motion, Numbers, Watch};
 /// Steps that generated code may take beyond a limit before it looks: two kinds of them, each as much as there is room for in the sums.
 const AHEAD: u64 = 4 * Cost::WHOLE as u64;
 
-/// Cost of a run before its sums were emptied.
+/// Steps of a run before its sums were emptied; the context has its clocks and elementary operations.
 #[derive(Clone, Copy, Debug)]
 struct Totals {
     steps: u64,
     inner_steps: u64,
-    clocks: u64,
-    elementary: u64,
 }
 
 /// The machine as functions see it that generated code calls.
@@ -43,6 +42,8 @@ pub(super) struct NativeHost<'a> {
     take_losses: Option<&'a dyn Fn() -> Losses>,
     totals: Totals,
     counters: &'a mut Counters,
+    /// The exits that may have units.
+    exits: &'a UnitExits,
     sites: &'a [u32],
     layout: CounterLayout,
     reads_inline: bool,
@@ -68,7 +69,7 @@ impl<'a> NativeHost<'a> {
     /// Tells the link of everything before a step that asks for something.
     pub fn ask(&mut self, context: &mut Context, step: &Step) {
         self.hand_over(context);
-        let clocks = self.totals.clocks + Cost(context.sums).clocks();
+        let clocks = context.total_clocks + Cost(context.sums).clocks();
         self.link.note(RequestTime { pc: step.slot, context: context.current, clocks });
     }
 
@@ -78,7 +79,7 @@ impl<'a> NativeHost<'a> {
             return;
         }
         let reads = &context.reads[..context.noted as usize / size_of::<NotedRead>()];
-        let before = self.totals.clocks.wrapping_add_signed(context.before);
+        let before = context.total_clocks.wrapping_add_signed(context.before);
         if let Some(quick) = self.link.quick() {
             self.is_full |= !quick.keep(reads, before);
         }
@@ -92,7 +93,7 @@ impl<'a> NativeHost<'a> {
         }
         let place = self.plan.place_of(step.slot) as usize;
         let Some(quick) = self.link.quick() else { return };
-        context.before = quick.before().wrapping_sub(self.totals.clocks) as i64;
+        context.before = quick.before().wrapping_sub(context.total_clocks) as i64;
         context.noted_end = end_of_notes(context.before);
         let site = self.sites.get(place).filter(|&&site| site != NO_SITE);
         let (Some(&site), Some(size)) = (site, quick.memory().map(<[u8]>::len)) else {
@@ -221,13 +222,15 @@ impl<'a> NativeHost<'a> {
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        let counter = self.counters.unit_counter(context.current, exit);
-        let (clocks, elementary) = match counter.turns {
+        let number = self.exits.number(exit);
+        let (clocks, elementary) = match self.exits.turns(number) {
             Some(turns) => turns.cost(units),
             None => self.plan.pass(exit).map_or((Clocks(0), 0), |pass| self.plan.code.uneven_unit_cost(pass, units)),
         };
-        counter.add(units, clocks);
-        self.totals.elementary += elementary;
+        let [all, all_clocks] = &mut self.counters.frame.node(context.current).units[number];
+        *all += u64::from(units);
+        *all_clocks += clocks.0;
+        context.total_elementary += elementary;
         self.add_clocks(context, clocks.0);
         if self.profiler.is_some() {
             self.meter_units(exit, units);
@@ -253,7 +256,7 @@ impl<'a> NativeHost<'a> {
 
     /// Adds clocks to those before the sums were last emptied.
     fn add_clocks(&mut self, context: &mut Context, clocks: u64) {
-        self.totals.clocks += clocks;
+        context.total_clocks += clocks;
         context.before -= clocks as i64;
         context.since -= clocks as i64;
         if end_of_notes(context.before) == 0 {
@@ -266,7 +269,7 @@ impl<'a> NativeHost<'a> {
         let cost = Cost(std::mem::take(&mut context.sums));
         self.totals.steps += cost.steps();
         self.totals.inner_steps += cost.inner_steps();
-        self.totals.elementary += cost.elementary();
+        context.total_elementary += cost.elementary();
         self.add_clocks(context, cost.clocks());
     }
 }
@@ -292,7 +295,7 @@ impl Native<'_> {
     ///
     /// Clocks up to a read, where the last transfer was at 970. [`Context::before`] counts from where the sums are 0, so it moves with them:
     ///
-    /// | moment | `totals` | `sums` | `before` |
+    /// | moment | `total_clocks` | `sums` | `before` |
     /// | --- | --- | --- | --- |
     /// | code is entered at 1,000 | 1,000 | 0 | 970 - 1,000 = -30 |
     /// | it leaves with 250 clocks in its sums | 1,000 | 250 | -30 |
@@ -339,7 +342,8 @@ impl Native<'_> {
             link,
             numbers: arithmetic.numbers(),
             take_losses: shared.recipe.computes.counts_losses.then_some(&take_losses),
-            totals: Totals { steps, inner_steps, clocks, elementary },
+            totals: Totals { steps, inner_steps },
+            exits: &code.units,
             counters,
             sites: &code.sites,
             layout: code.layout,
@@ -354,6 +358,7 @@ impl Native<'_> {
             // SAFETY: the frame has a context at its beginning, and nobody else looks at it.
             let context = unsafe { &mut *context };
             (context.sums, context.classes) = (0, Lanes::default());
+            (context.total_clocks, context.total_elementary) = (clocks, elementary);
             (context.core, context.cores) = (core.core as i32, core.cores as i32);
             context.tainted = taint.tainted;
             (context.depends_on_cores, context.depends_on_core) = (0, 0);
@@ -426,8 +431,9 @@ impl Native<'_> {
         // SAFETY: the code has returned.
         let context = unsafe { &mut *context };
         host.hand_over(context);
-        let Totals { steps, inner_steps, clocks, elementary } = host.totals;
-        (state.steps, state.inner_steps, state.clocks, state.elementary) = (steps, inner_steps, clocks, elementary);
+        let Totals { steps, inner_steps } = host.totals;
+        (state.steps, state.inner_steps) = (steps, inner_steps);
+        (state.clocks, state.elementary) = (context.total_clocks, context.total_elementary);
         state.pc = plan.steps()[place as usize].slot;
         taint.tainted = context.tainted;
         taint.depends_on_cores |= context.depends_on_cores != 0;

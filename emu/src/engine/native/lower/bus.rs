@@ -6,12 +6,15 @@ use cranelift_codegen::ir::{BlockArg, InstBuilder, Value};
 use isa::{Kind, Op};
 
 use super::{BusRoom, Continuation, Form, Lower, S, V, aligned, flags};
+use crate::code::Turns;
 use crate::code::registers::Registers;
 use crate::engine::cost::CLOCKS;
 use crate::engine::native::NotedRead;
 use crate::engine::native::calls::{self, RowCall, STOPPED};
-use crate::engine::native::context::{BEFORE, MEMORY, NOTED_AT, NOTED_END, READS};
-use crate::engine::native::count::has_units;
+use crate::engine::native::context::{
+    BEFORE, MEMORY, NOTED_AT, NOTED_END, READS, SINCE, TOTAL_CLOCKS, TOTAL_ELEMENTARY,
+};
+use crate::engine::native::units::has_units;
 use crate::engine::plan::Step;
 
 impl Lower<'_, '_> {
@@ -56,6 +59,12 @@ impl Lower<'_, '_> {
             return self.pass_dynamic(exit);
         }
         let units = self.b.ins().ushr_imm_s(exit, 32);
+        let measures_calls = self.source.profiling.is_some_and(|profiling| profiling.classes.is_some());
+        if let Some((first, turns)) = self.source.units.even_turns(step).filter(|_| !measures_calls) {
+            let exit = self.b.ins().band_imm_s(exit, i64::from(u32::MAX));
+            self.add_units(first, exit, units, turns);
+            return self.pass_dynamic(exit);
+        }
         let (some, on) = (self.cold_block(), self.b.create_block());
         self.b.ins().brif(units, some, &[], on, &[]);
         self.b.switch_to_block(some);
@@ -66,6 +75,47 @@ impl Lower<'_, '_> {
         self.b.switch_to_block(on);
         let exit = self.b.ins().band_imm_s(exit, i64::from(u32::MAX));
         self.pass_dynamic(exit);
+    }
+
+    /// Counts units of an exit, with what they cost beside the sums: as `NativeHost::add_units`, for a step whose first exit with units has that number.
+    fn add_units(&mut self, first: usize, exit: Value, units: Value, turns: Turns) {
+        // Five triangles on lanes of four are (5 + 3) >> 2 = 2 turns.
+        let at_once = i64::from(turns.at_once);
+        let rounded = self.b.ins().iadd_imm_s(units, at_once - 1);
+        let worked_off = match turns.at_once {
+            1 => units,
+            _ if turns.at_once.is_power_of_two() => {
+                self.b.ins().ushr_imm_s(rounded, i64::from(turns.at_once.trailing_zeros()))
+            }
+            _ => {
+                let at_once = self.c64(at_once);
+                self.b.ins().udiv(rounded, at_once)
+            }
+        };
+        let clocks = self.b.ins().imul_imm_s(worked_off, turns.clocks as i64);
+        let elementary = self.b.ins().imul_imm_s(units, turns.elementary as i64);
+        let (base, offset) = self.counter(self.source.layout.unit(first));
+        let exit = self.b.ins().ishl_imm_s(exit, 4);
+        let at = self.b.ins().iadd(base, exit);
+        self.add_at(at, offset, units);
+        self.add_at(self.context, TOTAL_ELEMENTARY, elementary);
+        if turns.clocks == 0 {
+            return;
+        }
+        self.add_at(at, offset + 8, clocks);
+        self.add_at(self.context, TOTAL_CLOCKS, clocks);
+        // What is counted from where the sums were empty moves with that.
+        let less = self.b.ins().ineg(clocks);
+        self.add_at(self.context, SINCE, less);
+        let before = self.add_at(self.context, BEFORE, less);
+        let is_long_ago = self.b.ins().icmp_imm_s(IntCC::SignedLessThan, before, -(1 << 31));
+        let (full, on) = (self.cold_block(), self.b.create_block());
+        self.b.ins().brif(is_long_ago, full, &[], on, &[]);
+        self.b.switch_to_block(full);
+        let noted = self.b.ins().load(I64, aligned(), self.context, NOTED_AT);
+        self.b.ins().store(aligned(), noted, self.context, NOTED_END);
+        self.b.ins().jump(on, &[]);
+        self.b.switch_to_block(on);
     }
 
     /// Leaves where a function says that it has stopped, and how.

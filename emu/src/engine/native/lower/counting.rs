@@ -16,6 +16,14 @@ impl Lower<'_, '_> {
         self.b.ins().store(aligned(), count, base, offset);
     }
 
+    /// Adds to a number of 64 bits, and yields the sum.
+    pub fn add_at(&mut self, base: Value, offset: i32, more: Value) -> Value {
+        let sum = self.b.ins().load(I64, aligned(), base, offset);
+        let sum = self.b.ins().iadd(sum, more);
+        self.b.ins().store(aligned(), sum, base, offset);
+        sum
+    }
+
     /// A counter of the node: its base and its distance from there.
     pub fn counter(&mut self, offset: i32) -> (Value, i32) {
         match self.node {

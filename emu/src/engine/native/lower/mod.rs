@@ -28,6 +28,7 @@ use isa::{Kind, Op};
 use super::blocks::Blocks;
 use super::context::{CounterLayout, SUMS};
 use super::profiling::Profiling;
+use super::units::UnitExits;
 use super::{Recipe, Status};
 use crate::code::registers::Registers;
 use crate::engine::plan::{Plan, Step};
@@ -75,6 +76,8 @@ pub(super) struct LowerSource<'a> {
     pub blocks: &'a Blocks,
     /// Numbers of the reads, by place.
     pub sites: &'a [u32],
+    /// The exits that may have units.
+    pub units: &'a UnitExits,
     /// Functions and regions, where they are measured; its tables live as long as the code.
     pub profiling: Option<&'a Profiling>,
 }

@@ -4,9 +4,9 @@
 #   benches/peers/tracer.sh                     the five scenes, 320 x 240 pixels
 #   benches/peers/tracer.sh cornell slabs       some of them
 #
-# tracer.cpp beside this file is that tracer, compiled with -O3 for this host. Both take one host thread. One table comes out: milliseconds of CPU time of the tracer, and those of
-# `lancer render --no-error` with the profiles `ray` and `packet` as multiples of it; then how far the pictures of both are apart. Anything that is missing is named
-# before something runs.
+# tracer.cpp beside this file is that tracer, compiled with -O3 for this host; both have one host thread. One table comes out: milliseconds of CPU time of
+# the tracer, and those of `lancer render --no-error` with the profiles `ray` and `packet` as multiples of it; then how far the pictures of both are apart.
+# Anything that is missing is named before something runs.
 #
 # RUNS (default 7) is the number of runs whose median is taken, LANCER the program to measure (default: a release build).
 set -euo pipefail

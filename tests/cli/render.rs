@@ -216,7 +216,7 @@ fn octets_by_kind_add_up_with_every_cache() {
 fn another_engine_and_an_even_weighted_arbiter_are_said() {
     let session = Session::new();
     let picture = format!("{TINY} --no-error -o x.png");
-    // Whatever keeps native code from running is said, as the JSON says it.
+    // What keeps native code from running is said: here that a clock count does not fit its sums.
     session.write("m.toml", "[clocks]\nadd = 1000000\n");
     let why = "an instruction takes more clocks than the sums have room for";
     let slow = session.json(&format!("{TINY} --no-error --machine m.toml --engine native"));

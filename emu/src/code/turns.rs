@@ -5,9 +5,9 @@ use super::quantity::Clocks;
 /// Units that are worked off turn by turn: triangles on the lanes of a packet unit, which wait for each other, or nodes one after the other.
 ///
 /// 9 triangles on 4 lanes take three turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turns {
-    /// Units of a turn at most.
+    /// Units of a turn at most; 1 or more.
     pub at_once: u32,
     /// Time of a turn.
     pub clocks: u64,

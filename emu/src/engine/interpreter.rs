@@ -24,6 +24,12 @@ enum After {
     Strays,
 }
 
+/// A row that is too large to stand in the loop, once for each kind of run.
+#[inline(never)]
+fn apart<R>(row: impl FnOnce() -> R) -> R {
+    row()
+}
+
 /// Runs until the program halts, waits or goes wrong.
 ///
 /// `T` is the machine's arithmetic, `O` who watches each instruction; both are known at compile time, so that a run
@@ -104,7 +110,7 @@ pub fn run<T: Watch, O: Observer>(
                 }
             };
             ({ buffered $trait:ident $name:ident } [$(($letter:ident $kind:ident))*] $written:tt) => {
-                match $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*) {
+                match apart(|| $trait::$name(arithmetic, buffer $(, read!(registers, fields, $letter $kind))*)) {
                     Ok(result) => {
                         watch!();
                         finish!(result, $written)

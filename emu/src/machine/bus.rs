@@ -78,7 +78,7 @@ pub struct Burst {
 /// Lengths of bursts.
 #[derive(Clone, Debug)]
 pub struct Lengths {
-    /// First bursts of the transfers of few octets, by their number.
+    /// First bursts of the transfers of few octets, by the number of octets.
     short: Vec<Burst>,
     longest_burst: Octets,
     octets_per_beat: u64,
@@ -102,7 +102,7 @@ impl Lengths {
             setup: Clocks(config.setup_clocks),
             clocks_of_words: config.clocks_of_words(check_bits),
         };
-        lengths.short = (0..Lengths::SHORT).map(|octets| lengths.measured(Octets(octets))).collect();
+        lengths.short = (0..Lengths::SHORT).map(|octets| lengths.computed_burst(Octets(octets))).collect();
         lengths
     }
 
@@ -111,11 +111,12 @@ impl Lengths {
     pub fn burst(&self, transfer: Octets) -> Burst {
         match self.short.get(transfer.0 as usize) {
             Some(&burst) => burst,
-            None => self.measured(transfer),
+            None => self.computed_burst(transfer),
         }
     }
 
-    fn measured(&self, transfer: Octets) -> Burst {
+    /// The first burst of a transfer, computed anew.
+    fn computed_burst(&self, transfer: Octets) -> Burst {
         let octets = transfer.min(self.longest_burst);
         // Dividing takes longer than all the rest.
         let beats = match self.beat_shift {
@@ -140,13 +141,13 @@ pub trait NextTransfer: Clone + Default {
         Alone::none(first, arrival)
     }
 
-    /// Is told how long it waited for a grant.
+    /// Is told how long it waited for a grant; the bus takes the longest from [`NextTransfer::longest_wait`] at the end of a serve.
     fn note_wait(&mut self, waited: Clocks);
 
-    /// The longest wait for a grant since it was taken last.
+    /// The longest wait that it was told of since [`NextTransfer::take_longest_wait`].
     fn longest_wait(&self) -> Clocks;
 
-    /// The longest wait for a grant, which begins anew.
+    /// Takes the longest wait, so that the next one begins from none.
     fn take_longest_wait(&mut self) -> Clocks;
 }
 
@@ -180,8 +181,7 @@ impl Alone {
 /// A bus with its arbiter and the requests that wait for it. Nothing is known here of what is transferred, nor whether a master executes a
 /// program or replays what one has done.
 pub struct Bus {
-    /// Lengths of bursts.
-    pub lengths: Lengths,
+    lengths: Lengths,
     arbiter: Box<dyn Arbiter>,
     pub(crate) free_at: Clocks,
     pub(super) not_before: Clocks,
@@ -353,7 +353,7 @@ mod tests {
     fn a_burst_is_as_long_with_a_shift_as_with_a_division() {
         for (octets_per_beat, check) in (1..10).flat_map(|octets| [0, 1, 7, 14].map(|check| (octets, check))) {
             let config = BusConfig { octets_per_beat, setup_clocks: 3, ..BusConfig::default() };
-            for octets in 0..70 {
+            for octets in (0..70).chain([254, 255, 256, 257, 600]) {
                 let mut bus = Bus::new(&config, check, 1);
                 bus.request(0, Clocks(5), Octets(octets));
                 let grant = bus.decide(Clocks(5)).expect("it is alone");

@@ -33,7 +33,7 @@ pub struct BusCursor {
     busy: Clocks,
     /// Waits by site, where clocks of functions are measured; else none.
     waits: Vec<u64>,
-    /// The longest wait of the master for a grant that nobody was told of.
+    /// The longest wait of the master for a grant that its processor was not told of.
     longest_wait: Clocks,
     /// A core with a cache, or with loads that it does not wait for; none where every read is a transfer and is waited for.
     beside: Option<Box<BesideTransfers>>,
@@ -93,9 +93,10 @@ fn ahead_of(segments: &[Segment], next: usize) -> (Clocks, Octets) {
     }
 }
 
-/// Reads a little of each line of the host's cache that segments take, so that it waits for many of them at once. The bus's loop, which decides on
-/// each segment, would wait for one after the other.
+/// Reads a little of each line of the host's cache that the first segments take, 64 lines at most, so that it waits for many of them at once. The bus's
+/// loop, which decides on each segment, would wait for one after the other.
 fn warm(segments: &[Segment]) {
+    const { assert!(size_of::<Segment>() <= 64, "a line has one at least") }
     const LINE: usize = 64 / size_of::<Segment>();
     const MOST: usize = 64 * LINE;
     let first = &segments[..segments.len().min(MOST)];
@@ -104,7 +105,7 @@ fn warm(segments: &[Segment]) {
 
 /// True where two ranges have an octet in common.
 pub fn overlap(one: &Range<u64>, other: &Range<u64>) -> bool {
-    one.start < other.end && other.start < one.end
+    one.start.max(other.start) < one.end.min(other.end)
 }
 
 impl Default for BusCursor {

@@ -221,6 +221,12 @@ impl Portion {
     /// The portion, which nobody else has and which gets no more items, without room that it took in vain.
     #[must_use]
     pub fn closed(mut self) -> Arc<Portion> {
+        if self.items.len() < self.items.capacity() / 2 {
+            self.items.shrink_to_fit();
+            self.sent.shrink_to_fit();
+            self.cells.shrink_to_fit();
+            self.asked.shrink_to_fit();
+        }
         if let Some(track) = Arc::get_mut(&mut self.track)
             && track.segments.len() < track.segments.capacity() / 2
         {

@@ -27,6 +27,7 @@ fn beyond_end(buffer: &Buffer, address: u32, triangles: i32) -> Fault {
 }
 
 impl<T: Arithmetic> PacketRoom for T {
+    // Compiled into the function of a row, which native code has for the host's vectors as well.
     #[inline(always)]
     fn rnear(
         &self,

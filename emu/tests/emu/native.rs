@@ -7,7 +7,7 @@ use emu::machine::one_core::{self, OneCore};
 use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::profile::ProfileLevel;
-use isa::{Isa, Op, Program};
+use isa::{Class, Isa, Op, Program};
 use programs::generate::{DATA, MEMORY, NUMBER, anywhere, below, gather, image, instruction, scatter, structured};
 use random::SplitMix64;
 
@@ -22,18 +22,23 @@ fn frame(
     engine: EngineKind,
     features: Option<HostSimd>,
     core: &Program,
-    step_limit: u64,
+    config: &Config,
 ) -> Result<RunOutcome, RunFailure> {
-    let (isa, config) = (Isa::base(), Config { step_limit, ..Config::default() });
+    let isa = Isa::base();
     let options = RunOptions { has_items: true, engine, simd: features, is_eager: true, ..RunOptions::default() };
     let kinds = vec![(DATA as u32..MEMORY as u32, "data".to_owned())];
-    let setup = Setup { config: &config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
+    let setup = Setup { config, isa: &isa, core, main: &dispatch(ITEMS), kinds, options };
+    assert_eq!(setup.engine().refusal, None);
     emu::run(&setup, Memory::new(image()), &mut |_| {})
 }
 
 /// Runs a program on both engines, as native code with each of the host's features, and yields what all said.
 fn same(name: &str, core: &Program, step_limit: u64) -> Result<RunOutcome, String> {
-    let run = |engine, features| frame(engine, features, core, step_limit).map_err(|failure| failure.to_string());
+    same_on(&Config { step_limit, ..Config::default() }, name, core)
+}
+
+fn same_on(config: &Config, name: &str, core: &Program) -> Result<RunOutcome, String> {
+    let run = |engine, features| frame(engine, features, core, config).map_err(|failure| failure.to_string());
     let checked = run(EngineKind::Checked, None);
     for features in HostSimd::ALL.into_iter().filter(|features| features.is_present()) {
         let found = run(EngineKind::Native, Some(features));
@@ -58,6 +63,32 @@ fn any_row_on_any_operands() {
             gather(p);
         });
         same(&isa.definition(op).name, &core, 1 << 20).unwrap_or_else(|error| panic!("{op:?}: {error}"));
+    }
+}
+
+/// Three lanes take another division than four. Eight packets of 400 triangles, one after the other at a million clocks each, take more clocks than a note
+/// of a read holds, which is 2^31, and as many as a segment holds: below 2^32.
+#[test]
+fn units_on_any_number_of_lanes_and_however_long_they_take() {
+    for (lanes, div) in [1, 2, 3, 5, 8].into_iter().flat_map(|lanes| [1, 1_000_000].map(|div| (lanes, div))) {
+        let mut config = Config { packet_lanes: lanes, step_limit: 1 << 20, ..Config::default() };
+        config.clocks.0[Class::Div] = div.into();
+        let core = program(|p| {
+            scatter(p, &mut SplitMix64::new(lanes.into()));
+            p.constant(2, 0).constant(3, 400).constant(4, DATA as i32);
+            for packet in 0..8 {
+                if packet == 0 {
+                    p.emit(Op::ldw, &[5, 4, 0]);
+                }
+                let op = if packet % 2 == 0 { Op::rnear } else { Op::rany };
+                p.emit(op, &[packet, 10 + packet, 2, 3, 20]);
+            }
+            p.emit(Op::ldw, &[5, 4, 0]);
+            gather(p);
+        });
+        let frame = same_on(&config, &format!("{lanes} lanes"), &core).unwrap();
+        let turns = 400_u32.div_ceil(lanes);
+        assert!(div == 1 || frame.clocks.0 > u64::from(turns) * 4 * 1_000_000, "{lanes} lanes: {}", frame.clocks.0);
     }
 }
 

@@ -144,7 +144,7 @@ fn run_program(input: &[u8], seen: &mut Seen) {
     }
     p.emit(Op::halt, &[]);
     let program = builder.build();
-    let mut config = Config { packet_lanes: 1 << random.below(3), ..preset(random) };
+    let mut config = Config { packet_lanes: 1 + random.below(6) as u32, ..preset(random) };
     arithmetic(random, &mut config);
     let profile =
         one_of(random, &[ProfileLevel::None, ProfileLevel::None, ProfileLevel::Totals, ProfileLevel::Extremes]);

@@ -85,7 +85,7 @@ macro_rules! row_function {
         ///
         /// # Safety
         /// Context and registers are those of a run, whose arithmetic is a `T`, and the step lives.
-        // What is called from `wide` has the host's vectors only where it stands inside.
+        // For `wide`: a function of its own is compiled without the host's vectors.
         #[inline(always)]
         pub unsafe extern "C" fn $name<T: Watch>(
             context: *mut Context,

@@ -163,6 +163,22 @@ impl CounterLayout {
         self.units + 16 * number as i32
     }
 
+    /// The counter of a number's units in the current calling context.
+    ///
+    /// # Safety
+    /// The context is that of a run with this layout, which has the number.
+    pub unsafe fn unit_counter<'a>(&self, context: &mut Context, number: usize) -> &'a mut [u64; 2] {
+        // SAFETY: nodes stand behind the context, or where it says, one a calling context up to the current one. Nobody else looks at them while
+        // generated code waits. `ContextFrame::node` is the safe twin.
+        unsafe {
+            let node = match context.nodes.is_null() {
+                true => std::ptr::from_mut(context).cast::<u8>().add(self.frame as usize),
+                false => context.nodes.cast::<u8>().add(context.current as usize * self.node as usize),
+            };
+            &mut *node.add(self.unit(number) as usize).cast()
+        }
+    }
+
     /// Context of callees, from the beginning of a node.
     pub fn callee(&self, caller: usize) -> i32 {
         self.callees + 4 * caller as i32

@@ -102,7 +102,7 @@ impl Native<'_> {
                 }
             }
             node.begun.fill(0);
-            for (&exit, units) in code.units.exits().iter().zip(node.units) {
+            for (&exit, units) in code.unit_exits.exits().iter().zip(node.units) {
                 let [units, unit_clocks] = std::mem::take(units);
                 let Some(pass) = plan.pass(exit as usize).filter(|_| units != 0) else { continue };
                 passes[pass].units += units;

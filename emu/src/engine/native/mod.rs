@@ -127,7 +127,7 @@ struct Compiled {
     /// The place of each of them.
     site_places: Vec<u32>,
     /// The exits that may have units.
-    units: UnitExits,
+    unit_exits: UnitExits,
     /// By place: the end of its block.
     ends: Vec<u32>,
     /// Functions and regions, where they are measured.
@@ -258,8 +258,8 @@ impl Compiled {
         }
         let profiling = Profiling::new(plan, recipe.profile);
         let regions = profiling.as_ref().map_or(0, Profiling::regions);
-        let units = UnitExits::new(plan);
-        let exits = [plan.exits(), units.exits().len()];
+        let unit_exits = UnitExits::new(plan);
+        let exits = [plan.exits(), unit_exits.exits().len()];
         let layout = CounterLayout::new(exits, steps.len(), regions, site_places.len());
         let layout = layout.ok_or("the program is too large")?;
         let blocks = Blocks::new(plan, recipe, profiling.as_ref());
@@ -271,7 +271,7 @@ impl Compiled {
             layout,
             blocks: &blocks,
             sites: &sites,
-            units: &units,
+            unit_exits: &unit_exits,
             profiling: profiling.as_ref(),
         };
         let mut context = cranelift_codegen::Context::for_function(lower::function(&*isa, &source));
@@ -294,7 +294,7 @@ impl Compiled {
             profiling,
             sites,
             site_places,
-            units,
+            unit_exits,
             _steps: steps,
             _extras: extras,
             _executable: executable,

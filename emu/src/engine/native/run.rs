@@ -42,8 +42,7 @@ pub(super) struct NativeHost<'a> {
     take_losses: Option<&'a dyn Fn() -> Losses>,
     totals: Totals,
     counters: &'a mut Counters,
-    /// The exits that may have units.
-    exits: &'a UnitExits,
+    unit_exits: &'a UnitExits,
     sites: &'a [u32],
     layout: CounterLayout,
     reads_inline: bool,
@@ -222,12 +221,13 @@ impl<'a> NativeHost<'a> {
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        let number = self.exits.number(exit);
-        let (clocks, elementary) = match self.exits.turns(number) {
+        let number = self.unit_exits.number(exit);
+        let (clocks, elementary) = match self.unit_exits.turns(number) {
             Some(turns) => turns.cost(units),
             None => self.plan.pass(exit).map_or((Clocks(0), 0), |pass| self.plan.code.uneven_unit_cost(pass, units)),
         };
-        let [all, all_clocks] = &mut self.counters.frame.node(context.current).units[number];
+        // SAFETY: the context is that of a run with this layout, and the number is one of its exits'.
+        let [all, all_clocks] = unsafe { self.layout.unit_counter(context, number) };
         *all += u64::from(units);
         *all_clocks += clocks.0;
         context.total_elementary += elementary;
@@ -343,7 +343,7 @@ impl Native<'_> {
             numbers: arithmetic.numbers(),
             take_losses: shared.recipe.computes.counts_losses.then_some(&take_losses),
             totals: Totals { steps, inner_steps },
-            exits: &code.units,
+            unit_exits: &code.unit_exits,
             counters,
             sites: &code.sites,
             layout: code.layout,

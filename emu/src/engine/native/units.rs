@@ -6,11 +6,11 @@ use isa::{Counts, InstructionDef};
 use crate::code::Turns;
 use crate::engine::plan::{Plan, Step};
 
-/// The exits of a program that may have units. They are numbered, since they are few.
+/// All exits of steps that may end with units. They are numbered, since they are few.
 #[derive(Clone, Debug)]
 pub(super) struct UnitExits {
     exits: Vec<u32>,
-    /// By exit: its number.
+    /// By exit: its number; `u32::MAX` for others.
     numbers: Vec<u32>,
     /// Cost of the units by number, where one takes as long as another.
     turns: Vec<Option<Turns>>,
@@ -37,7 +37,7 @@ impl UnitExits {
         &self.exits
     }
 
-    /// The number of an exit that may have units.
+    /// The number of one of these exits.
     #[inline]
     pub fn number(&self, exit: usize) -> usize {
         self.numbers[exit] as usize

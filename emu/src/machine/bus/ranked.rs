@@ -34,7 +34,7 @@ impl Bus {
         // What decides among those that wait, their rank or since when they do; and whether the rank depends on who came last.
         let by_rank = if ranking == Some(Ranking::Arrival) { 0 } else { u64::MAX };
         let is_circle = matches!(ranking, Some(Ranking::Circle(_)));
-        // The longest wait is known to the masters, and what is no last burst of its transfer is the exception.
+        // The longest wait is asked of the masters at the end; transfers are bursts less those (`rests`) behind which their transfer goes on.
         let mut free = self.free_at;
         let (mut busy, mut moved, mut bursts_granted, mut rests) = (Clocks(0), Octets(0), 0, 0);
         // Where nobody asks, the smallest number is beyond every clock.

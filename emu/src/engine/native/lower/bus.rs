@@ -60,7 +60,7 @@ impl Lower<'_, '_> {
         }
         let units = self.b.ins().ushr_imm_s(exit, 32);
         let measures_calls = self.source.profiling.is_some_and(|profiling| profiling.classes.is_some());
-        if let Some((first, turns)) = self.source.units.even_turns(step).filter(|_| !measures_calls) {
+        if let Some((first, turns)) = self.source.unit_exits.even_turns(step).filter(|_| !measures_calls) {
             let exit = self.b.ins().band_imm_s(exit, i64::from(u32::MAX));
             self.add_units(first, exit, units, turns);
             return self.pass_dynamic(exit);
@@ -77,7 +77,7 @@ impl Lower<'_, '_> {
         self.pass_dynamic(exit);
     }
 
-    /// Counts units of an exit, with what they cost beside the sums: as `NativeHost::add_units`, for a step whose first exit with units has that number.
+    /// Counts units of an exit, with what they cost beside the sums: as `NativeHost::add_units`, for a step whose first exit has that number.
     fn add_units(&mut self, first: usize, exit: Value, units: Value, turns: Turns) {
         // Five triangles on lanes of four are (5 + 3) >> 2 = 2 turns.
         let at_once = i64::from(turns.at_once);
@@ -106,7 +106,12 @@ impl Lower<'_, '_> {
         self.add_at(self.context, TOTAL_CLOCKS, clocks);
         // What is counted from where the sums were empty moves with that.
         let less = self.b.ins().ineg(clocks);
-        self.add_at(self.context, SINCE, less);
+        if self.clocked().is_some() {
+            self.add_at(self.context, SINCE, less);
+        }
+        if !self.source.recipe.keeps_time() {
+            return;
+        }
         let before = self.add_at(self.context, BEFORE, less);
         let is_long_ago = self.b.ins().icmp_imm_s(IntCC::SignedLessThan, before, -(1 << 31));
         let (full, on) = (self.cold_block(), self.b.create_block());
@@ -267,9 +272,10 @@ impl Lower<'_, '_> {
         let row = self.source.plan.code.slot_row(step.slot).expect("it is a row's");
         let octets = row.outcomes[0].cost[isa::Class::Octet];
         let (slot, octets) = (self.c32(step.slot as i32), self.c32(octets as i32));
-        let current = self.clocked_context().unwrap_or_else(|| self.c32(0));
         let at = self.b.ins().iadd(self.context, noted);
-        let fields = [clocks, slot, address, octets, current];
+        // Where clocks of functions are not measured, the last field stays 0.
+        let current = self.clocked_context();
+        let fields = [clocks, slot, address, octets].into_iter().chain(current);
         for (offset, field) in NotedRead::OFFSETS.into_iter().zip(fields) {
             self.b.ins().store(aligned(), field, at, READS + offset);
         }

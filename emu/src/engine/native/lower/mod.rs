@@ -77,7 +77,7 @@ pub(super) struct LowerSource<'a> {
     /// Numbers of the reads, by place.
     pub sites: &'a [u32],
     /// The exits that may have units.
-    pub units: &'a UnitExits,
+    pub unit_exits: &'a UnitExits,
     /// Functions and regions, where they are measured; its tables live as long as the code.
     pub profiling: Option<&'a Profiling>,
 }

@@ -139,7 +139,7 @@ impl<'a> Lower<'a, '_> {
     }
 
     /// Facts about functions and regions, where clocks are measured.
-    fn clocked(&self) -> Option<&'a Profiling> {
+    pub fn clocked(&self) -> Option<&'a Profiling> {
         self.source.profiling.filter(|profiling| profiling.has_clocks)
     }
 

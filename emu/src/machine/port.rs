@@ -27,12 +27,15 @@ impl Shared {
     }
 
     fn note_written(&mut self, address: u32, octets: u32) {
-        let (start, end) = (u64::from(address), u64::from(address) + u64::from(octets));
-        if self.written.is_empty() {
-            self.written = start..end;
-        } else {
-            self.written = self.written.start.min(start)..self.written.end.max(end);
-        }
+        widen(&mut self.written, u64::from(address)..u64::from(address) + u64::from(octets));
+    }
+}
+
+/// Makes a range reach over another one as well; empty ones count for nothing.
+#[inline]
+pub fn widen(all: &mut Range<u64>, more: Range<u64>) {
+    if !more.is_empty() {
+        *all = if all.is_empty() { more } else { all.start.min(more.start)..all.end.max(more.end) };
     }
 }
 

@@ -3,12 +3,13 @@
 use std::ops::Range;
 
 use super::budget::Budget;
-use super::recording::{Segment, Track, widen};
+use super::recording::{Segment, Track};
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
 use crate::code::trap::Stop;
 use crate::engine::{NotedRead, Quick, RequestTime, TimedLink};
 use crate::machine::kinds::Kinds;
+use crate::machine::port::widen;
 use crate::machine::request::{Access, Request};
 use crate::profile::SiteTable;
 use crate::semantics::{Link, Message};

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::budget::Budget;
 use super::item::{ItemRecord, ItemRecorder, RecordLevel};
-use super::recording::{ItemClocks, Portion, Reason, Recording, Segment, Stretch, widen};
+use super::recording::{ItemClocks, Portion, Reason, Recording, Segment, Stretch};
 use crate::code::Code;
 use crate::code::octets::{Buffer, Memory};
 use crate::code::quantity::Octets;
@@ -15,6 +15,7 @@ use crate::engine::{
 };
 use crate::machine::Setup;
 use crate::machine::kinds::Kinds;
+use crate::machine::port::widen;
 use crate::machine::request::{Access, Request};
 use crate::profile::{CallPath, ClockKeys, Observer, ProfileLevel, SiteAsked, SiteTable};
 use crate::semantics::{Link, Message, Watch};

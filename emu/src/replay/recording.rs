@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use crate::code::quantity::Octets;
 use crate::engine::{NotedRead, Pause};
+use crate::machine::port::widen;
 use crate::machine::request::{Access, Request};
 use crate::profile::SiteAsked;
 use crate::semantics::Message;
@@ -106,14 +107,6 @@ pub fn reads(segments: &[Segment]) -> Range<u64> {
     let mut all = 0..0;
     segments.iter().filter(|segment| segment.is_read()).for_each(|segment| widen(&mut all, segment.range()));
     all
-}
-
-/// Makes a range reach over another one as well; empty ones count for nothing.
-#[inline]
-pub fn widen(all: &mut Range<u64>, more: Range<u64>) {
-    if !more.is_empty() {
-        *all = if all.is_empty() { more } else { all.start.min(more.start)..all.end.max(more.end) };
-    }
 }
 
 /// Segments one after the other, which a core or the bus goes through.

@@ -4,7 +4,7 @@
 use emu::engine::EngineKind;
 use emu::engine::{HostSimd, Wish};
 use emu::machine::one_core::{self, OneCore};
-use emu::machine::{Config, RunFailure, RunOptions, RunOutcome, Setup};
+use emu::machine::{Config, Method, RunFailure, RunOptions, RunOutcome, Setup};
 use emu::octets::Memory;
 use emu::profile::ProfileLevel;
 use isa::{Class, Isa, Op, Program};
@@ -66,29 +66,31 @@ fn any_row_on_any_operands() {
     }
 }
 
-/// Three lanes take another division than four. Eight packets of 400 triangles, one after the other at a million clocks each, take more clocks than a note
-/// of a read holds, which is 2^31, and as many as a segment holds: below 2^32.
+/// Three lanes take another division than four. Packets of 400 triangles one after the other, at a million clocks each, take more clocks than a note of a
+/// read may hold, which is 2^31, and eleven of them more than a segment holds, which is below 2^32: then the frame is stepped.
 #[test]
 fn units_on_any_number_of_lanes_and_however_long_they_take() {
-    for (lanes, div) in [1, 2, 3, 5, 8].into_iter().flat_map(|lanes| [1, 1_000_000].map(|div| (lanes, div))) {
+    for (lanes, packets, div) in [(4, 8, 1), (1, 8, 1_000_000), (1, 11, 1_000_000), (3, 8, 1_000_000), (5, 8, 7)] {
         let mut config = Config { packet_lanes: lanes, step_limit: 1 << 20, ..Config::default() };
         config.clocks.0[Class::Div] = div.into();
         let core = program(|p| {
             scatter(p, &mut SplitMix64::new(lanes.into()));
-            p.constant(2, 0).constant(3, 400).constant(4, DATA as i32);
-            for packet in 0..8 {
-                if packet == 0 {
-                    p.emit(Op::ldw, &[5, 4, 0]);
-                }
+            p.constant(2, 0).constant(3, 1).constant(4, DATA as i32).constant(27, 2);
+            // The first time, with packets of one triangle, the read tells where it is; the second time generated code does it.
+            let again = p.here();
+            for packet in 0..packets {
                 let op = if packet % 2 == 0 { Op::rnear } else { Op::rany };
                 p.emit(op, &[packet, 10 + packet, 2, 3, 20]);
             }
             p.emit(Op::ldw, &[5, 4, 0]);
+            p.constant(3, 400).emit(Op::isubi, &[27, 27, 1]).branch(Op::bne, &[27, 0], again);
             gather(p);
         });
-        let frame = same_on(&config, &format!("{lanes} lanes"), &core).unwrap();
-        let turns = 400_u32.div_ceil(lanes);
-        assert!(div == 1 || frame.clocks.0 > u64::from(turns) * 4 * 1_000_000, "{lanes} lanes: {}", frame.clocks.0);
+        let name = format!("{packets} packets on {lanes} lanes");
+        let frame = same_on(&config, &name, &core).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let an_item = packets as u64 * 400_u64.div_ceil(lanes.into()) * div;
+        assert_eq!(frame.method == Method::Replayed, an_item < 1 << 32, "{name}: {:?}", frame.method);
+        assert!(frame.clocks.0 >= an_item, "{name}: {}", frame.clocks.0);
     }
 }
 

@@ -221,10 +221,10 @@ impl<'a> NativeHost<'a> {
 
     /// A pass through an exit of the plan had units.
     pub fn add_units(&mut self, context: &mut Context, exit: usize, units: u32) {
-        let number = self.unit_exits.number(exit);
+        let (number, pass) = (self.unit_exits.number(exit), self.plan.pass(exit));
         let (clocks, elementary) = match self.unit_exits.turns(number) {
             Some(turns) => turns.cost(units),
-            None => self.plan.pass(exit).map_or((Clocks(0), 0), |pass| self.plan.code.uneven_unit_cost(pass, units)),
+            None => pass.map_or((Clocks(0), 0), |pass| self.plan.code.uneven_unit_cost(pass, units)),
         };
         // SAFETY: the context is that of a run with this layout, and the number is one of its exits'.
         let [all, all_clocks] = unsafe { self.layout.unit_counter(context, number) };
@@ -232,14 +232,7 @@ impl<'a> NativeHost<'a> {
         *all_clocks += clocks.0;
         context.total_elementary += elementary;
         self.add_clocks(context, clocks.0);
-        if self.profiler.is_some() {
-            self.meter_units(exit, units);
-        }
-    }
-
-    /// Tells who measures each call of units.
-    fn meter_units(&mut self, exit: usize, units: u32) {
-        if let (Some(pass), Some(meter)) = (self.plan.pass(exit), self.meter()) {
+        if let (Some(pass), Some(meter)) = (pass, self.meter()) {
             meter.add_units(pass, units);
         }
     }

@@ -9,7 +9,6 @@ const LEAF: usize = 3;
 /// A ray on its way down, between the plane by which it came and the one by which it leaves.
 #[derive(Clone, Copy, Debug)]
 pub struct Descent<'a> {
-    // A copy would be read while it is being written, which hosts wait for.
     ray: &'a Ray,
     entry: PlaneCrossed,
     exit: PlaneCrossed,

@@ -4,12 +4,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use emu::engine::Wish;
 use emu::extension::{Call, Ending, Meaning, attach};
-use emu::machine::Config;
 use emu::machine::one_core::{self, OneCore, OneCoreRun};
+use emu::machine::{Config, RunOptions, Setup};
 use emu::octets::Memory;
 use emu::trap::Fault;
 use isa::Isa;
 use isa::number::Arithmetic;
+use programs::main_processor::dispatch;
 
 use super::{isa_of, program};
 
@@ -84,5 +85,38 @@ fn panics_come_to_who_runs_the_program() {
         let ran = catch_unwind(AssertUnwindSafe(|| run(text, &Config::default(), wish)));
         let panic = ran.expect_err("the second one panics");
         assert_eq!(panic.downcast_ref::<String>().map(String::as_str), Some("7 is too much"));
+    }
+}
+
+/// A core's program that answers each work item but number 700, at which it panics.
+const ANSWERS: &str = "
+    recv5 v0, s20
+    vget  s4, v0, 0
+    li    s5, 700
+    bne   s4, s5, fine
+    panics s4
+fine:
+    andi  s4, s4, 63
+    cores s20
+    vsplat v6, s4
+    vmov  v7, v6
+    send2 s20, v6
+    halt";
+
+#[test]
+fn panics_of_a_work_item_come_to_who_runs_the_machines() {
+    let (mut isa, _): (Isa, _) = isa_of(ROWS);
+    attach(&mut isa, "panics", Panics).unwrap();
+    let (core, main) = (program(ANSWERS, &isa), dispatch(2_500));
+    let machines: Vec<Config> = [4, 2, 7].map(|cores| Config { cores, ..Config::default() }).to_vec();
+    let options = RunOptions::default();
+    let setup = Setup { config: &machines[0], isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
+    let memory = Memory::new(vec![0; 2_000]);
+    for (threads, wanted) in [1, 2, 3, 6].into_iter().flat_map(|threads| [(threads, 1), (threads, 3)]) {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let run = || pool.install(|| emu::run_all(&setup, &machines[..wanted], &memory, &mut |_| {}));
+        let panic = catch_unwind(AssertUnwindSafe(run)).expect_err("an item panics");
+        let said = panic.downcast_ref::<String>().map(String::as_str);
+        assert_eq!(said, Some("700 is too much"), "{wanted} machines on {threads} threads");
     }
 }

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use isa::number::Vector;
 
+use super::crew::AT_ONCE;
 use super::feed::Batch;
-use super::prerun::{AT_ONCE, ItemTotals};
+use super::prerun::ItemTotals;
 use super::record::Prefix;
 use super::recorded::Recorded;
 use super::recording::{Portion, Reason, Recording, Segment, Stretch, reads};

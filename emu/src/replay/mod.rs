@@ -4,6 +4,7 @@
 mod budget;
 mod bus_cursor;
 mod count;
+mod crew;
 mod cursor;
 mod feed;
 mod item;
@@ -18,8 +19,6 @@ pub mod weigh;
 use std::cell::RefCell;
 use std::panic::resume_unwind;
 use std::rc::Rc;
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use isa::Class;
 
@@ -40,14 +39,11 @@ use crate::machine::{RunFailure, RunOutcome, Setup};
 use crate::profile::{Observer, Unobserved};
 use crate::semantics::Watch;
 use cursor::{ItemCursor, Replayer};
-use feed::{Batch, Feed};
+use feed::Feed;
 use item::RecordLevel;
 use main_cursor::MainCursor;
 use prerun::{ItemTotals, Prerun};
 use record::{Prefix, Recorder};
-
-/// Batches that may wait for a machine.
-const AHEAD: usize = 2;
 
 /// Runs machines whose work items do the same in the same clocks of computing. `progress` is told of the first one.
 pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
@@ -93,7 +89,7 @@ pub fn prefix<T: Watch + Clone>(setup: &Setup, memory: &Memory, arithmetic: &T) 
 type Replayed = Result<Result<EndedRun, RunFailure>, Reason>;
 
 /// Recordings and replays of machines that are alike: of one machine on one host thread in turns, batch by batch; else with the prerun on a thread of
-/// its own, the first machine on this one, and each other one on another.
+/// its own, the first machine on this one, each other one on another, and threads that do nothing but record where the host has still more.
 fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     setups: &[Setup],
     codes: &[Code; 2],
@@ -102,48 +98,49 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     arithmetic: &T,
     progress: &mut dyn FnMut(u64),
 ) -> (ItemTotals, Vec<Replayed>) {
-    let (recorded_cores, threads) = (setups[0].config.cores, rayon::current_num_threads());
+    let (first, cores, threads) = (&setups[0], setups[0].config.cores, rayon::current_num_threads());
+    // Programs of its own, so that the prerun does not wait while a machine compiles those.
+    let own_codes = &first.codes();
+    let [core_code, main_code] = own_codes;
+    let level = RecordLevel::Segments;
+    let crew = prerun::crew::<T, O>(first, core_code, memory, arithmetic, level, [threads, setups.len()]);
     if let ([setup], 1) = (setups, threads) {
-        let level = RecordLevel::Segments;
-        let mut prerun = Prerun::<T, O>::new(setup, codes, memory, arithmetic.clone(), level, threads);
-        let feed = Feed::new(prefix, recorded_cores, recorded_cores, || prerun.next_batch());
+        let mut prerun = Prerun::new(setup, main_code, memory, arithmetic.clone(), &crew);
+        let feed = Feed::new(prefix, cores, cores, || prerun.next_batch());
         let ending = on_clock::<T, O>(setup, codes, memory.clone(), arithmetic, feed, progress);
-        return (prerun.into_totals().items, vec![ending]);
+        return (ItemTotals::of(crew, setup, core_code), vec![ending]);
     }
-    let (senders, receivers): (Vec<SyncSender<Arc<Batch>>>, Vec<_>) =
-        setups.iter().map(|_| sync_channel(AHEAD)).unzip();
-    let feed = |setup: &Setup, batches: Receiver<Arc<Batch>>| {
-        Feed::new(prefix, recorded_cores, setup.config.cores, move || batches.recv().ok())
-    };
-    std::thread::scope(|scope| {
+    let endings = std::thread::scope(|scope| {
         let own = arithmetic.clone();
+        let crew = &crew;
         let prerun = scope.spawn(move || {
-            // Programs of its own, so that it does not wait while a machine compiles those.
-            let codes = setups[0].codes();
-            let level = RecordLevel::Segments;
-            let prerun = Prerun::<T, O>::new(&setups[0], &codes, memory, own, level, threads);
-            prerun.run(&mut |batch| {
-                // The count goes over all senders, since `any` would stop at the first machine that takes the batch.
-                senders.iter().filter(|sender| sender.send(batch.clone()).is_ok()).count() != 0
-            })
+            let prerun = Prerun::new(first, main_code, memory, own, crew);
+            prerun.run(&mut |batch| crew.hand_over(&batch));
         });
-        let mut machines = setups.iter().zip(receivers);
-        let (first, batches) = machines.next().expect("there is a machine");
-        let others: Vec<_> = machines
-            .map(|(setup, batches)| {
+        // The prerun and the machines work with recorders as well.
+        let helpers = (1 + setups.len()..threads).map(|_| scope.spawn(|| crew.help()));
+        let mut others: Vec<_> = helpers.collect();
+        let play = |machine: usize, setup: &Setup, own: &T, progress: &mut dyn FnMut(u64)| {
+            let seat = crew.seat(machine);
+            let feed = Feed::new(prefix, cores, setup.config.cores, move || seat.take());
+            on_clock::<T, O>(setup, codes, memory.clone(), own, feed, progress)
+        };
+        let machines: Vec<_> = (1..)
+            .zip(&setups[1..])
+            .map(|(machine, setup)| {
                 let own = arithmetic.clone();
-                scope.spawn(move || {
-                    on_clock::<T, O>(setup, codes, memory.clone(), &own, feed(setup, batches), &mut |_| {})
-                })
+                scope.spawn(move || play(machine, setup, &own, &mut |_| {}))
             })
             .collect();
         // The first machine stays on this thread, because only that may call `progress`.
-        let feed = feed(first, batches);
-        let mut endings = vec![on_clock::<T, O>(first, codes, memory.clone(), arithmetic, feed, progress)];
+        let mut endings = vec![play(0, first, arithmetic, progress)];
         // An instruction in Rust may panic: that goes on here, with its own message.
-        endings.extend(others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic))));
-        (prerun.join().unwrap_or_else(|panic| resume_unwind(panic)).items, endings)
-    })
+        endings.extend(machines.into_iter().map(|machine| machine.join().unwrap_or_else(|panic| resume_unwind(panic))));
+        others.push(prerun);
+        others.into_iter().for_each(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+        endings
+    });
+    (ItemTotals::of(crew, first, core_code), endings)
 }
 
 /// Puts recorded work items on a machine's clock. The counts of the cores are then missing from the frame.

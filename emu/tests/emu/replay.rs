@@ -54,9 +54,9 @@ pub fn wander(steps: i32, spin: i32, octets: i32) -> Program {
     })
 }
 
-/// Result of work that the host does on one thread, where recording and replaying take turns.
-fn on_one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("there is a thread").install(work)
+/// Result of work that the host does on so many threads; on one, recording and replaying take turns.
+fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("there are threads").install(work)
 }
 
 /// Runs both ways, and one of them on one thread as well, and yields the frame, with how the first was run.
@@ -66,7 +66,7 @@ fn both(config: &Config, core: &Program, main: &Program) -> RunOutcome {
     let run = emu::run(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     let mut stepped = emu::step(&setup, memory(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"));
     check_sums(&setup, &run);
-    let alone = on_one_thread(|| emu::run(&setup, memory(), &mut |_| {}));
+    let alone = on_threads(1, || emu::run(&setup, memory(), &mut |_| {}));
     assert!(alone.unwrap_or_else(|failure| panic!("{failure}")) == run, "{config:?} on one thread");
     stepped.method = run.method;
     assert!(run == stepped, "{config:?}\n{run:#?}\n{stepped:#?}");
@@ -119,6 +119,16 @@ fn recordings_come_in_several_batches() {
     for cores in [1, 4, 20] {
         let frame = both(&with(ArbiterKind::RoundRobin, cores, Config::default()), &core, &main);
         assert_eq!((frame.method, frame.item_count), (Method::Replayed, 2_500));
+    }
+    // Who records what, and how many machines wait for it meanwhile, changes nothing.
+    let isa = Isa::base();
+    let machines = [1, 4, 20, 3].map(|cores| with(ArbiterKind::RoundRobin, cores, Config::default()));
+    let setup = setup(&machines[0], &isa, &core, &main);
+    let alone: Vec<RunOutcome> = machines.iter().map(|config| both(config, &core, &main)).collect();
+    for (threads, wanted) in (1..=6).flat_map(|threads| (1..=machines.len()).map(move |wanted| (threads, wanted))) {
+        let frames = on_threads(threads, || emu::run_all(&setup, &machines[..wanted], &memory(), &mut |_| {}));
+        let frames = frames.into_iter().map(|frame| frame.unwrap_or_else(|failure| panic!("{failure}")));
+        assert!(frames.eq(alone[..wanted].iter().cloned()), "{wanted} machines on {threads} threads");
     }
 }
 
@@ -330,7 +340,7 @@ fn a_trap_is_the_same_either_way() {
         let config = Config { cores, ..Config::default() };
         let setup = setup(&config, &isa, &core, &main);
         let run = emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps");
-        let alone = on_one_thread(|| emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps"));
+        let alone = on_threads(1, || emu::run(&setup, memory(), &mut |_| {}).expect_err("it traps"));
         assert_eq!(alone.to_string(), run.to_string());
         let stepped = emu::step(&setup, memory(), &mut |_| {}).expect_err("it traps");
         assert_eq!(run.to_string(), stepped.to_string());

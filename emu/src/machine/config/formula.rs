@@ -147,16 +147,22 @@ impl fmt::Display for FigureLine {
 fn terms(formula: &str) -> Result<Vec<FormulaTerm>, String> {
     let example = "such as `0.003 b^2 + 0.001 b`";
     let mut found = Vec::new();
-    let mut sign = 1;
+    // The sign of the next coefficient; none behind a coefficient and its variable.
+    let mut sign = Some(1);
+    // Signs become words: `0.1 b^2-2` is `0.1`, `b^2`, `-`, `2`, which are two terms, the second one below 0.
     for (at, word) in formula.replace('+', " + ").replace('-', " - ").split_whitespace().enumerate() {
         match word {
-            "+" if at != 0 => sign = 1,
-            "-" => sign = -1,
+            "+" | "-" if at != 0 && sign.is_some() => {
+                return Err(format!("`{word}` follows another sign; a formula is {example}"));
+            }
+            "+" if at != 0 => sign = Some(1),
+            "-" => sign = Some(-1),
             word if word.starts_with(|c: char| c.is_ascii_digit()) => {
                 let mut term = coefficient(word).ok_or_else(|| {
                     format!("`{word}` is no coefficient: a decimal number with at most {MOST_DECIMALS} digits, or one divided by a whole number")
                 })?;
-                term.digits *= sign;
+                term.digits *=
+                    sign.take().ok_or_else(|| format!("`{word}` has no sign before it; a formula is {example}"))?;
                 found.push(term);
             }
             word => {
@@ -170,14 +176,21 @@ fn terms(formula: &str) -> Result<Vec<FormulaTerm>, String> {
                 let (Some(variable), Some(power)) = (variable, power) else {
                     return Err(format!("`{word}` is no power of b or L up to {MOST_POWER}; a formula is {example}"));
                 };
+                // A variable completes the coefficient before it, which has none yet.
                 match found.last_mut() {
-                    Some(term) if term.variable == Variable::None => (term.variable, term.power) = (variable, power),
+                    Some(term) if term.variable == Variable::None && sign.is_none() => {
+                        (term.variable, term.power) = (variable, power)
+                    }
                     _ => return Err(format!("`{word}` has no coefficient before it; a formula is {example}")),
                 }
             }
         }
     }
-    if found.is_empty() { Err(format!("there is no figure; a formula is {example}")) } else { Ok(found) }
+    match sign {
+        _ if found.is_empty() => Err(format!("there is no figure; a formula is {example}")),
+        Some(_) => Err(format!("the last sign has no coefficient behind it; a formula is {example}")),
+        None => Ok(found),
+    }
 }
 
 /// A decimal number such as `0.21`, or one divided by a whole number such as `0.21/32`.
@@ -274,6 +287,12 @@ mod tests {
             ("0.1 b um2; me", "`um2` is no unit of this figure: it is one of aJ, fJ, pJ, nJ"),
             ("pJ; me", "there is no figure"),
             ("b pJ; me", "has no coefficient"),
+            ("1 + b pJ; me", "`b` has no coefficient"),
+            ("0.1 b + pJ; me", "the last sign has no coefficient"),
+            ("1 - + 2 pJ; me", "`+` follows another sign"),
+            ("-- 2 pJ; me", "`-` follows another sign"),
+            ("1 b - 2 L 3 pJ; me", "`3` has no sign"),
+            ("1 2 pJ; me", "`2` has no sign"),
             ("1 b^4 pJ; me", "no power of b or L"),
             ("1 x pJ; me", "no power of b or L"),
             ("1e5 pJ; me", "is no coefficient"),

@@ -125,6 +125,7 @@ impl FromStr for Law {
         if let Ok(number) = text.parse() {
             return Ok(Law::Constant(number));
         }
+        // Split off the name: `linear 1/4 + 3` is `linear` and `1/4 + 3`, and so is `linear1/4+3`
         let end = text.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(text.len());
         let (name, rest) = (&text[..end], text[end..].trim());
         if name == "constant" {
@@ -136,15 +137,18 @@ impl FromStr for Law {
             let names = Growth::ALL.map(|growth| format!("`{}`", growth.name())).join(", ");
             return Err(format!("unknown law `{name}`, expected a number, `constant` or one of {names}"));
         };
+        // Split the rest into factor, divisor and summand: 1, 4 and 3
         let (factor, plus) = match rest.split_once('+') {
             None => (rest, "0"),
             Some((factor, plus)) => (factor.trim(), plus.trim()),
         };
         let (times, by) = factor.split_once('/').map_or((factor, "1"), |(times, by)| (times.trim(), by.trim()));
-        let times = if times.is_empty() && by == "1" { "1" } else { times };
+        // Without a factor it is 1, as in `log + 2`; but `linear /4` would be a divisor without one, which is refused below.
+        let times = if factor.is_empty() { "1" } else { times };
         let number = |part: &str, least: u32| {
             let most = MOST_CLOCKS as u32;
-            let number = part.parse().ok().filter(|number| (least..=most).contains(number));
+            let is_plain = part.bytes().all(|octet| octet.is_ascii_digit());
+            let number = part.parse().ok().filter(|number| is_plain && (least..=most).contains(number));
             number.ok_or_else(|| {
                 format!(
                     "`{part}` in the law `{text}` is no whole number from {least} to {most}; a law is a name, a factor and a summand, such as `{name} 1/4 + 3`"
@@ -320,6 +324,8 @@ mod tests {
             ("linear 0", "`0` in the law"),
             ("linear 1/0", "`0` in the law"),
             ("linear /4", "`` in the law"),
+            ("linear /1", "`` in the law"),
+            ("linear 1 ++3", "`+3` in the law"),
             ("log + -1", "`-1` in the law"),
             ("log 2000000", "from 1 to 1000000"),
             ("constant", "needs a number after `constant`"),

@@ -2,6 +2,9 @@
 
 use messages::{Diagnostic, Report};
 
+/// Hint for whoever has to say which shard this is.
+const ITSELF: &str = "`--shard I/N` says which one this is";
+
 /// One of several shares of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
@@ -34,7 +37,8 @@ impl Shard {
     /// `_MIN`, `_MAX` and `_STEP`), or an indexed Job of Kubernetes (`JOB_COMPLETION_INDEX`, `JOB_COMPLETIONS`). All of the work without them.
     ///
     /// # Errors
-    /// A number without how many there are, or one that is none.
+    /// A number without how many there are, one that is none, an array with gaps, or another number of shards than the variables say: then nothing says
+    /// which share this is.
     pub fn of_environment(variable: &dyn Fn(&str) -> Option<String>, shards: Option<u64>) -> Result<Shard, Report> {
         let number = |name: &str| match variable(name) {
             None => Ok(None),
@@ -42,22 +46,37 @@ impl Shard {
                 Report::from(Diagnostic::error(format!("the variable {name} is `{text}`, which is no number")))
             }),
         };
-        let (index, of, name) = if let Some(task) = number("SLURM_ARRAY_TASK_ID")? {
+        // Number 5 of `--array=1-7` is share 4 of 7; of `--array=1-7:2`, which has the numbers 1 3 5 7, it is share 2 of 4.
+        let (index, said, name) = if let Some(task) = number("SLURM_ARRAY_TASK_ID")? {
             let (least, most) = (number("SLURM_ARRAY_TASK_MIN")?.unwrap_or(0), number("SLURM_ARRAY_TASK_MAX")?);
             let step = number("SLURM_ARRAY_TASK_STEP")?.unwrap_or(1).max(1);
             let place = |task: u64| task.saturating_sub(least) / step;
-            (place(task), most.map(|most| place(most) + 1).or(number("SLURM_ARRAY_TASK_COUNT")?), "SLURM_ARRAY_TASK_ID")
+            let (size, count) = (most.map(|most| place(most) + 1), number("SLURM_ARRAY_TASK_COUNT")?);
+            // Of `--array=1,2,5` nobody would run shares 2 and 3.
+            if let (Some(size), Some(count)) = (size, count)
+                && size != count
+            {
+                let message = Diagnostic::error(format!("the array of Slurm has {count} of {size} numbers"));
+                return Err(message.hint(ITSELF).into());
+            }
+            (place(task), size.or(count), "SLURM_ARRAY_TASK_ID")
         } else if let Some(index) = number("JOB_COMPLETION_INDEX")? {
             (index, number("JOB_COMPLETIONS")?, "JOB_COMPLETION_INDEX")
         } else {
             return match shards.unwrap_or(1) {
                 1 => Ok(Shard::WHOLE),
-                _ => {
-                    Err(Diagnostic::error("nothing says which of the shards this is").hint("`--shard I/N` does").into())
-                }
+                _ => Err(Diagnostic::error("nothing says which of the shards this is").hint(ITSELF).into()),
             };
         };
-        let of = shards.or(of).ok_or_else(|| {
+        // Part of an array, such as 2 to 4 of 10, would number its shares anew and run others than those.
+        if let (Some(shards), Some(said)) = (shards, said)
+            && shards != said
+        {
+            let message =
+                Diagnostic::error(format!("the scheduler says that there are {said} shards, and `--shards` {shards}"));
+            return Err(message.hint(ITSELF).into());
+        }
+        let of = shards.or(said).ok_or_else(|| {
             let message = Diagnostic::error(format!("{name} is {index}, but nothing says of how many"));
             message.hint("`--shards N` does")
         })?;
@@ -109,5 +128,12 @@ mod tests {
         {
             assert!(of(pairs, shards).is_err(), "{pairs:?}");
         }
+        assert_eq!(of(&slurm, Some(7)), Ok(Shard { index: 4, of: 7 }));
+        // Part of an array, and one with gaps, would run other shares than those that are meant.
+        let said = |result: Result<Shard, Report>| result.expect_err("it is refused").render(false);
+        assert!(said(of(&slurm, Some(10))).contains("says that there are 7 shards, and `--shards` 10"));
+        assert!(said(of(&[job, ("JOB_COMPLETIONS", "4")], Some(9))).contains("says that there are 4 shards"));
+        let gaps = [slurm[0], slurm[1], slurm[2], ("SLURM_ARRAY_TASK_COUNT", "3")];
+        assert!(said(of(&gaps, None)).contains("the array of Slurm has 3 of 7 numbers"));
     }
 }

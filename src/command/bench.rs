@@ -175,21 +175,28 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
+    // Check the files and the earlier result before anything is measured
     let targets = arguments.chart.targets(&[])?;
     let is_taken = files::takes_output(targets.iter().map(PathBuf::as_path), arguments.json).map_err(Failure::usage)?;
+    let spare =
+        |read: &[PathBuf]| files::check_spared(targets.iter().map(PathBuf::as_path), read).map_err(Failure::usage);
+    spare(arguments.against.as_slice())?;
     let before = arguments.against.as_deref().map(|path| earlier(path, arguments)).transpose()?;
     let threads = arguments.threads as usize;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Diagnostic::error(format!("there are no {threads} threads: {error}")))?;
     let (mut measured, mut by_part, mut read) = (Vec::new(), Vec::new(), Vec::new());
+    // Measure each scene with each set of kernels
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
+        spare(&loaded.files)?;
         terminal.show(&loaded.warnings);
         for &profile in &arguments.profiles {
             let mut job = Job::new(loaded.scene.clone());
             job.view.size = arguments.size;
             job.kernels.profile = profile;
             arguments.tree.settings().choose(&mut job);
+            // Each run is one of every runner, and one more of the parts.
             let rounds = u64::from(arguments.runs) * (Runner::ALL.len() as u64 + 1);
             let bar = terminal.progress(&job.scene.name, rounds);
             measured.extend(benchmark::measure(&job, arguments.runs, || bar.inc(1))?);
@@ -212,6 +219,7 @@ pub(super) fn execute(
         (false, true) => terminal.print(&result::json(&WithSettings::new(&benches, settings)))?,
         (false, false) => terminal.tell(&text(&benches))?,
     }
+    // Fail with the time that has grown most, where one grew beyond the tolerance
     let slower: Vec<&TimeChange> = benches.against.iter().flatten().filter(|change| !change.is_within).collect();
     let Some(worst) =
         slower.iter().max_by(|one, other| one.percent.partial_cmp(&other.percent).unwrap_or(Ordering::Equal))

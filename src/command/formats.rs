@@ -123,11 +123,14 @@ impl FormatsArguments {
         }
     }
 
-    /// Scenes to check on: those that were named, else generated ones that are not searched with, then these in another fineness.
-    fn unseen(&self) -> Result<NamedScenes, Failure> {
+    /// Scenes to check on: those that were named, else generated ones that are not searched with, then these in another fineness. `spare` refuses to
+    /// overwrite files that were read.
+    fn unseen(&self, spare: &dyn Fn(&[PathBuf]) -> Result<(), Failure>) -> Result<NamedScenes, Failure> {
         if !self.check.is_empty() {
             let read = |name: &String| -> Result<_, Failure> {
-                Ok((name.clone(), input::scene(name, None, Some(self.size))?.scene))
+                let loaded = input::scene(name, None, Some(self.size))?;
+                spare(&loaded.files)?;
+                Ok((name.clone(), loaded.scene))
             };
             return self.check.iter().map(read).collect();
         }
@@ -166,23 +169,33 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
+    // Check where the results go before a search of many pictures
     let targets: Vec<&Path> =
         [&arguments.output, &arguments.study].into_iter().flatten().map(PathBuf::as_path).collect();
     let is_taken = files::takes_output(targets.iter().copied(), arguments.json).map_err(Failure::usage)?;
     files::check_distinct(targets.iter().copied()).map_err(Failure::usage)?;
     targets.iter().try_for_each(|path| files::check_target(path))?;
+    let spare = |read: &[PathBuf]| files::check_spared(targets.iter().copied(), read).map_err(Failure::usage);
+    // A machine's name may be that of a file.
+    let machine = PathBuf::from(&arguments.machine.machine);
+    if machine.exists() {
+        spare(&[machine])?;
+    }
     if arguments.study.is_some() {
         check_named(&Settings::default(), arguments.scenes.iter().map(String::as_str))?;
     }
     let machine = arguments.machine.machine(&ArithmeticArguments::default())?;
+    // Read the scenes to search with, and those to check on
     let mut seen = NamedScenes::new();
     for name in &arguments.scenes {
         let loaded = input::scene(name, None, Some(arguments.size))?;
+        spare(&loaded.files)?;
         terminal.show(&loaded.warnings);
         seen.push((name.clone(), loaded.scene));
     }
-    let unseen = arguments.unseen()?;
+    let unseen = arguments.unseen(&spare)?;
     let Some((_, first)) = seen.first() else { return Err(Failure::usage(Diagnostic::error("there is no scene"))) };
+    // The first scene stands for all: each trial puts its own in its place.
     let mut job = Job::new(first.clone());
     job.view = View::new(arguments.size);
     job.kernels.profile = arguments.profile;
@@ -200,6 +213,7 @@ pub(super) fn execute(
             exit: Exit::Tolerance,
         });
     };
+    // Write the files, and print what does not go there
     let mut files: Vec<(&Path, String)> = Vec::new();
     files.extend(arguments.output.as_deref().map(|path| (path, settings_file(&found))));
     if let Some(path) = arguments.study.as_deref() {
@@ -281,6 +295,7 @@ fn text(found: &FormatsResult) -> String {
         found.drawn,
         found.reused
     );
+    // Say how many bits each quantity needs, and what one fewer and one more would bring
     let mut rows =
         vec![row(["quantity", "before the point", "estimate", "fewest", "one fewer", "nJ", "one more", "nJ"])];
     let number = |bits: Option<i32>| bits.map_or_else(String::new, |bits| bits.to_string());
@@ -296,6 +311,7 @@ fn text(found: &FormatsResult) -> String {
     }
     text += &table(rows);
     text += "\nFraction bits, of the word all bits; with the least PSNR of a scene and nJ a pixel.\n\n";
+    // Set them beside words in which each scene chooses its formats
     let mut rows = vec![row(["formats", "octets", "clocks", "nJ", "PSNR", "off", "largest", "kept"])];
     rows.push([vec!["found".to_owned()], cells(&found.found)].concat());
     for one in &found.uniform {
@@ -318,6 +334,7 @@ fn text(found: &FormatsResult) -> String {
         );
     }
     text.push('\n');
+    // Say what they come to in memory
     let mut rows = vec![row(["in memory", "node", "reference", "triangle", "material", "light", "pixel"])];
     for scene in &found.fields {
         let bits = scene.bits.0.iter().map(|(_, bits)| bits.to_string());
@@ -325,6 +342,7 @@ fn text(found: &FormatsResult) -> String {
     }
     text += &table(rows);
     text += "\nBits of the widest field.\n\n";
+    // Check them on scenes and shifts that the search did not see
     let mut rows = vec![row(["check", "PSNR", "off, mean", "off, worst", "largest", "kept"])];
     let check = |of: &str, scene: &TrialFigures| {
         let name = format!("{} ({of})", scene.scene);

@@ -133,4 +133,16 @@ fn demands_are_read_in_their_forms() {
         let run = session.run(&format!("formats triangle --size 4x3 --shifts 1 --check triangle {demand}"));
         assert_eq!(run.code, code, "{demand}: {}", run.messages);
     }
+    // Nothing that is read is overwritten.
+    session.succeed("scene generate triangle -o .");
+    session.write("m.toml", "cores = 3\n");
+    for (line, place) in [
+        ("triangle.dsc", "-o triangle.off"),
+        ("triangle.dsc", "--study triangle.dsc"),
+        ("triangle --check triangle.dsc", "-o triangle.dsc"),
+        ("triangle --machine m.toml", "-o m.toml"),
+    ] {
+        let line = format!("formats {line} --size 4x3 --shifts 1 {place}");
+        session.fail(&line, 2, "is read, and would be overwritten");
+    }
 }

@@ -9,7 +9,7 @@ use emu::stepper::Stepper;
 use isa::Program;
 
 use crate::arguments::numbered;
-use crate::registers::{RegisterContents, format_of, register_of};
+use crate::registers::{RegisterContents, format_of, is_real, register_of};
 
 /// ComparedSide of a comparison as it was typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,13 +77,13 @@ fn side(text: &str) -> Result<ComparedSide, String> {
     if text.is_empty() {
         return Err("one side of the comparison is missing".into());
     }
+    // Read a number: 0.5, 1e-3 and 1:pos are real, 1 is raw
     if text.starts_with(|c: char| c.is_ascii_digit() || "+-".contains(c)) {
         let (number, format) = match text.split_once(':') {
             Some((number, format)) => (number, Some(format.to_owned())),
             None => (text, None),
         };
-        let is_real = format.is_some() || number.contains('.');
-        return if is_real {
+        return if format.is_some() || is_real(number) {
             Ok(ComparedSide::Real(number.into(), format))
         } else {
             numbered(text).map(ComparedSide::Raw)
@@ -94,6 +94,7 @@ fn side(text: &str) -> Result<ComparedSide, String> {
         "pc" => return Ok(ComparedSide::Pc),
         _ => {}
     }
+    // Read a register; one without a component is a scalar, or the first of a vector
     let (name, component) = match text.rsplit_once('.') {
         Some((name, "x")) => (name, 0),
         Some((name, "y")) => (name, 1),
@@ -182,6 +183,8 @@ mod tests {
         for text in ["s1 == 5", "near_t<1.5:t && s2 != 0", "v1.y >= -1", "step > 1,000", "pc == 0x10", "w0 < s1"] {
             assert!(text.parse::<StopCondition>().is_ok(), "{text}");
         }
+        let small: StopCondition = "s1 > 1e-3".parse().expect("an exponent makes it real");
+        assert_eq!(small.all[0].right, ComparedSide::Real("1e-3".into(), None));
         for (text, message) in [
             ("s1", "compares nothing"),
             ("s1 ==", "is missing"),

@@ -15,7 +15,7 @@ use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 
 pub use list::RegisterList;
-pub use setting::{RegisterSetting, register_of};
+pub use setting::{RegisterSetting, is_real, register_of};
 pub use show::{ShowList, ShowRequest, format_of};
 
 /// Registers by name.

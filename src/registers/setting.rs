@@ -79,8 +79,8 @@ impl FromStr for RegisterSetting {
     }
 }
 
-/// The text has a point or an exponent, which a whole number has not.
-fn is_real(text: &str) -> bool {
+/// True of a number with a point or an exponent, which a whole number has not.
+pub fn is_real(text: &str) -> bool {
     !text.starts_with("0x")
         && !text.starts_with("-0x")
         && text.contains(['.', 'e', 'E'])
@@ -139,6 +139,7 @@ impl RegisterSetting {
             Some(format) => Some(format_of(program, format)?.1),
             None => None,
         };
+        // Read a number: a real one by the fraction bits that are typed or known here (0.5 of 16 is 32,768), another as it stands
         let raw = |text: &String| -> Result<i64, String> {
             let bits = match bits {
                 Some(bits) => bits,
@@ -153,6 +154,7 @@ impl RegisterSetting {
                 false => Ok(value),
             }
         };
+        // All numbers are read before one is set, so that a mistake changes nothing.
         let values = self.numbers.iter().map(raw).collect::<Result<Vec<i64>, _>>()?;
         match (file, values.as_slice()) {
             ('v', &[x, y, z]) => registers.set_vector(number, [x as i32, y as i32, z as i32]),

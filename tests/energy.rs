@@ -71,6 +71,7 @@ fn by_hand(prices: &Prices, program: &Program, tally: &Tally) -> i128 {
     let mut sum = 0;
     for word in 0..code.words() {
         let Some(row) = code.row(word) else { continue };
+        // Take a printed row to pieces, such as `vcross (d: V, a: V, b: V, i: Sh)  "..."  [Done(mul 6, sub 3)]`
         let (mnemonic, rest) = row.line().split_once(" (").map(|(a, b)| (a.to_owned(), b.to_owned())).expect("a row");
         let operands: Vec<(char, String)> = rest
             .split(')')
@@ -83,8 +84,11 @@ fn by_hand(prices: &Prices, program: &Program, tally: &Tally) -> i128 {
         let is_read = |letter: char| "xyabc".contains(letter);
         let reads: Vec<&str> =
             operands.iter().filter(|(letter, _)| is_read(*letter)).map(|(_, kind)| kind.as_str()).collect();
+        // Operations have 64 bits where all sources are wide numbers
         let is_double = !reads.is_empty() && reads.iter().all(|kind| kind.starts_with('W'));
-        let has_address = operands.iter().any(|(_, kind)| kind == "A");
+        // `load` has an address of memory and one of the buffer; `ldnode` reads as many octets as it likes, and has one.
+        let addresses = operands.iter().filter(|(_, kind)| kind == "A").count();
+        // Count bits of registers: `vcross` reads two vectors and writes one, 3 x 96 = 288
         let bits: i128 = operands
             .iter()
             .map(|(letter, kind)| {
@@ -101,6 +105,7 @@ fn by_hand(prices: &Prices, program: &Program, tally: &Tally) -> i128 {
                 width * (i128::from(is_read(*letter)) + i128::from("dexy".contains(*letter)))
             })
             .sum();
+        // Multiply what each outcome costs, once a pass and once a unit, by its price
         for (number, outcome) in row.outcomes.iter().enumerate() {
             let passes = tally.passes(&code, word, number);
             let (count, units) = (i128::from(passes.count), i128::from(passes.units));
@@ -117,8 +122,8 @@ fn by_hand(prices: &Prices, program: &Program, tally: &Tally) -> i128 {
                             (_, Some(place)) => prices.operations[usize::from(is_double)][place],
                             ("address", _) => prices.operations[0][0],
                             ("local", _) => 32 * prices.buffer_bit,
-                            ("octet", _) if has_address => {
-                                8 * (prices.memory_bit + if is_each { prices.buffer_bit } else { 0 })
+                            ("octet", _) if addresses > 0 => {
+                                8 * (prices.memory_bit + if is_each && addresses == 2 { prices.buffer_bit } else { 0 })
                             }
                             ("octet" | "mem" | "move" | "logic" | "jump", _) => 0,
                             _ => panic!("{mnemonic} counts {class}"),

@@ -86,13 +86,14 @@ impl Activity {
             }
         }
         self.buffer_bits += counts[Class::Local] * u64::from(INTEGER_BITS);
-        // Octets without an address are those of a message; octets of a block go through the buffer.
+        // Octets without an address are those of a message; octets of a block go through the buffer, where the second address is.
         let octets = counts[Class::Octet];
-        match row.operands.iter().any(|operand| operand.kind == Kind::A) {
-            true => self.memory_octets += octets,
-            false => self.message_octets += octets,
+        let addresses = row.operands.iter().filter(|operand| operand.kind == Kind::A).count();
+        match addresses {
+            0 => self.message_octets += octets,
+            _ => self.memory_octets += octets,
         }
-        if is_each {
+        if is_each && addresses == 2 {
             self.buffer_bits += 8 * octets;
         }
     }

@@ -120,7 +120,12 @@ pub(super) fn execute(
     given: &CommandSettings,
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
+    // Leave errata and figures to others
     match arguments.as_printed {
+        Some(Shown::List) if arguments.output.is_some() => {
+            let message = Diagnostic::error("there is no picture of a list");
+            return Err(Failure::usage(message.hint("name one of --as-printed list")));
+        }
         Some(Shown::List) => return terminal.tell(&erratum_text::list()).map(|()| Exit::Done),
         Some(Shown::One(erratum)) => return show(erratum, arguments, given, terminal),
         None => {}
@@ -132,6 +137,7 @@ pub(super) fn execute(
         let message = Diagnostic::error("-o writes the picture of --as-printed NAME or of --figure N");
         return Err(Failure::usage(message.hint("name one of them")));
     }
+    // Count the rows again, and what their calls take on the scenes
     let measured = annex::measure()?;
     let (mut scenes, mut read) = (Vec::new(), Vec::new());
     for name in &arguments.scenes {
@@ -145,6 +151,7 @@ pub(super) fn execute(
     }
     let annexes = Annexes::new(&measured, &AnnexDetail::new(&measured)?, &scenes);
     let style = if arguments.markdown { Style::Markdown } else { Style::Text };
+    // Print in the form that was chosen; only text for people is folded to the terminal
     match arguments {
         AnnexArguments { json: true, .. } => {
             let settings = given.clone().with_scenes(&scene_hashes(&arguments.scenes, &read));
@@ -156,6 +163,7 @@ pub(super) fn execute(
         AnnexArguments { errata: true, .. } => terminal.tell(&text::errata(&annexes, style))?,
         _ => terminal.tell(&text::annexes(&annexes, style))?,
     }
+    // Scripts see by the exit code that the terms still explain all differences.
     match measured.iter().all(annex::Measurement::is_explained) {
         true => Ok(Exit::Done),
         false => Ok(Exit::Tolerance),
@@ -243,6 +251,7 @@ fn draw_figure(number: u8, arguments: &AnnexArguments, terminal: &mut Terminal) 
     let path = arguments.output.as_deref().expect("the parser asks for a file");
     let usage = |message: &str, hint: &str| Failure::usage(Diagnostic::error(message).hint(hint));
     arguments::chart_file(&path.to_string_lossy()).map_err(|message| Failure::usage(Diagnostic::error(message)))?;
+    // Refuse what the figure does not show: 6 and 7 are of a scene, 8 and 9 of a machine
     if arguments.scenes.len() > 1 || number > 7 && !arguments.scenes.is_empty() {
         return Err(usage("a figure shows one scene, those of machines none", "leave out the others"));
     }
@@ -253,6 +262,7 @@ fn draw_figure(number: u8, arguments: &AnnexArguments, terminal: &mut Terminal) 
         return Err(usage("figures 8 and 9 alone show a machine", "leave out --machine"));
     }
     files::check_target(path)?;
+    // Draw it of the scene or the machine, of a default where none is named
     let figure = match number {
         6 | 7 => {
             let name = arguments.scenes.first().map_or(FIGURE_SCENE, String::as_str);

@@ -201,6 +201,7 @@ fn cores_of_others_stand_beside_ours() {
 #[test]
 fn an_erratum_is_shown_beside_its_correction() {
     let session = Session::new();
+    session.fail("annex --as-printed list -o list.png", 2, "there is no picture of a list");
     let list = session.succeed("annex --as-printed list");
     for name in ["first-hit", "refraction-root", "strict-sides", "light-position", "servers"] {
         assert!(list.contains(name), "{name} is not in\n{list}");

@@ -177,11 +177,11 @@ fn host() -> String {
 
 /// CPU seconds of all commands that have ended; `None` where the system does not tell.
 fn cpu_seconds() -> Option<f64> {
-    // Behind the name, which ends with `)`: fields 16 and 17 of proc(5) are ticks of children in user and system mode.
+    // Behind the name, which ends with `)` and is field 2: fields 16 and 17 of proc(5) are ticks of children in user and system mode.
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    let fields: Vec<u64> = stat.rsplit(") ").next()?.split(' ').filter_map(|field| field.parse().ok()).collect();
-    // The state, which is a letter, has been dropped: field 4 is the first number, so 16 is the thirteenth.
-    Some((fields.get(12)? + fields.get(13)?) as f64 / 100.0)
+    let fields: Vec<&str> = stat.rsplit(") ").next()?.split(' ').collect();
+    let ticks = |number: usize| fields.get(number - 3)?.parse::<u64>().ok();
+    Some((ticks(16)? + ticks(17)?) as f64 / 100.0)
 }
 
 /// The commands of a part with what they print.

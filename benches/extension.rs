@@ -99,6 +99,7 @@ const MEASURED: [(&str, &str, &str); 3] = [
 ];
 
 fn measure(criterion: &mut Criterion) {
+    // Load the rows twice: with their bodies alone, and with meanings in Rust beside them
     let mut bodies = Isa::base();
     let source = Source::new("measured.isa", ROWS);
     extension::load(&mut bodies, &source, &|_, _| Err("nothing is included".into())).expect("the file is right");
@@ -116,6 +117,7 @@ fn measure(criterion: &mut Criterion) {
         let name = format!("{name} {}", wish.kind.name());
         let mut group = criterion.benchmark_group(&name);
         group.throughput(Throughput::Elements(u64::from(PASSES) * 8));
+        // The same work in three ways: rows of the table, an extension's body, a meaning in Rust
         let ways = [
             ("written out", *written_out, &bodies),
             ("body", *instruction, &bodies),
@@ -123,6 +125,7 @@ fn measure(criterion: &mut Criterion) {
         ];
         let mut results = Vec::new();
         for (way, line, isa) in ways {
+            // Eight copies in a pass, so that the loop itself takes little of the time.
             let lines = format!(" {line}\n").repeat(8);
             let text = format!("    li s9, {PASSES}\n1:\n{lines}    isubi s9, s9, 1\n    bnez s9, 1b\n    halt\n");
             let program = asm::assemble(&Source::new("loop.s", text), isa, &asm::Options::default());
@@ -137,6 +140,7 @@ fn measure(criterion: &mut Criterion) {
             results.push((after.scalar(4), after.vector(4)));
             group.bench_function(way, |bencher| bencher.iter(|| black_box(once())));
         }
+        // Times say something only of ways that come to the same results.
         assert!(results.iter().all(|result| *result == results[0]), "{name}: {results:?}");
         group.finish();
     }

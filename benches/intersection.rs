@@ -242,6 +242,7 @@ fn main() {
         "{RAYS} rays x {TRIANGLES} triangles, medians of {RUNS} runs on one thread, {}",
         emu::engine::HostSimd::best().name()
     );
+    // Cores of the machine would share the host's threads, and native code has one.
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("it is the first pool");
     let forms = [
         ("branchy", BRANCHY, branchy as fn(&Record, &Record) -> i32),
@@ -249,6 +250,7 @@ fn main() {
         ("rtri", INSTRUCTION, exact),
     ];
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    // With `-- rtri lancer` the form is `rtri` and the engine `lancer`; without a word for a form all are asked for, and so with engines.
     let is_asked = |names: &[&str], name: &str| {
         let mut words = words.iter().filter(|word| names.contains(&word.as_str())).peekable();
         words.peek().is_none() || words.any(|word| word == name)
@@ -281,8 +283,10 @@ fn main() {
         ];
         let names: Vec<String> = contenders.iter().map(|contender| contender.name.clone()).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        // Native code runs in any case, since times are told as multiples of its own.
         contenders.retain(|contender| contender.name == "native" || is_asked(&names, &contender.name));
         let mut sums = Vec::new();
+        // Contenders take turns, so that a slow moment of the host meets all of them.
         for _ in 0..RUNS {
             for contender in &mut contenders {
                 let start = Instant::now();

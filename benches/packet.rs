@@ -54,6 +54,7 @@ fn octets(triangles: &[Vertices]) -> Vec<u8> {
 
 /// The sum of the distances that rays find.
 fn program(octets: &[u8], count: usize) -> Program {
+    // The rays are those of `ray`, from the last one to the first; s9 adds up the distances, as `sum_of` does.
     let text = format!(
         "
     li    s1, {RAYS}
@@ -88,6 +89,7 @@ next:
         Ok(assembled) => assembled.program,
         Err(report) => panic!("{}", report.render(false)),
     };
+    // The packet begins at address 0, where s2 points.
     program.buffer = octets.to_vec();
     program
 }
@@ -105,10 +107,12 @@ fn main() {
         let engine = |kind: EngineKind| {
             let wish = Wish { kind, is_eager: true, ..Wish::default() };
             let run = run_with(&OneCore::new(&config, &isa, &program), Memory::default(), wish).expect("it fits");
+            // An engine may decline a program and leave it to the other one, whose time this is not.
             assert!(run.trap.is_none() && run.engine.kind == kind, "{:?} on {:?}", run.trap, run.engine);
             run.state.registers.scalar(9)
         };
         let packets = |ray: &Ray| PacketWords::new(&octets).nearest(&Nearest32, ray, SHIFT, NEVER).t;
+        // One triangle after the other divides for each hit, the others only for those that may be the nearest.
         let singly = |ray: &Ray| {
             let hits =
                 triangles.iter().map(|vertices| triangle(ray, vertices)).filter(|met| met.end == TriangleEnd::Hit);
@@ -120,6 +124,7 @@ fn main() {
             ("rnear, native", Box::new(|| engine(EngineKind::Native))),
             ("rnear, checked", Box::new(|| engine(EngineKind::Checked))),
         ];
+        // Time each, and take the median by triangle
         let mut sums = Vec::new();
         for (name, run) in contenders {
             let mut times: Vec<f64> = (0..RUNS)

@@ -82,10 +82,12 @@ impl DiffPart {
         ];
         let counts =
             ["rays", "counts", "instructions", "octets", "functions", "regions", "triangles", "calls", "items"];
+        // The order decides: `settings.machine.clocks.mul` is a setting, `bus.longest_wait` a time, and other keys of `bus` are counts.
         match first {
             "settings" => DiffPart::Settings,
             "error" => DiffPart::Error,
             _ if last.ends_with("_hash") => DiffPart::Hashes,
+            // At the top `cores` is a number of the machine; `cores[0].octets` is a count.
             _ if names.len() == 1 && settings.contains(&first) => DiffPart::Settings,
             "formats" | "crop" => DiffPart::Settings,
             _ if clocks.iter().any(|name| names.contains(name)) || last.ends_with("seconds") => DiffPart::Clocks,
@@ -197,12 +199,14 @@ fn percent(a: &Value, b: &Value) -> Option<f64> {
 
 /// Compares two files. Times of the host (`host`, `timing`) are left out.
 ///
-/// Of two results, settings say why the rest differs, and hashes only that it does: neither counts where a tolerance is given. Of two
-/// files of settings, everything counts.
+/// Of two results, settings say why the rest differs, so they never count, and hashes only that it does: they do not count where a tolerance is given.
+/// Of two files of settings, everything counts.
 pub fn compare(a: &DiffSide, b: &DiffSide, tolerance: f64) -> DiffResult {
     let (mut of_a, mut of_b) = (BTreeMap::new(), BTreeMap::new());
+    // Write both as paths, each with its value
     flatten(a.value, "", &mut of_a);
     flatten(b.value, "", &mut of_b);
+    // Results carry a schema, files of settings do not.
     let are_results = [a, b].iter().all(|side| side.value.get("schema").is_some());
     let is_host = |key: &str| key.split(['.', '[']).any(|name| name == "host");
     let keys: Vec<&String> = {
@@ -210,6 +214,7 @@ pub fn compare(a: &DiffSide, b: &DiffSide, tolerance: f64) -> DiffResult {
         all.into_iter().filter(|key| !is_host(key)).collect()
     };
     let null = Value::Null;
+    // Compare path by path; one that a side lacks is null there
     let difference = |key: &&String| {
         let (a, b) = (*of_a.get(*key).unwrap_or(&&null), *of_b.get(*key).unwrap_or(&&null));
         if a == b {

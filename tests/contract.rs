@@ -33,6 +33,7 @@ fn joined<T: ToString>(parts: impl IntoIterator<Item = T>) -> String {
 
 /// One option or operand of a command, with the name of its value, the values that it may have and its default.
 fn argument(argument: &Arg) -> String {
+    // Name it as in `--output -o FILE`
     let mut text = match (argument.get_long(), argument.get_short()) {
         (Some(long), Some(short)) => format!("--{long} -{short}"),
         (Some(long), None) => format!("--{long}"),
@@ -42,6 +43,7 @@ fn argument(argument: &Arg) -> String {
     for alias in argument.get_visible_aliases().into_iter().flatten() {
         text += &format!(" --{alias}");
     }
+    // Say what its value may be, as in `--profile NAME [report|vector] = vector`
     let takes_value = matches!(argument.get_action(), ArgAction::Set | ArgAction::Append);
     if takes_value {
         text += &format!(" {}", joined(argument.get_value_names().unwrap_or_default()));
@@ -65,6 +67,7 @@ fn argument(argument: &Arg) -> String {
             text += &format!(", `{delimiter}` between values");
         }
     }
+    // Say how often it may be there, as in `--ext FILE.isa, may be repeated`
     if argument.is_required_set() {
         text += ", required";
     }

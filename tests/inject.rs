@@ -215,6 +215,7 @@ fn faults_of_grants_do_what_they_do_on_a_machine_that_is_asked_burst_by_burst() 
     ];
     let mut seen = [0; 3];
     for arbiter in ArbiterKind::ALL {
+        // From one core, whose only rival is the main processor, to one for each of the 20 pixels; with and without overlap and caches
         for (cores, overlap, cached) in [(1, false, 0), (2, true, 0), (3, false, 1_024), (20, false, 0)] {
             let mut machine = small.machine.clone();
             machine.cores = cores;
@@ -223,12 +224,14 @@ fn faults_of_grants_do_what_they_do_on_a_machine_that_is_asked_burst_by_burst() 
             let golden = GoldenFrame::new(&setup, &small.load.memory).unwrap();
             let clocks = emu::step(&setup, small.load.memory.clone(), &mut |_| {}).unwrap().clocks;
             assert_eq!(golden.clocks().unwrap(), clocks);
+            // Draw twelve faults of each of the four kinds
             let request = |number: u64| {
                 let (target, protection) = kinds[number as usize % kinds.len()];
                 FlipRequest { target, shape, seed: 1_000 * number + u64::from(cores), protection }
             };
             let requests: Vec<FlipRequest> = (0..4 * 12).map(request).collect();
             for (request, injected) in requests.iter().zip(inject(&golden, &requests)) {
+                // Put the same fault, at the clock and the master that were drawn, into a machine that executes everything
                 let kind = match (request.target, request.protection) {
                     (FaultKind::StuckArbiter, _) => GrantFaultKind::Stuck,
                     (FaultKind::StoppedCore, _) => GrantFaultKind::Stopped,

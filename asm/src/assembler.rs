@@ -110,6 +110,7 @@ pub(crate) fn assemble(source: &Arc<Source>, isa: &Isa, options: &Options) -> At
 /// An assembler that has read nothing.
 pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
     let operations: HashMap<&str, Op> = isa.ops().map(|op| (&*isa.definition(op).name, op)).collect();
+    // Gaps in the code are filled with `mov s0, s0`, which does nothing: `s0` ignores writes.
     let nop = operations.get("mov").and_then(|&op| isa.encode(op, &[0, 0]).ok()).unwrap_or(0);
     Assembler {
         isa,
@@ -121,6 +122,7 @@ pub(crate) fn new<'a>(isa: &'a Isa, options: &'a Options<'a>) -> Assembler<'a> {
         names: Names::default(),
         macros: HashMap::new(),
         call_lines: HashMap::new(),
+        // The outermost scope of register names and of their formats is open from the start; functions open more.
         aliases: vec![HashMap::new()],
         alias_spans: Vec::new(),
         holdings: vec![HashMap::new()],

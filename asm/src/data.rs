@@ -172,11 +172,13 @@ impl Assembler<'_> {
         if self.section == Section::Code {
             return Err(only_in_buffer(at));
         }
+        // The number is needed now, since every address behind depends on it.
         let Some(count) = self.value_now(&octets)? else { return Ok(()) };
         let value = match fill {
             None => 0,
             Some(fill) => {
                 let Some(value) = self.value_now(&fill)? else { return Ok(()) };
+                // An octet may be meant with a sign or without: `-1` and `255` fill alike.
                 let (least, most) = range(1);
                 if value < least || value > most {
                     let message = format!("{value} does not fit 1 octet");

@@ -193,6 +193,7 @@ impl Assembler<'_> {
 
     /// Gives all constants that wait for later definitions their values, without recursion.
     pub(crate) fn resolve_pending(&mut self) {
+        // Take the names first: evaluating changes the table
         let waiting: Vec<Name> = self
             .names
             .symbols()
@@ -201,6 +202,7 @@ impl Assembler<'_> {
             .collect();
         let mut visited = HashSet::new();
         for name in waiting {
+            // Go into depth on a stack: of `a = b + 1` and `b = end` it holds a, then a b; what comes to the top again gets its value.
             let mut open = vec![(name, false)];
             while let Some(&(name, is_visited)) = open.last() {
                 let Some((expression, at)) = self.pending(name) else {
@@ -226,6 +228,7 @@ impl Assembler<'_> {
                     if self.pending(*used).is_none() {
                         continue;
                     }
+                    // What was opened and still waits lies further down in the stack: its own definition has led back to it.
                     if visited.contains(used) {
                         let text = self.names.text(*used).clone();
                         let message = format!("`{text}` is defined by itself");

@@ -249,6 +249,7 @@ impl Assembler<'_> {
         let step = match token.kind {
             TokenKind::Integer | TokenKind::Decimal => match self.fixed_literal(cursor, token, false)? {
                 Some(step) => {
+                    // The literal's three tokens are taken already, so nothing is skipped behind it.
                     steps.push((step, cursor.since(first)));
                     return Ok(());
                 }
@@ -261,6 +262,7 @@ impl Assembler<'_> {
             TokenKind::Local => EvaluationStep::Symbol(self.numeric_label(text, at)?),
             TokenKind::Mark(".") => EvaluationStep::Number(self.location()),
             TokenKind::Mark("(") => {
+                // Only parentheses and functions let the parser call itself without another bound.
                 if depth >= PARENTHESES {
                     return Err(Problem::new(
                         explain::NESTING,
@@ -279,6 +281,7 @@ impl Assembler<'_> {
                 return self.function(cursor, steps, depth);
             }
             TokenKind::Name => {
+                // Say that it is a register: taken for a symbol it would only be undefined.
                 if let Some((file, number)) = self.register(text, at)? {
                     return Err(Problem::new(
                         explain::OPERAND_KIND,
@@ -291,6 +294,7 @@ impl Assembler<'_> {
             }
             TokenKind::Directive => EvaluationStep::Symbol(self.names.intern(text)),
             TokenKind::Mark("%") => {
+                // Other assemblers write `%hi(x)` and `%s1`.
                 let mut problem = cursor.expected("a number");
                 problem.hint = foreign::percent(&cursor.line.text[token.start as usize..]);
                 return Err(problem);

@@ -236,12 +236,15 @@ impl Assembler<'_> {
             None => "expected a number".into(),
         };
         let problem = Problem::new(explain::OPERAND_KIND, message, operand.at, label);
+        // Guess what was meant
         match &operand.written {
             Written::Number(expression) if wanted.kind.register_file().is_some() => match expression.symbol() {
+                // A name that is no register may be a misspelt one.
                 Some(name) => problem.suggest(&self.names.text(name).clone(), Among::Registers),
                 None if takes_offset(definition, place) => {
                     problem.hint(format!("it is written `{}`", usage(definition)))
                 }
+                // A number where a register should be: `iadd s1, s2, 4` becomes `iaddi`.
                 None => match self.operations.get_key_value(&*format!("{}i", definition.name)) {
                     Some((with_number, _)) => problem.hint(format!("`{with_number}` takes a number")),
                     None => problem,
@@ -257,6 +260,7 @@ impl Assembler<'_> {
     pub(crate) fn encode(&self, op: Op, arguments: &[Argument], pc: usize) -> Result<u32, Vec<EvaluationFailure>> {
         let isa = self.isa;
         let definition = isa.definition(op);
+        // Gather the failures of all operands, so that a person sees them at once
         let mut numbers = Vec::with_capacity(arguments.len());
         let mut failures = Vec::new();
         for (argument, operand) in arguments.iter().zip(definition.operands.iter()) {
@@ -267,6 +271,7 @@ impl Assembler<'_> {
                 }
                 Value::Expression(expression) => self.evaluate(expression),
             };
+            // Registers have ranges too: the first of three vectors is v0 to v29.
             let width = definition.pattern.field(operand.letter).map_or(32, |field| field.width);
             let (least, most) = operand.kind.range(width);
             match value {
@@ -340,6 +345,7 @@ pub(crate) fn out_of_range(
 ) -> Box<Problem> {
     let (letter, kind) = (operand.letter as char, operand.kind.name());
     let name = &definition.name;
+    // A label too far away: only branches have a way out, by a jump
     if operand.kind == Kind::Rel {
         let message = format!("the target is {number} words away, beyond the reach of `{name}`");
         let problem =
@@ -350,6 +356,7 @@ pub(crate) fn out_of_range(
             problem.hint("branch the other way around a `jump`, which reaches further")
         };
     }
+    // A group that ends beyond the last register: v30 may be the first of two, but not of three
     if let (Some(file), true) = (operand.kind.register_file(), operand.kind.registers() > 1) {
         let count = operand.kind.registers();
         let message = format!("`{file}{number}` cannot be the first of {count} registers");

@@ -40,20 +40,24 @@ pub fn listing(attempt: &Attempt) -> String {
     let mut shown_source = None;
     let texts: Vec<Vec<&str>> = attempt.program.sources.iter().map(|source| source.text.lines().collect()).collect();
     for record in &attempt.records {
+        // Name the file wherever lines of another one follow
         if shown_source != Some(record.source) {
             let source = &attempt.program.sources[record.source as usize];
             let _ = writeln!(text, "{}{}", if shown_source.is_some() { "\n" } else { "" }, source.name);
             shown_source = Some(record.source);
         }
+        // Show a line of a macro with its arguments put in, any other as it stands in the file
         let file_line = texts[record.source as usize].get(record.line as usize - 1).copied().unwrap_or("");
         let line = record.text.as_deref().unwrap_or(file_line.trim_start_matches('\u{feff}')).trim_end();
         let mark = "+".repeat(record.depth.min(3).into());
+        // Put the first row of contents beside the line, the others below
         let mut rows = made(attempt, record).into_iter();
         let first = rows.next().unwrap_or_default();
         let _ = writeln!(text, "{}", format!("{first:<33} {:>5}{mark:<3} {line}", record.line).trim_end());
         for row in rows {
             let _ = writeln!(text, "{row}");
         }
+        // A repetition reads a line more than once: its messages stand behind the first time alone.
         let at = (record.source, record.line);
         while let Some(place) = messages.iter().position(|(line, _)| *line == at) {
             let _ = writeln!(text, "**** {}", messages.remove(place).1);

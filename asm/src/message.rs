@@ -220,6 +220,7 @@ fn diagnostic<'a>(
         Severity::Note { errors } => Diagnostic::note(problem.message, errors),
     };
     message = message.code(problem.code);
+    // Show the place, others that explain it, and the calls through which it was reached
     if let Some(at) = problem.at {
         message = message.at(place(at), problem.label);
     }
@@ -229,6 +230,7 @@ fn diagnostic<'a>(
     for call in shown_calls(problem.at.map_or(0, |at| at.context), calls) {
         message = message.also(place(call.at), call.via.label());
     }
+    // A name that is nearly the same tells more than a general hint. If it is the very same, it is defined, but too late.
     let suggestion = problem.suggest.as_ref().and_then(|(name, among)| similar(name, *among));
     let is_same = problem.suggest.as_ref().is_some_and(|(name, _)| suggestion == Some(name.as_str()));
     match (suggestion, problem.hint) {

@@ -294,10 +294,12 @@ fn parts(input: &[u8], version: u16) -> ObjectPiece<'_, Result<Program, &'static
 
 /// Parts that version 2 has behind the places, as a program that has nothing else.
 fn naming(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
+    // Take all parts before looking into them: a file that is cut off has another message than one that contradicts itself.
     let many = |input| le_u32(input).map(|(rest, number): (_, u32)| (rest, number as usize));
     let (input, number) = many(input)?;
     let (input, formats) = list(input, number, |input| (text, le_u8).parse(input))?;
     let (input, number) = many(input)?;
+    // A name `eye` of s5 for words 2 to 7 is, octet by octet, 3 0 0 0 `e` `y` `e`, `s` 5, 2 0 0 0, 8 0 0 0.
     let (input, names) = list(input, number, |input| (text, le_u8, le_u8, le_u32, le_u32).parse(input))?;
     let (input, number) = many(input)?;
     let (input, holds) = list(input, number, |input| (le_u8, le_u8, text, le_u32, le_u32).parse(input))?;
@@ -312,6 +314,7 @@ fn naming(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
         let name = format!("{}{number}", char::from(file));
         isa::parse_register(&name).ok_or("a register does not exist")
     };
+    // Check what the parts say, and put them into a program
     let build = || {
         let mut program = Program::default();
         for (name, bits) in formats {
@@ -319,6 +322,7 @@ fn naming(input: &[u8]) -> ObjectPiece<'_, Result<Program, &'static str>> {
             if i64::from(bits) > FRACTION_BITS {
                 return Err("a format has too many fraction bits");
             }
+            // Names in order come once each, and one program has one file.
             if program.formats.last_key_value().is_some_and(|(last, _)| *last >= name) {
                 return Err("formats are out of order");
             }
@@ -366,8 +370,10 @@ fn origins(input: &[u8]) -> ObjectPiece<'_, (Vec<Line>, Vec<ComputedInstruction>
 fn consistent(program: &Program) -> Result<(), &'static str> {
     let words = program.words.len();
     let holds = [
+        // Sizes, as the assembler limits them
         (words <= WORDS && program.buffer.len() <= BUFFER, "it is larger than any program"),
         (program.sources.len() <= SOURCES && program.regions.len() <= REGIONS, "it has too many files or regions"),
+        // A program without words has its entry at 0.
         ((program.entry as usize) < words.max(1), "the entry is outside of the code"),
         (
             (program.lines.iter().chain(&program.call_lines))
@@ -380,11 +386,13 @@ fn consistent(program: &Program) -> Result<(), &'static str> {
             program.region_of.iter().flatten().all(|&region| usize::from(region) < program.regions.len()),
             "a word is of no region",
         ),
+        // A region comes after the one around it, so that no chain of surroundings is a circle.
         (
             (program.regions.iter().enumerate())
                 .all(|(index, region)| region.parent.is_none_or(|parent| usize::from(parent) < index)),
             "a region is around itself",
         ),
+        // Stretches of words, formats and fields lie in what they belong to.
         (
             (program.register_names.iter().map(|named| &named.words))
                 .chain(program.holds.iter().map(|held| &held.words))

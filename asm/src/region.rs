@@ -77,6 +77,7 @@ impl Assembler<'_> {
         match self.regions.last() {
             Some(open) if open.is_function == is_function => {
                 self.close_innermost();
+                // A name behind it is for readers, and is not compared.
                 if !cursor.is_at_end() {
                     cursor.name("the end of the line")?;
                 }
@@ -90,6 +91,7 @@ impl Assembler<'_> {
                     "closes what is not innermost",
                 )
                 .also(Some(open.at), "the innermost is this");
+                // Close everything up to the one that is meant, so that one forgotten end makes one message.
                 if let Some(place) = self.regions.iter().rposition(|open| open.is_function == is_function) {
                     while self.regions.len() > place {
                         self.close_innermost();

@@ -159,6 +159,7 @@ pub(crate) fn tokens(line: &str) -> (Vec<Token>, Option<Unreadable>) {
 
 fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
     let first = rest.chars().next().unwrap_or(' ');
+    // A text is marked up to the end of its line, since nobody knows where it should have ended; all else where it begins.
     match first {
         '"' => Unreadable {
             code: explain::TEXT,
@@ -184,6 +185,7 @@ fn unreadable(rest: &str, start: usize, line_end: usize) -> Unreadable {
             },
             label: match first {
                 '\\' => "only before a parameter of a macro",
+                // Letters such as `é` look as if names could have them.
                 _ if first.is_alphanumeric() => "names have the letters a to z",
                 _ => "unexpected character",
             },

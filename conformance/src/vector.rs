@@ -181,6 +181,7 @@ fn vector(line: &VectorLine, number: usize) -> Result<TestVector, Box<Diagnostic
     let operation = fields[0].word("operation", &Operation::ALL.map(Operation::name), |name| {
         Operation::ALL.into_iter().find(|operation| operation.name() == name)
     })?;
+    // Read the operands, four columns each; those that the operation does not have are `-`
     let mut operands = Vec::new();
     for (at, operand) in fields[1..13].chunks_exact(4).enumerate() {
         if at < operation.operands() {
@@ -192,9 +193,11 @@ fn vector(line: &VectorLine, number: usize) -> Result<TestVector, Box<Diagnostic
         }
     }
     let format = format(&fields[13..16])?;
+    // SystemC writes its modes SC_RND and SC_SAT.
     let mode = |text: &str| text.strip_prefix("SC_").unwrap_or(text).to_owned();
     let roundings: Vec<&str> = Quantization::ALL.iter().map(|mode| mode.name()).collect();
     let quantization = fields[16].word("rounding mode", &roundings, |text| Quantization::from_name(&mode(text)))?;
+    // The number of saturated bits stands behind the overflow mode, but is a part of it.
     let saturated = if fields[18].is_absent() { 0 } else { fields[18].number((0, 64))? as u32 };
     let overflows: Vec<&str> = Overflow::ALL.iter().map(|mode| mode.name()).collect();
     let overflow = fields[17].word("overflow mode", &overflows, |text| {

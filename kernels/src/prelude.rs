@@ -144,6 +144,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
     let constants = Constants::new(image);
     let Constants { formats, edge_shift, t_shift, offset, literal_offset, never, missed, most_steps, .. } = constants;
     let mut entries = vec![
+        // The layout, the shifts between formats, and numbers that stand for no distance
         ("WORD", formats.word.into()),
         ("LAYOUT_REPORT", (image.layout == Layout::Report).into()),
         ("LAYOUT_PACKET", (image.layout == Layout::Packet).into()),
@@ -159,6 +160,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("NEVER", never.into()),
         ("MISSED", missed.into()),
         ("MOST_STEPS", most_steps.into()),
+        // The tree, and the pieces in which it is fetched
         ("LARGEST_PACKET", image.tree.most_triangles as i64),
         ("PACKET_AT_ONCE", PACKET_AT_ONCE.into()),
         ("PACKET_OCTETS", packet_octets().into()),
@@ -168,6 +170,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("TRAP_STUCK", TRAP_STUCK.into()),
         ("DEPTH", image.tree.depth.into()),
         ("ROOT", image.root.into()),
+        // The map of global memory, and what lies in the buffer from the start
         ("FRAME", image.region(MemoryKind::Frame).start.into()),
         ("MATERIALS_BUS", image.region(MemoryKind::Materials).start.into()),
         ("MATERIALS_LOCAL", is_local(image, MemoryKind::Materials).into()),
@@ -177,6 +180,7 @@ fn constants(image: &MemoryImage, features: &SceneFeatures, crop: &Crop) -> Vec<
         ("HAS_FAR_LIGHTS", image.has_far_lights().into()),
         ("REFERENCES_AT_ONCE", REFERENCES_AT_ONCE.into()),
         ("AMBIENT", image.ambient.into()),
+        // What the scene asks for, and the part of the picture that is drawn
         ("BOUNCES", features.bounces.into()),
         ("CUTOFF", features.least_weight().into()),
         ("HAS_TREE", features.has_tree().into()),
@@ -332,6 +336,7 @@ fn camera(text: &mut String, image: &MemoryImage) {
             words(direction)
         ),
         RawCamera::Perspective { start, extra, base, column, row } => {
+            // The way to a pixel, by axis: from pixel (0, 0), of a column, of a row
             for k in 0..3 {
                 let label = if k == 0 { "CAMERA_TOWARDS: " } else { "    " };
                 let _ = writeln!(text, "{label}.wide {}", wides(&[base[k], column[k], row[k]]));
@@ -340,6 +345,7 @@ fn camera(text: &mut String, image: &MemoryImage) {
                 RayStart::Eye(eye) => (eye, 0),
                 RayStart::Faces { shift, .. } => ([0; 3], shift),
             };
+            // A ray that misses the box starts behind it, as in the twin.
             let beyond = [image.bounds.low.map(|x| x - 2), image.bounds.high.map(|x| x + 2)];
             let _ = writeln!(
                 text,
@@ -349,6 +355,7 @@ fn camera(text: &mut String, image: &MemoryImage) {
                 words(&beyond[1])
             );
             text.push_str("CAMERA_FACES_AT:\n");
+            // The order is that of the fields of `face` and `across` above.
             for EntryFace { axis, at, slope, across } in start.faces() {
                 let _ = writeln!(text, "    .wide {}", function(slope));
                 for part in across {

@@ -43,6 +43,7 @@ mod tests {
 
     #[test]
     fn names_are_the_same_as_when_all_slips_are_counted() {
+        // Letters beyond ASCII, in either case, the same ones in another order, and none at all
         let known = [
             "vdot",
             "vadd",
@@ -74,9 +75,11 @@ mod tests {
             "é",
             "x",
             "",
+            // The Kelvin sign, whose small letter is `k`
             "\u{212a}",
         ];
         for name in names {
+            // Count the slips to every name, whereas `nearest` leaves out those that are surely too far away
             let allowed = (name.chars().count() / 3).max(1);
             let slips = |word: &str| strsim::damerau_levenshtein(&name.to_lowercase(), &word.to_lowercase());
             let found = known.iter().copied().filter(|word| slips(word) <= allowed);

@@ -76,6 +76,7 @@ impl Scene {
         let mut messages = Vec::new();
         let mut refuse = |message: Option<String>| messages.extend(message.map(Diagnostic::error));
         let (vertices, materials) = (self.vertices.len(), self.materials.len());
+        // Numbers of vertices and materials: each must exist
         refuse(self.triangles.iter().enumerate().find_map(|(k, t)| {
             let vertex = t.vertices.into_iter().find(|&v| v as usize >= vertices)?;
             Some(format!("triangle {k} has vertex {vertex}, but there are {vertices} vertices, counted from 0"))
@@ -85,6 +86,7 @@ impl Scene {
             (!is_known)
                 .then(|| format!("triangle {k} has material {}, but there are {materials}, counted from 0", t.material))
         }));
+        // Positions and lights: finite, and no light takes light away
         refuse(
             self.vertices
                 .iter()
@@ -101,6 +103,7 @@ impl Scene {
                 .position(|l| l.colour.iter().any(|&x| x < 0.0))
                 .map(|k| format!("light {k} has a negative colour: {:?}", self.lights[k].colour)),
         );
+        // Coefficients: NaN is in no range, so it is refused with all that is outside of 0 to 1.
         refuse(self.materials.iter().enumerate().find_map(|(k, m)| {
             let named = [("reflection", m.reflection), ("intensity", m.intensity)].into_iter();
             let all = named.chain(m.colour.map(|x| ("colour", x)));

@@ -44,6 +44,7 @@ pub fn figure(
     let scenes = distinct(measured.iter().map(|one| one.scene.as_str()));
     let machines = distinct(measured.iter().map(|one| one.machine.as_str()));
     let kinds = distinct(measured.iter().map(|one| one.kind.as_str()));
+    // Draw a plot for each scene, or a single one over all of them
     let plots: Vec<Plot> = match axes.over {
         OverScenes::Each => scenes
             .iter()
@@ -66,6 +67,7 @@ pub fn figure(
         "Against double precision. Numbers are bits of a word. Nothing to the left of the front is {} it.",
         if axes.error.is_better_above() { "higher than" } else { "lower than" }
     );
+    // Means and worsts over scenes have no bars, so there is nothing to explain.
     if shifts > 1 && axes.over == OverScenes::Each {
         note += &format!(" Bars reach over {shifts} places of the samples.");
     }

@@ -120,6 +120,7 @@ fn overall_table(overall: &[OverallVariant], cost: CostAxis, error: ErrorAxis) -
         "error, worst",
         "dominated by",
     ])];
+    // Write numbers with as many digits as their axes need
     let costs = |one: f64| if cost == CostAxis::Seconds { format!("{one:.3e}") } else { costs(one) };
     let errors = |one: f64| match error {
         ErrorAxis::Psnr | ErrorAxis::Others => format!("{one:.1}"),
@@ -128,6 +129,7 @@ fn overall_table(overall: &[OverallVariant], cost: CostAxis, error: ErrorAxis) -
         ErrorAxis::Ssim => format!("{one:.4}"),
     };
     for one in overall {
+        // Front of the variant: `mw` is on both, ` w` on that of the worst scenes alone.
         let mark = |by: &Option<String>, mark: &'static str| if by.is_none() { mark } else { " " };
         let marks = format!("{}{}", mark(&one.mean_dominated_by, "m"), mark(&one.worst_dominated_by, "w"));
         rows.push(vec![

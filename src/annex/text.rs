@@ -107,6 +107,7 @@ fn rows(annexes: &Annexes, style: Style) -> String {
     let head = ["row", "", "calls"].into_iter().chain(COLUMNS).chain(["sum", "least", "most", "free"]);
     let mut cells: Vec<Vec<String>> = vec![head.map(str::to_owned).collect()];
     for result in &annexes.rows {
+        // A class that a row does not have stays blank.
         let numbers = |of: &dyn Fn(&str) -> Option<String>| {
             COLUMNS.map(|class| of(class).unwrap_or_default()).into_iter().collect::<Vec<_>>()
         };
@@ -117,6 +118,7 @@ fn rows(annexes: &Annexes, style: Style) -> String {
         let none = String::new;
         let whole = |of: &BTreeMap<&'static str, u64>| numbers(&|class| of.get(class).map(|&count| grouped(count)));
         let free = |by_class: &BTreeMap<&'static str, f64>| decimal(by_class.values().sum());
+        // Set what was counted under the same assumptions below what is printed, and the difference below both
         add(
             result.id,
             "printed",
@@ -129,6 +131,7 @@ fn rows(annexes: &Annexes, style: Style) -> String {
         let difference = result.assumed_total as i64 - result.printed_total as i64;
         let by_class = numbers(&|class| result.difference.get(class).map(|&n| signed(n)));
         add("", "difference", none(), by_class, [signed(difference), none(), none(), none()]);
+        // Add the mean of a call on each scene; its sum leaves out `mem`, as the printed one does
         for scene in &result.scenes {
             let mean = numbers(&|class| scene.mean.get(class).map(|&mean| decimal(mean)));
             let sum = ELEMENTARY.iter().filter_map(|class| scene.mean.get(class.name())).sum();
@@ -173,12 +176,14 @@ fn term_list(result: &RowResult) -> String {
 fn figures(annexes: &Annexes, style: Style) -> String {
     let scenes = &annexes.derived.scenes;
     let mut cells = vec![row(["figure", "printed", "counted", "unit"])];
+    // The results are sorted by their ids, so the order is that of the printed figures.
     for figure in printed::figures().iter().filter_map(|figure| annexes.derived.figures.get(figure.id.as_str())) {
         let printed = figure.printed.map(decimal).unwrap_or_default();
         cells.push(vec![figure.label.to_owned(), printed, decimal(figure.counted), figure.unit.to_owned()]);
     }
     let mut text =
         style.heading("What follows: the counted figures are those of the pixel of 22 nodes") + &style.table(cells);
+    // Give the figures of a pixel and a frame of each scene
     if !scenes.is_empty() {
         let head = [
             "scene",

@@ -65,8 +65,10 @@ impl JobArguments {
         let JobArguments { scene, mesh, view, kernels, machine, numbers, effort } = self;
         let shown = |path: &Path| path.display().to_string();
         let file = |path: &PathBuf| FileSettings { file: shown(path), hash: None };
+        // A pixel is a crop of 1 x 1, so that settings need one key for both.
         let pixel = view.pixel.map(|[column, row]| [column, row, 1, 1]);
         let crop = view.crop.map(|Crop { column, row, width, height }| [column, row, width, height]);
+        // Hashes stay open, since scene and kernels have not been read yet.
         let settings = Settings {
             scene: SceneSettings { name: scene.clone(), mesh: mesh.as_deref().map(shown), hash: None },
             view: ViewSettings {
@@ -101,6 +103,7 @@ impl JobArguments {
             engine: machine.engine,
             results: ResultSettings::default(),
         };
+        // `--set` comes last, since it changes what other options have chosen.
         settings.with(&machine.keys.sets.sets)
     }
 

@@ -5,9 +5,11 @@ use crate::chart::{AxisKind, ChartAxis, ChartFigure, ChartLine, ChartPoint, Char
 
 /// The chart of measurements, with pictures of a size and host threads.
 pub fn figure(measured: &[BenchResult], (width, height): (u32, u32), threads: u32) -> ChartFigure {
+    // Name the places along the axis; runners of one place follow each other, so comparing neighbours is enough
     let place = |one: &BenchResult| format!("{} ({})", one.scene, one.profile);
     let mut places: Vec<String> = measured.iter().map(place).collect();
     places.dedup();
+    // Draw the points of each runner, without lines: places have no order
     let series = Runner::ALL.into_iter().enumerate().map(|(number, runner)| {
         let of_runner = measured.iter().filter(|one| one.runner == runner);
         let points = of_runner.filter_map(|one| {

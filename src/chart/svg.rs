@@ -12,6 +12,7 @@ pub fn text(canvas: &Canvas, title: &str) -> String {
          role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', sans-serif\">\n<title>{}</title>\n",
         escaped(title)
     );
+    // Writing to a text cannot fail, so the results are dropped.
     for shape in &canvas.shapes {
         let _ = match shape {
             DrawnShape::Line { points, colour, width, dashes } => {
@@ -30,6 +31,7 @@ pub fn text(canvas: &Canvas, title: &str) -> String {
             }
             DrawnShape::Area { corners, colour, tip } => {
                 let area = format!("<path d=\"{}Z\" fill=\"{}\"", path(corners), hexadecimal(*colour));
+                // A browser shows the title of a shape under the cursor.
                 match tip.as_str() {
                     "" => writeln!(svg, "{area}/>"),
                     tip => writeln!(svg, "{area}><title>{}</title></path>", escaped(tip)),

@@ -44,6 +44,7 @@ pub fn lines(job: &Job, drawing: &Drawing) -> Vec<LineClocks> {
     let kinds: Vec<&str> = frame.kinds.iter().map(|kind| kind.kind.as_str()).collect();
     let clocks = frame.profile.as_ref().and_then(|profile| profile.clocks.as_ref());
     let words = clocks.map(|clocks| clocks.words()).unwrap_or_default();
+    // Add up the words of each line, sorted by source and line
     let mut found: BTreeMap<(u16, u32), (LineClocks, PlaceUse)> = BTreeMap::new();
     for (pc, line) in (0u32..).zip(&program.lines) {
         let word = frame.tally.word(&code, pc);
@@ -73,6 +74,7 @@ pub fn lines(job: &Job, drawing: &Drawing) -> Vec<LineClocks> {
             place.add(more);
         }
     }
+    // Share the waits out among the kinds of data, now that all words of each line are in
     let whole = |(row, place): (LineClocks, PlaceUse)| LineClocks {
         waiting: place.work.waiting.0,
         transfers: place.work.transfers,

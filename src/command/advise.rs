@@ -54,6 +54,7 @@ pub struct AdviseArguments {
 
 /// Runs all changes, writes and prints.
 pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    // Refuse what cannot be written or read before some eighty machines run
     let targets: Vec<&Path> = [&arguments.csv, &arguments.study].into_iter().flatten().map(PathBuf::as_path).collect();
     let is_taken = files::takes_output(targets.iter().copied(), arguments.json).map_err(Failure::usage)?;
     files::check_distinct(targets.iter().copied()).map_err(Failure::usage)?;
@@ -65,6 +66,7 @@ pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> R
     let job = arguments.job.job_of(&settings)?;
     files::check_spared(targets, &job.files).map_err(Failure::usage)?;
     terminal.show(&job.warnings);
+    // Try all changes; how many there are shows as they run, since pairs depend on what the changes bring
     let bar = terminal.progress("machines", 1);
     let store = arguments.recordings.store()?;
     let advice = advise::advise(&job, store.as_ref(), &mut |done, total| {
@@ -72,8 +74,10 @@ pub(super) fn execute(arguments: &AdviseArguments, terminal: &mut Terminal) -> R
         bar.set_position(done);
     });
     bar.finish_and_clear();
+    // Notes on recordings come first, since they may say why the advice failed.
     tell_notes(store.as_ref(), terminal);
     let advice = advice?;
+    // Write the files, and print what does not go there
     let mut files: Vec<(&Path, String)> = Vec::new();
     files.extend(arguments.csv.as_deref().map(|path| (path, advise::csv(&advice))));
     if let Some(path) = arguments.study.as_deref() {

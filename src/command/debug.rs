@@ -210,8 +210,10 @@ fn script(door: &mut Door, path: &Path, terminal: &mut Terminal) -> Result<Exit,
                 }
             }
             Err(message) => {
+                // Point at the command in its file: 2 blanks in a line that begins at octet 120 put it at 122.
                 let at = start + (line.len() - line.trim_start().len());
                 let place = messages::Place::new(&source, at..at + text.len());
+                // Where a command is typed, the hint is in the same line; in a report it has a line of its own.
                 let (message, hint) = match message.rsplit_once(": did you mean") {
                     Some((message, hint)) => (message.to_owned(), Some(format!("did you mean{hint}"))),
                     None => (message, None),

@@ -68,6 +68,7 @@ fn steps(text: &str) -> Result<Range<u64>, String> {
 
 /// Explains, writes and prints.
 pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
+    // Find the one pixel, by its place, --pixel or --crop
     let mut settings = arguments.job.settings()?;
     if let Some([column, row]) = arguments.place {
         settings.view.crop = Some([column, row, 1, 1]);
@@ -82,6 +83,7 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
     files::check_spared(page, &job.files).map_err(Failure::usage)?;
     page.map(files::check_target).transpose()?;
     terminal.show(&job.warnings);
+    // Run the pixel on one core, and explain it from the registers
     let (load, image) = Load::picture(&job)?;
     terminal.show(&load.build.warnings);
     let crop = load.build.crop;
@@ -97,6 +99,7 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
             let message = format!("the pixel is over after {} instructions", grouped(explanation.instructions));
             return Err(Failure::usage(Diagnostic::error(message).hint("choose earlier steps")));
         }
+        // Run it once more for the page: only the page shows errors, and shadows slow each step.
         target.has_shadow = true;
         let replay = PixelReplay::record(&mut target.stepper()?, window, explanation.instructions);
         files::write_all(&[(path, pixel::page(&explanation, &replay))])?;
@@ -110,6 +113,7 @@ pub(super) fn execute(arguments: &ExplainPixelArguments, terminal: &mut Terminal
         (false, true) => terminal.print(&result::json(&WithSettings::new(&explanation, Settings::of(&job))))?,
         (false, false) => terminal.tell(&explanation.text())?,
     }
+    // A trap is explained as far as the pixel came, and is an error all the same.
     match trap {
         Some(trap) => Err(Failure::Message { exit: Exit::of_trap(&trap), report: trap.diagnostic().into() }),
         None => Ok(Exit::Done),

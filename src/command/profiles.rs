@@ -73,6 +73,7 @@ pub(super) fn execute(
         &(machine.name.clone(), machine.config.clone()),
         &|| bar.inc(1),
     );
+    // The bar goes before anything else is written, and so before an error.
     bar.finish_and_clear();
     let profiles = profiles?;
     let settings = given.clone().with_machine(&machine).with_scenes(&scene_hashes(&arguments.scenes, &scenes));
@@ -84,6 +85,7 @@ pub(super) fn execute(
 }
 
 fn text(profiles: &Profiles) -> String {
+    // Give the figures of each picture
     let mut pictures = vec![row([
         "scene",
         "profile",
@@ -110,6 +112,7 @@ fn text(profiles: &Profiles) -> String {
             short(picture.off_pixels),
         ]
     }));
+    // Divide them by those of the profile that each is compared with; a ratio without a scene is the mean of all
     let mut ratios = vec![row(["scene", "profile", "instructions", "search", "operations", "octets", "clocks"])];
     ratios.extend(profiles.ratios.iter().map(|ratio| {
         let Ratio { instructions, search_instructions, operations, octets, clocks, .. } = *ratio;

@@ -46,6 +46,7 @@ pub struct ReportArguments {
 /// Draws, gathers and writes.
 pub(super) fn execute(arguments: &ReportArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut job = arguments.job.job()?;
+    // The page shows the bus over time, which is not recorded otherwise.
     job.detail = Detail::Course;
     let output = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.html", result_name(&job.scene))));
     files::check_target(&output)?;
@@ -54,6 +55,7 @@ pub(super) fn execute(arguments: &ReportArguments, terminal: &mut Terminal) -> R
     let drawing = render::draw(&job, Comparison::Reference, terminal)?;
     terminal.show(&drawing.warnings);
     let result = Render::new(&job, &drawing);
+    // Gather advice and annexes, unless they are left out
     let advice = match arguments.no_advice {
         true => None,
         false => {
@@ -75,6 +77,7 @@ pub(super) fn execute(arguments: &ReportArguments, terminal: &mut Terminal) -> R
     };
     let page = report::page(&job, &drawing, &result, advice.as_ref(), annexes.as_ref());
     files::write_all(&[(output.as_path(), page)])?;
+    // A name that nobody gave has to be told.
     if arguments.output.is_none() {
         terminal.say(&format!("page: {}", output.display()));
     }

@@ -61,6 +61,7 @@ impl<'a> Door<'a> {
     }
 
     fn carry_out(&mut self, action: CommandAction, rest: &str) -> Result<String, String> {
+        // Refuse words that would be ignored, such as the 5 in `continue 5`
         let takes_nothing = matches!(
             action,
             CommandAction::Stops
@@ -380,6 +381,7 @@ impl<'a> Door<'a> {
         }
         let record = trial::tried(&self.session, rest)?;
         let mut text = format!("{}\n", record.text);
+        // Nothing of the trial stays, so the registers still hold what was there before.
         for register in &record.writes {
             let before = register_of(&self.session.target.program, &register.register, record.pc).ok();
             let before =
@@ -392,6 +394,7 @@ impl<'a> Door<'a> {
                 before.unwrap_or_default()
             );
         }
+        // Say how it ended, what it moved and what it lost
         if let Some(exit) = &record.exit {
             let _ = writeln!(text, "  exit {exit}");
         }

@@ -13,6 +13,7 @@ use crate::arguments::numbered;
 /// A function, a file or a line that the program does not have.
 pub fn words(program: &Program, text: &str, here: u32) -> Result<Vec<u32>, String> {
     let text = text.trim();
+    // Find a word by its number, such as *17
     if let Some(word) = text.strip_prefix('*') {
         let word = numbered(word)?;
         return match u32::try_from(word).ok().filter(|&word| (word as usize) < program.words.len()) {
@@ -20,11 +21,13 @@ pub fn words(program: &Program, text: &str, here: u32) -> Result<Vec<u32>, Strin
             None => Err(format!("the program has words 0 to {}, not {word}", program.words.len().saturating_sub(1))),
         };
     }
+    // Find a line of the file that the core is in, such as 42
     if text.bytes().all(|digit| digit.is_ascii_digit()) && !text.is_empty() {
         let source = program.lines.get(here as usize).or(program.lines.first()).map_or(0, |line| line.source);
         return lines(program, &[source], text.parse().unwrap_or(0))
             .ok_or_else(|| format!("no instruction stands at line {text}"));
     }
+    // Find a line of a file, such as walk.s:42; the last colon counts, since paths may have others
     if let Some((file, line)) = text.rsplit_once(':')
         && let Ok(number) = line.trim().parse()
     {
@@ -36,6 +39,7 @@ pub fn words(program: &Program, text: &str, here: u32) -> Result<Vec<u32>, Strin
         }
         return lines(program, &sources, number).ok_or_else(|| format!("no instruction stands at {text}"));
     }
+    // Find a function; other symbols, such as constants, are no places
     let functions = || program.regions.iter().filter(|region| region.is_function).map(|region| region.name.as_str());
     let address = program.symbols.get(text).copied().and_then(|at| u32::try_from(at).ok());
     match (functions().any(|name| name == text), address) {

@@ -136,6 +136,7 @@ impl<'d, 'a> DebugScreen<'d, 'a> {
     /// Draws the screen.
     pub fn draw(&self, frame: &mut Frame) {
         let area = frame.area();
+        // Divide the screen from top to bottom: title, views, answer, input, keys
         let rows = ANSWER.max(area.height / 4);
         let parts = Layout::vertical([
             Constraint::Length(1),
@@ -147,6 +148,7 @@ impl<'d, 'a> DebugScreen<'d, 'a> {
         let [title, middle, answer, input, hint] = parts.areas(area);
         frame.render_widget(Clear, area);
         frame.render_widget(Line::from(self.title()).style(Style::new().add_modifier(Modifier::REVERSED)), title);
+        // A narrow screen has room for source and registers alone.
         if area.width >= WIDE {
             let [source, code, registers] =
                 Layout::horizontal([Constraint::Fill(4), Constraint::Fill(4), Constraint::Fill(4)]).areas(middle);
@@ -164,6 +166,7 @@ impl<'d, 'a> DebugScreen<'d, 'a> {
         self.answer(frame, answer);
         frame.render_widget(Line::from(format!("> {}", self.input)), input);
         frame.render_widget(Line::from(HINT).style(Style::new().add_modifier(Modifier::DIM)), hint);
+        // Put the cursor behind `> ` and what is typed, at most at the right edge
         let column = 2 + self.input.chars().count() as u16;
         frame.set_cursor_position((input.x + column.min(input.width.saturating_sub(1)), input.y));
     }

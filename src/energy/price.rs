@@ -119,6 +119,7 @@ impl<'c> Pricing<'c> {
                 let step = |at: usize| sub.figures[at] + cmp.figures[at];
                 let sources = format!("sub: {}; cmp: {}", sub.source, cmp.source);
                 match dimension {
+                    // With 100 aJ for a subtraction and 60 aJ for a comparison, a word of 32 bits takes 32 * 160 = 5,120 aJ.
                     Dimension::Energy => {
                         let steps = |width: Width| u64::from(width.bits(word)) * step(width as usize);
                         let source = format!(
@@ -126,6 +127,7 @@ impl<'c> Pricing<'c> {
                         );
                         made(Width::ALL.map(steps), "b (sub + cmp)", source)
                     }
+                    // All steps share one unit, so its area does not grow with their number.
                     Dimension::Area => {
                         let source = format!(
                             "derived: no published line; a subtractor and a comparator, used a step a bit ({sources})"
@@ -134,6 +136,7 @@ impl<'c> Pricing<'c> {
                     }
                 }
             }
+            // Addresses are integers of 32 bits whatever the word, so all widths have one price.
             ("address", Dimension::Energy) => {
                 let add = self.price("add")?;
                 let source = format!("derived: an addition of {INTEGER_BITS} bits ({})", add.source);

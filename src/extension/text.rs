@@ -27,6 +27,7 @@ impl ExtensionResult {
     fn rows(&self, has_energy: bool) -> Vec<Vec<String>> {
         let variants = [&self.without, &self.with, &self.expanded];
         let mut rows = vec![row(["", "without", "with", "change", "expanded", "change"])];
+        // A figure that is 0 in all three is left out, such as a class of operations that no kernel has.
         let mut add = |name: &str, value: &dyn Fn(&VariantResult) -> u64| {
             let [without, with, expanded] = variants.map(value);
             if [without, with, expanded] != [0; 3] {
@@ -49,10 +50,12 @@ impl ExtensionResult {
         add("octets on the bus", &|variant| variant.octets);
         add(&format!("clocks on {}", count(self.cores.into(), "core", "cores")), &|variant| variant.clocks);
         add("code in words", &|variant| variant.words);
+        // Say how often each instruction ran, which only pictures with it can
         for (name, &count) in self.instructions.iter().zip(&self.executions) {
             let none = String::new;
             rows.push(vec![format!("times `{name}` ran"), none(), grouped(count), none(), none(), none()]);
         }
+        // Give energy and error, which are no whole numbers
         for (name, figure) in ENERGIES.iter().filter(|_| has_energy) {
             let [without, with, expanded] = variants.map(|variant| figure(&variant.energy));
             let change = |to: f64| {

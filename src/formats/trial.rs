@@ -163,6 +163,7 @@ impl<'a> FormatTrials<'a> {
 
     fn scene(&mut self, scene: usize, choice: &FormatChoice) -> Result<TrialFigures, Failure> {
         let mut figures = Vec::new();
+        // Draw the scene at each shift; formats that it does not fit are an answer, and no reason to end the search
         for shift in 0..self.scenes[scene].pictures.len() {
             match self.picture(scene, shift, choice) {
                 Ok(figure) => figures.push(figure),
@@ -181,6 +182,7 @@ impl<'a> FormatTrials<'a> {
                 Err(failure) => return Err(failure),
             }
         }
+        // Pool errors over the shifts, and give costs by the pixel
         let errors: Vec<PictureSquare> = figures.iter().map(|figure| figure.error).collect();
         let error = PooledError::of(&errors);
         let pixels = figures.iter().map(|figure| figure.pixels).sum::<u64>().max(1) as f64;

@@ -218,10 +218,12 @@ impl InjectResult {
     ) -> InjectResult {
         let (totals, limits, crop) = (golden.totals(), golden.limits(), job.crop());
         let mut kinds = Vec::new();
+        // Judge each structure by its own injections
         for &kind in &campaign.kinds {
             let rows: Vec<&InjectionRow> = rows.iter().filter(|row| row.kind == kind.name()).collect();
             kinds.push(KindVulnerability::new(kind, campaign.protection(kind), &rows, costs));
         }
+        // Rank those that were hit; the sort is stable, so equal shares stay in the order of the kinds
         let mut worst: Vec<&KindVulnerability> = kinds.iter().filter(|kind| kind.injections != 0).collect();
         worst.sort_by(|a, b| b.vulnerability.share.total_cmp(&a.vulnerability.share));
         let most_vulnerable = worst.iter().take(MOST_NAMED).map(|kind| kind.kind.clone()).collect();

@@ -210,6 +210,7 @@ pub fn one(injection: &InjectionRow) -> String {
         format!("function    {}", or_dash(&injection.function)),
         format!("format      {}", or_dash(&injection.format)),
     ];
+    // Add what only some injections have: bits of a format, wrong pixels, a trap, a hang
     if !format_bits.is_empty() {
         lines.push(format!("its bits    {}", format_bits.join(", ")));
     }

@@ -92,6 +92,7 @@ fn chapters(isa: &Isa) -> String {
     let _ = writeln!(text, "## Registers and numbers\n\n{REGISTERS}");
     let _ = writeln!(text, "{CONVENTIONS}");
     let _ = writeln!(text, "## How to read an instruction\n\n{OPERANDS}");
+    // Make tables of the kinds of operands and the classes of operations
     text.push_str("| kind | registers | least to largest number of its field |\n|---|---|---|\n");
     for kind in Kind::ALL {
         let registers = match kind.register_file() {
@@ -112,9 +113,11 @@ fn chapters(isa: &Isa) -> String {
     for class in Class::ALL {
         let _ = writeln!(text, "| `{}` | {} |", class.name(), class.doc().trim());
     }
+    // Write a chapter for each room of the table
     for room in ROOMS {
         chapter(&mut text, room, isa);
     }
+    // Instructions of an extension are in none of these rooms.
     let extensions: Vec<&InstructionDef> =
         rows(isa).filter(|row| ROOMS.iter().all(|room| room.name != row.room)).collect();
     if !extensions.is_empty() {

@@ -63,6 +63,7 @@ fn instruction(row: &InstructionDef) -> String {
         text.push_str("\noperands:\n");
     }
     for operand in row.operands.iter() {
+        // Immediates have a range; the kind of a register says by itself which there are.
         let range = match operand.kind.width() {
             Some(width) if operand.kind.register_file().is_none() => {
                 let (least, most) = operand.kind.range(width);
@@ -75,6 +76,7 @@ fn instruction(row: &InstructionDef) -> String {
     }
     text.push_str("\nexits, each with what it costs:\n");
     for outcome in row.outcomes.iter() {
+        // The exit is named in a column of its own, so of `Hit(add 3)` only `add 3` is left.
         let written = outcome.text();
         let cost = written.strip_prefix(&*outcome.name).unwrap_or(&written).trim_matches(['(', ')']);
         let _ = writeln!(text, "  {:<16}  {}", outcome.name, if cost.is_empty() { "nothing" } else { cost });

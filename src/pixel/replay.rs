@@ -106,18 +106,21 @@ impl PixelReplay {
         let (mut seen, mut jumps, mut values): (BTreeMap<u32, WordText>, _, _) = (BTreeMap::new(), vec![], vec![]);
         let (mut errors, mut transfers, mut losses) = (Vec::new(), Vec::new(), Vec::new());
         let mut expected = None;
+        // Step through the window; what is the same each time that a word runs is kept once
         while stepper.end().is_none() && stepper.steps() < end && values.len() < MOST_WORDS {
             let pc = stepper.code.word(stepper.state().pc);
             let written = instruction::registers(&stepper.code, pc, true);
             let at = stepper.steps() - first;
             let Some(executed) = stepper.step() else { break };
             seen.entry(pc).or_insert_with(|| word_text(stepper, pc, &written));
+            // Words mostly follow each other, so jumps are enough: 7 8 9 4 5 from step 0 on are the pairs 0 7 and 3 4.
             if expected != Some(pc) {
                 jumps.extend([at as i32, pc as i32]);
             }
             expected = Some(pc + 1);
             for register in written {
                 let written = words(register, RegisterContents::of(&stepper.state().registers, register));
+                // As many errors as words, so that a place in one list is a place in the other.
                 if let Some(known) = register_errors(stepper, register) {
                     errors.extend(known.iter().take(written.len()).map(|&error| error as f32));
                 }

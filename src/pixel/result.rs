@@ -296,6 +296,7 @@ impl Explainer<'_> {
             step: raw.map(|raw| raw.steps.start),
             end: raw.map(|raw| raw.steps.end),
             weight: scales.number(formats.weight, raw.map(|raw| raw.weight), other.map(|other| other.weight)),
+            // A camera ray past the scene's box has no origin that means anything.
             origin: scales.place(
                 raw.filter(|raw| raw.is_searched || raw.level > 0).map(|raw| raw.origin),
                 other.map(|other| other.origin),
@@ -310,6 +311,7 @@ impl Explainer<'_> {
             hit: self.hit(raw, other.and_then(|other| other.hit)),
             lights: self.lights(raw, other),
             local: colour(raw.and_then(|raw| raw.seen), other.map(|other| other.colour)),
+            // The machine keeps sums alone, so its part is the difference of two.
             added: colour(
                 sums.map(|[after, before]| [0, 1, 2].map(|k| after[k].wrapping_sub(before[k]))),
                 other.map(|other| scale(other.colour, other.weight)),
@@ -323,9 +325,11 @@ impl Explainer<'_> {
         let hit: Option<RawHit> = raw.and_then(|raw| raw.hit);
         let surface = raw.and_then(|raw| raw.surface);
         let triangle = hit.map(|hit| hit.triangle);
+        // Name the machine's triangle, or the reference's where the machine has none
         let shown = triangle.or(other.map(|other| other.triangle))?;
         let number = self.job.scene.triangles.get(shown as usize)?.material;
         let material = self.job.scene.materials.get(number as usize)?;
+        // Registers do not keep the weights, so they are computed from the ray and the triangle as it is stored.
         let met = raw.zip(triangle).and_then(|(raw, triangle)| self.weights([raw.origin, raw.direction], triangle));
         let weight = |k: usize, reference: Option<f64>| ComparedNumber::new(None, met.map(|met| met[k]), reference);
         Some(ExplainedHit {
@@ -362,6 +366,7 @@ impl Explainer<'_> {
 
     fn lights(&self, raw: Option<&RawRay>, other: Option<&ReferenceRay>) -> Vec<ExplainedLight> {
         let (scales, formats) = (&self.scales, &self.scales.formats);
+        // No ray is sent to a light behind the surface.
         let state = |is_sent: bool, is_hidden: bool| match (is_sent, is_hidden) {
             (false, _) => "away",
             (true, true) => "hidden",
@@ -372,6 +377,7 @@ impl Explainer<'_> {
         if surface.is_none() && reference.is_none() {
             return Vec::new();
         }
+        // Pair what the machine and double precision know of each light
         let explained = |(number, light): (usize, &scenes::model::Light)| {
             let shadow: Option<&RawShadow> =
                 raw.and_then(|raw| raw.shadows.iter().find(|shadow| shadow.light as usize == number));

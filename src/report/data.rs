@@ -73,6 +73,7 @@ impl<'a> PageData<'a> {
         let size = drawing.picture.size;
         let operations = drawing.operations();
         let differences = drawing.differences();
+        // Pictures and a number a pixel stand in the page as base64, so that it needs no other file.
         let pixels = |pixels| base64::text(&PictureFormat::Png.encode_pixels(&pixels));
         let picture = |picture: &Picture| base64::text(&PictureFormat::Png.encode(picture));
         let cut = |&number: &u64| u32::try_from(number).unwrap_or(u32::MAX).to_le_bytes();
@@ -102,6 +103,7 @@ impl<'a> PageData<'a> {
             advice,
             annexes,
             functions: result.functions.iter().chain(&result.regions).collect(),
+            // The page follows the reader's theme, also when that changes, so it has both.
             flames: [ChartTheme::Light, ChartTheme::Dark].map(|theme| flame(&figure, theme)),
         }
     }

@@ -56,9 +56,11 @@ fn curve_table(result: &ServersResult, curve: &ServersCurve) -> String {
         "port",
         "port octets",
     ]);
+    // Only a shared memory has traffic of its own.
     let is_shared = result.home == SceneHome::Shared;
     head.extend(is_shared.then(|| "octets a clock".to_owned()));
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    // Give each number of servers a row; the first frame has the copies of the scene in it
     let cells = |point: &ServersPoint| {
         let first = point.first_clocks as f64 / result.clock_hz as f64 / pixels(result);
         let mut cells = vec![

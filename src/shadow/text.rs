@@ -82,6 +82,7 @@ pub fn died_table(died: &[DiedLine], other_share: f64) -> String {
 /// Lines that deserve a sentence: contradictions, cancellation, decisions.
 fn remarks(lines: &[ShadowLine]) -> String {
     let mut text = String::new();
+    // Name all contradictions of formats, and all results of which exact arithmetic itself knows little
     for line in lines {
         if let Some(gap) = line.format_gap {
             text += &format!(
@@ -100,6 +101,7 @@ fn remarks(lines: &[ShadowLine]) -> String {
             );
         }
     }
+    // Cancellation is common, so only the worst lines are named.
     let mut cancelled: Vec<&ShadowLine> = lines.iter().filter(|line| line.cancelled != 0).collect();
     cancelled.sort_by(|a, b| a.fewest_good_bits.unwrap_or(0.0).total_cmp(&b.fewest_good_bits.unwrap_or(0.0)));
     for line in cancelled.into_iter().take(OUTPUTS) {

@@ -172,6 +172,7 @@ impl ShadowTotals {
         self.different += 1;
         self.largest = self.largest.max(error.abs());
         self.squares = finite(self.squares + error * error);
+        // Share the error out: parts of 3 and 1 ulp weigh 3 and 1 by units, and 3/4 and 1/4 by shares
         let parts: &ErrorParts = &deviation.parts;
         let sum = parts.iter().map(|(_, amount)| amount.abs()).sum::<f64>() + parts.rest().abs();
         let weight = match weight {
@@ -192,6 +193,7 @@ impl ShadowTotals {
             line.largest = line.largest.max(amount.abs());
             line.outputs += 1;
         }
+        // Keep the number if it is one of the worst; names take time, so only these get one
         let is_among = self.worst.len() < WORST
             || self.worst.last().is_some_and(|(least, _)| least.error_ulps.abs() < error.abs());
         if !is_among {
@@ -213,6 +215,7 @@ impl ShadowTotals {
             parts.iter().filter_map(|(site, amount)| Some((programs.key(site)?, amount))).collect();
         by_line.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
         by_line.truncate(PARTS);
+        // Behind those of equal errors, so that the first stay first.
         let at = self.worst.partition_point(|(other, _)| other.error_ulps.abs() >= error.abs());
         self.worst.insert(at, (output, by_line));
         self.worst.truncate(WORST);

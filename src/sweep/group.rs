@@ -180,9 +180,11 @@ fn figures(
     image_hash: String,
 ) -> PointFigures {
     let config = &settings.machine.config;
+    // Behind the cores stands the main processor, where there is one.
     let (cores, main) = frame.processors.split_at(config.cores as usize);
     let sum = |part: fn(&emu::machine::ProcessorUse) -> u64| cores.iter().map(part).sum::<u64>();
     let share = |part: u64, whole: u64| if whole == 0 { 0.0 } else { part as f64 / whole as f64 };
+    // Waiting and idle are shares of all cores' clocks: 4 cores have 4,000 of them in a frame of 1,000.
     let whole = frame.clocks.0 * u64::from(config.cores);
     let pixels = u64::from(load.build.crop.width) * u64::from(load.build.crop.height);
     PointFigures {

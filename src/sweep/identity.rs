@@ -201,6 +201,7 @@ mod tests {
     /// Settings that differ from others in one key.
     fn with_other_value(settings: &Settings, key: &str) -> Value {
         let mut value = settings.value();
+        // Keys of few values, or of a form of their own, are named; others change by their type: false to true, 0.5 to 0.75, 2 to 3.
         let other = match (key, KEYS.get(key)) {
             ("view.camera", _) => "perspective".into(),
             ("view.eye" | "view.look", _) => serde_json::json!([1, 2, 3]),
@@ -219,6 +220,7 @@ mod tests {
             ("machine.arithmetic.overflow", _) => "WRAP".into(),
             ("machine.bus.arbiter", _) => "tdma".into(),
             ("machine.protection.results", _) => "duplicated".into(),
+            // Each structure takes other protections.
             _ if key.starts_with("machine.protection.") => {
                 let name = key.rsplit('.').next().unwrap();
                 let kind = ProtectionConfig::keys().find(|kind| kind.name() == name).unwrap();

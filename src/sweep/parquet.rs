@@ -54,8 +54,10 @@ fn column(
     kind: CellKind,
 ) -> Result<(), ParquetError> {
     let cells = || table.rows.iter().map(|row| &row[number]);
+    // The cells 5, empty and 7 have the levels 1 0 1 and the values 5 7.
     let levels: Vec<i16> = cells().map(|cell| i16::from(*cell != Cell::Empty)).collect();
     let Some(mut writer) = group.next_column()? else { return Ok(()) };
+    // The kind is one that all cells fit: whole numbers may stand among reals, and both among texts.
     match kind {
         CellKind::Whole => {
             let values: Vec<i64> = cells()

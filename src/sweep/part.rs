@@ -128,6 +128,7 @@ pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Rep
     let mut paths: Vec<PathBuf> = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(refuse)? {
         let path = entry.map_err(refuse)?.path();
+        // A name that begins with a point is of a file that is still being written.
         if path
             .file_name()
             .is_some_and(|name| name.to_string_lossy().ends_with(ENDING) && !name.to_string_lossy().starts_with('.'))
@@ -135,8 +136,10 @@ pub fn read_all(folder: &Path) -> Result<(Vec<StudyPart>, Vec<DamagedPart>), Rep
             paths.push(path);
         }
     }
+    // Systems list a folder in any order.
     paths.sort();
     let (mut parts, mut damaged) = (Vec::new(), Vec::new());
+    // Threads end in any order, their results stay in that of the names.
     let read: Vec<(PathBuf, Result<StudyPart, String>)> = paths
         .into_par_iter()
         .map(|path| {

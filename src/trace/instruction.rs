@@ -119,6 +119,7 @@ pub fn next(stepper: &mut Stepper, clocks: TraceClocks) -> Option<TracedInstruct
     let program = stepper.code.program;
     let pc = stepper.code.word(stepper.state().pc);
     let (step, clock) = (stepper.steps(), stepper.clock().0);
+    // Registers are read before the step, which may write the same ones.
     let before = &stepper.state().registers;
     let reads: Vec<ShownRegister> = registers(&stepper.code, pc, false)
         .into_iter()
@@ -142,6 +143,7 @@ pub fn next(stepper: &mut Stepper, clocks: TraceClocks) -> Option<TracedInstruct
         overflowed: 0,
         fault: None,
     };
+    // What trapped before its end wrote nothing.
     match executed {
         Some(executed) => record.finish(stepper, executed),
         None => record.fault = stepper.trap().map(|trap| trap.kind.to_string()),
@@ -173,6 +175,7 @@ impl TracedInstruction {
     /// The record as a line of text, without its end.
     pub fn line(&self) -> String {
         let clock = self.clock.map_or_else(|| "-".to_owned(), |clock| clock.to_string());
+        // Columns are as wide as those of the head
         let mut text = format!(
             "{:>8} {clock:>9} {:>2} {:#06x} {:<14} {:<32} {:<32}",
             self.step,
@@ -182,6 +185,7 @@ impl TracedInstruction {
             self.line.as_deref().unwrap_or("-"),
             self.text
         );
+        // Add what not every instruction has, behind marks
         let list = |shown: &[ShownRegister]| shown.iter().map(ShownRegister::short).collect::<Vec<_>>().join(" ");
         for (mark, part) in [("", list(&self.reads)), ("-> ", list(&self.writes))] {
             if !part.is_empty() {

@@ -155,6 +155,7 @@ impl Run {
     /// The value that a claim would have to say: its own where that is right.
     pub fn value(&self, claim: &Claim) -> Result<String, String> {
         let at = self.after(claim.line)?;
+        // Take as many octets from an address as the claim names
         let octets = |address: &str, space: &[u8]| -> Result<Vec<i64>, String> {
             let start = self.numbers(address)?.first().copied().unwrap_or(0) as usize;
             let count = claim.value.split(',').count();
@@ -179,6 +180,7 @@ impl Run {
             Subject::Clocks => return Ok(at.clocks.0.to_string()),
             Subject::Said(_) => return Err("said elsewhere".into()),
         };
+        // A right claim stays as it is written, whatever its style: `0xffffffff` and -1 are the same 32 bits.
         let mask = u64::MAX >> (64 - bits);
         let same = |claimed: Vec<i64>| {
             claimed.len() == found.len() && claimed.iter().zip(&found).all(|(a, b)| (a ^ b) as u64 & mask == 0)
@@ -186,6 +188,7 @@ impl Run {
         if self.numbers(&claim.value).is_ok_and(same) {
             return Ok(claim.value.clone());
         }
+        // Write each number in the style of the claimed one in its place; up to three that nobody claimed are decimal
         let styles: Vec<&str> = claim.value.split(',').map(str::trim).chain(["", "", ""]).collect();
         Ok(found.iter().zip(styles).map(|(&raw, style)| self.number_text(raw, style)).collect::<Vec<_>>().join(", "))
     }

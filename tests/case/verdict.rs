@@ -38,6 +38,7 @@ pub fn differences(case: &Case, observation: &Observation) -> Vec<Difference> {
     let places = case.comments.iter().enumerate().flat_map(|(comment, comment_claims)| {
         comment_claims.claims.iter().enumerate().map(move |(at, claim)| ((comment, at), comment_claims.line, claim))
     });
+    // Compare each claim; one about a message takes the message that says just this, others wait until all have been asked
     for (place, line, claim) in places {
         let mut differ = |problem, remedy| found.push(Difference { line, claim: Some(place), problem, remedy });
         let value = match (&claim.subject, &observation.run) {
@@ -60,6 +61,7 @@ pub fn differences(case: &Case, observation: &Observation) -> Vec<Difference> {
             Err(why) => differ(format!("`{claim}`: {why}"), Remedy::None),
         }
     }
+    // Give each claim that waits a message that is left on its line: where `a` and `b` are said, claims `x` and `a` become `b` and `a`
     for (place, line, claim) in unsaid {
         let (problem, remedy) = match unclaimed.iter().position(|said| said.line == claim.line) {
             Some(at) => {
@@ -70,6 +72,7 @@ pub fn differences(case: &Case, observation: &Observation) -> Vec<Difference> {
         };
         found.push(Difference { line, claim: Some(place), problem, remedy });
     }
+    // Messages that nobody claims are to be added
     for said in unclaimed {
         let claim = claim_of(&said, false);
         let problem = format!("`{claim}` is not expected");

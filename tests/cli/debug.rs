@@ -386,6 +386,7 @@ fn a_client_at_a_port_breaks_at_lines_and_changes_registers() {
     let mut client = Client::new(stream.try_clone().unwrap(), stream);
     client.body("initialize", json!({}));
     client.ask("launch", json!({ "stopOnEntry": true }));
+    // Line 13 is the shift in `halve`, where `left` is 9/16; the program has no line 99.
     let path = session.path("p.s").display().to_string();
     let set = client.body("setBreakpoints", json!({ "source": { "path": path }, "breakpoints": [{ "line": 13, "condition": "left > 0.5:pos" }, { "line": 99 }] }));
     assert_eq!(
@@ -400,10 +401,12 @@ fn a_client_at_a_port_breaks_at_lines_and_changes_registers() {
     client.event("stopped");
     let frames = client.body("stackTrace", json!({ "threadId": 1, "levels": 1 }));
     assert_eq!((&frames["stackFrames"][0]["name"], &frames["totalFrames"]), (&"halve".into(), &2.into()));
+    // Watch `left` and set it to 2.5 by hand; reference 9 is 8 * 1 + 1, the named registers of frame 1
     let info = client.body("dataBreakpointInfo", json!({ "name": "left" }));
     client.body("setDataBreakpoints", json!({ "breakpoints": [{ "dataId": info["dataId"] }] }));
     let changed = client.body("setVariable", json!({ "variablesReference": 9, "name": "left", "value": "2.5:pos" }));
     assert_eq!(changed["value"], "40 (2.5:pos)");
+    // On the way out of `halve` its shift writes what is watched: 40 becomes 20
     client.body("stepOut", json!({}));
     assert_eq!(client.event("stopped")["reason"], "data breakpoint");
     assert_eq!(client.evaluate("left"), "20 (1.25:pos)");

@@ -161,6 +161,7 @@ fn suggestions_for_each_profile_save_what_the_docs_say() {
         let line = docs.lines().find(|line| line.starts_with(name)).expect("the docs have the table");
         line.trim_matches('|').split('|').skip(1).map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
     };
+    // Each profile is a column of the docs' table: its name, the instructions and the clocks that it saves
     for ((profile, percent), clocks) in row("| profile |").iter().zip(row("| saved |")).zip(row("| clocks |")) {
         let options = format!("--size 16x12 --shift 0.137,0.071 --profile {profile}");
         let result = session.json(&format!("extension suggest cornell {options} -o {profile}"));
@@ -172,11 +173,13 @@ fn suggestions_for_each_profile_save_what_the_docs_say() {
         assert_eq!(instructions("without") - instructions("with"), sum("saved"), "{profile}");
         let share = 100.0 * sum("saved") as f64 / instructions("without") as f64;
         assert_eq!(format!("{share:.1} %"), percent, "{profile}");
+        // Clocks are what the suggestions save at most, which is also what they are ranked by.
         let busy = result["busy_clocks"].as_u64().unwrap();
         assert_eq!(format!("{:.1} %", 100.0 * sum("saved_clocks") as f64 / busy as f64), clocks, "{profile}");
         let order: Vec<u64> = suggestions.iter().map(|found| found["saved_clocks"].as_u64().unwrap()).collect();
         assert!(order.is_sorted_by(|a, b| a >= b), "{profile}: {order:?}");
         assert!(suggestions.len() >= 3, "{profile}");
+        // A suggestion costs what its body does, so it changes neither the picture nor what is counted.
         for key in ["image_hash", "counts", "clocks"] {
             assert_eq!(comparison["with"][key], comparison["without"][key], "{profile} {key}");
         }

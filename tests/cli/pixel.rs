@@ -159,6 +159,7 @@ fn thirty_two_bits_come_near_double_precision_at_every_ray() {
         let difference = difference.unwrap_or_else(|| panic!("{name} has no difference")).abs();
         assert!(difference < limit, "{name} is off by {difference}");
     };
+    // Three sets of kernels, each at a pixel where the machine's rays go the way of those in double precision
     for (scene, profile) in [("cornell", KernelSet::Vector), ("mirrors", KernelSet::Ray), ("slabs", KernelSet::Packet)]
     {
         let pixel = check(&job(scene, profile, 32, [5, 4]));
@@ -182,6 +183,7 @@ fn thirty_two_bits_come_near_double_precision_at_every_ray() {
             near("normal", largest(hit.normal.difference), 1e-6);
             for light in &ray.lights {
                 assert_eq!(light.state, light.reference_state);
+                // A light that no shadow ray was sent to has no numbers to compare.
                 if light.step.is_some() {
                     near("cosine", light.cosine.difference, 1e-6);
                     near("distance", light.distance.difference, 1e-6);
@@ -190,6 +192,7 @@ fn thirty_two_bits_come_near_double_precision_at_every_ray() {
                 assert_eq!(light.blocker.is_some(), light.state == Some("hidden"));
             }
         }
+        // Without a hit most quantities would go uncompared.
         assert!(hits > 0, "{scene}");
     }
 }

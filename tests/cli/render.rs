@@ -33,6 +33,7 @@ fn the_keys_of_the_results_have_their_types() {
     for key in ["camera", "reflected", "refracted", "shadow"] {
         assert!(result["rays"][key].is_u64(), "{key}");
     }
+    // Counts name every class, those that do not occur too
     let has_classes = |counts: &Value| {
         let keys: Vec<&String> = counts.as_object().unwrap().keys().collect();
         keys.len() == classes.len() && classes.iter().all(|class| counts[class].is_u64())
@@ -49,6 +50,7 @@ fn the_keys_of_the_results_have_their_types() {
         assert!(result["error"][key].is_f64(), "{key}");
     }
     assert!(result["error"]["off_pixels"].is_u64());
+    // SHA-256 in hexadecimal digits
     assert_eq!(result["image_hash"].as_str().unwrap().len(), 64);
     assert!(result.get("host").is_none(), "host times only when asked for");
 }
@@ -58,11 +60,13 @@ fn figures_add_up() {
     let result = Session::new().json(TINY);
     assert_eq!((&result["scene"], &result["width"], &result["height"]), (&"cornell".into(), &12.into(), &9.into()));
     assert_eq!(result["cores"].as_array().unwrap().len(), 4);
+    // Time: a processor is busy, waiting or idle at each clock
     let clocks = number(&result["clocks"]);
     let processors = result["cores"].as_array().unwrap().iter().chain([&result["main"]]);
     for used in processors {
         assert_eq!(["busy", "waiting", "idle"].map(|key| number(&used[key])).iter().sum::<u64>(), clocks, "{used}");
     }
+    // Octets: the cores' are all that instructions count, those of all kinds are what the bus moves; 12 x 9 pixels are 108 items
     let sum = |key: &str| result["cores"].as_array().unwrap().iter().map(|core| number(&core[key])).sum::<u64>();
     assert_eq!((sum("items"), sum("octets")), (108, number(&result["octets"])));
     assert_eq!(result["octets"], result["counts"]["octet"]);
@@ -79,6 +83,7 @@ fn figures_add_up() {
     let seconds = result["seconds"].as_f64().unwrap();
     assert_eq!(seconds, clocks as f64 / number(&result["clock_hz"]) as f64);
     assert!((result["pixel_seconds"].as_f64().unwrap() * 108.0 - seconds).abs() < 1e-12);
+    // Operations: functions and the regions outside of them share all, and `pixel` with what it calls has all
     for (class, count) in result["counts"].as_object().unwrap() {
         let functions = result["functions"].as_array().unwrap().iter().chain(result["regions"].as_array().unwrap());
         assert_eq!(functions.map(|f| number(&f["exclusive"][class])).sum::<u64>(), number(count), "{class}");

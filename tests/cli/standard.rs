@@ -33,6 +33,7 @@ fn every_input_may_be_standard_input() {
     session.succeed("assemble a.s -o a.o");
     session.write("own.isa", ".extension own\n.instr half (d: S, a: S) \"custom0 ddddd aaaaa ----------------\" [Done(body)]\n    srai d, a, 1\n.end\n");
     let triangle = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/kernels/asm/vector/triangle.s")).unwrap();
+    // Each input that is a file elsewhere, from standard input
     for (arguments, input, expected) in [
         ("run - --json", PROGRAM.as_bytes(), "\"s1\": 7"),
         ("run - --json", &session.read("a.o"), "\"s1\": 7"),
@@ -53,6 +54,7 @@ fn every_input_may_be_standard_input() {
         assert_eq!(code, 0, "{arguments}: {messages}");
         assert!(out.contains(expected), "{arguments}: {out}");
     }
+    // Standard input is there once, standard output has room for one result, and some results need a name.
     for (arguments, code, message) in [
         ("scene info - --mesh -", 1, "named twice"),
         ("run a.s --mem 0=- --mem 4096=-", 1, "named twice"),

@@ -200,6 +200,7 @@ fn formats_has_the_figures_of_its_study() {
     let words: Vec<&Value> = list(&result, "uniform").iter().collect();
     let choices: Vec<&Value> = std::iter::once(&result["found"]).chain(words.iter().copied()).collect();
     assert_eq!(rows.len(), 2 * choices.len() * 2);
+    // Rows stand scene by scene, in each the choices one after the other, of each choice two shifts
     for (number_of, (choice, at)) in
         (0..2).flat_map(|scene| choices.iter().map(move |choice| (choice, scene))).enumerate()
     {
@@ -211,6 +212,7 @@ fn formats_has_the_figures_of_its_study() {
         let sum = |name: &str| rows.iter().map(|row| number(&row[name])).sum::<f64>();
         assert_eq!(rows[0]["scene"], scene["scene"]);
         assert_eq!(number(&scene["clocks"]), sum("clocks") / sum("pixels"));
+        // The mean over shifts is that of squared errors, not of decibels.
         let square = rows.iter().map(|row| number(&row["rmse"]).powi(2)).sum::<f64>() / 2.0;
         near(number(&scene["error"]["psnr_db"]), -10.0 * square.log10());
         assert_eq!(number(&scene["error"]["mean_off"]), sum("off_pixels") / 2.0);
@@ -218,6 +220,7 @@ fn formats_has_the_figures_of_its_study() {
         assert_eq!(number(&scene["error"]["worst_off"]), most("off_pixels"));
         assert_eq!(number(&scene["error"]["largest"]), most("max_error"));
     }
+    // Behind the two rows of what was found come the words, on the first scene
     for (word, row) in words.iter().zip(rows[2..].chunks(2)) {
         assert_eq!((&row[0]["word"], &row[0]["layout"]), (&word["word"], &word["layout"]));
     }

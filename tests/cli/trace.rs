@@ -18,11 +18,13 @@ const HEADER: usize = 329;
 
 impl Wave {
     fn read(octets: Vec<u8>, start: u64, end: u64) -> Wave {
+        // Octet 0 is the block's kind, so its 329 octets are 1 to 329: the first 8 are their number, the last 8 are added to all times.
         assert_eq!(octets[1..9], (HEADER as u64).to_be_bytes());
         assert_eq!(octets[HEADER - 7..=HEADER], [0; 8], "times are those of the run as they are");
         let mut reader = FstReader::open(Cursor::new(octets)).expect("it is an FST file");
         let header = reader.get_header();
         assert_eq!((header.timescale_exponent, header.end_time), (-8, end), "a clock of 100 MHz is 10 ns");
+        // Name each signal by the scopes around it, such as `core0.state`
         let (mut names, mut scope) = (BTreeMap::new(), Vec::new());
         reader
             .read_hierarchy(|entry| match entry {
@@ -34,6 +36,7 @@ impl Wave {
                 _ => {}
             })
             .expect("it has signals");
+        // A wave holds changes only, so a signal's value at a clock is its last change up to then.
         let mut changes: BTreeMap<String, BTreeMap<u64, String>> = BTreeMap::new();
         let note = |time: u64, handle: fst_reader::FstSignalHandle, value: FstSignalValue| {
             let FstSignalValue::String(value) = value else { panic!("all signals have bits") };

@@ -123,6 +123,7 @@ fn no_line_of_tables_is_wider_than_the_terminal() {
             "extension suggest cornell --size 4x3",
         ] {
             let text = shown(&session, arguments, columns);
+            // A message of one line would be narrow enough too, but it is no table.
             assert!(text.lines().count() > 1, "{arguments}: {text}");
             assert_eq!(beyond(&text, columns), Vec::<String>::new(), "{arguments} on {columns} columns");
         }

@@ -56,6 +56,7 @@ fn replaced(line: &str, names: &BTreeMap<String, (char, u8)>, numbers: &BTreeMap
 fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
     let row = isa.definition(isa.find(name).unwrap());
     let (mut names, mut numbers) = (BTreeMap::new(), BTreeMap::new());
+    // Operands of the test's programs lie below these.
     let mut free = BTreeMap::from([('s', 8u8), ('v', 8), ('w', 3)]);
     let (mut before, mut after) = (String::new(), String::new());
     let copies = |from: (char, u8), to: (char, u8), count: u8| -> String {
@@ -63,6 +64,8 @@ fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
         (0..count).map(|at| format!("    {name} {}{}, {}{}\n", to.0, to.1 + at, from.0, from.1 + at)).collect()
     };
     let mut distance = None;
+    // Give each operand registers of its own: for `fma s2, s2, s0, s1, 3` the body works on s8 to s11, after `mov s9, s2` and the like and
+    // before `mov s2, s8`, so it may write s8 and read s9 later
     for (operand, &value) in row.operands.iter().zip(fields) {
         let letter = (operand.letter as char).to_string();
         match operand.kind.register_file() {
@@ -84,6 +87,7 @@ fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
             }
         }
     }
+    // Temporaries come behind them
     for at in 0..4 {
         names.insert(format!("t{at}"), ('s', free[&'s'] + at));
         names.insert(format!("tv{at}"), ('v', free[&'v'] + at));
@@ -92,6 +96,7 @@ fn written_out(isa: &Isa, name: &str, fields: &[i64]) -> String {
     let mut text =
         String::from(".macro square of, into, shift\n    mul \\into, \\of, \\of, \\shift\n.endm\n.equ TWO, 2\n");
     text += &before;
+    // An exit with a distance jumps to `away`, any other one to where the results are copied back
     for line in body(name) {
         let line = replaced(line, &names, &numbers);
         match line.trim_start().split_once(' ') {

@@ -73,6 +73,7 @@ fn kernels_of_examples_are_those_of_a_profile_but_for_marked_lines() {
 #[test]
 fn all_ways_to_run_an_example_agree() {
     for (folder, rows, kernels) in examples() {
+        // Load a small picture with the example's instructions and kernels
         let scene = generate::scene("cornell", &generate::GenerateOptions { size: (8, 6), ..Default::default() });
         let mut job = Job::new(scene.unwrap());
         job.kernels.profile = profile(&kernels).unwrap();
@@ -93,12 +94,14 @@ fn all_ways_to_run_an_example_agree() {
             let run = if steps { emu::step } else { emu::run };
             run(&setup, load.memory.clone(), &mut |_| {}).unwrap_or_else(|failure| panic!("{failure}"))
         };
+        // Instructions of an example must not keep the cores from the fastest engine.
         assert_eq!(
             load.setup(&job.machine, RunOptions::default()).engine().kind,
             EngineKind::default(),
             "{}",
             folder.display()
         );
+        // Compare all engines and a machine that is stepped, which differs in the name of its method alone
         let frame = run(EngineKind::Native, false);
         assert_eq!(frame.method.name(), "replayed");
         let stepped = run(EngineKind::Checked, true);

@@ -23,6 +23,7 @@ const THREE: &str = "(d: S, a: S, b: S)  \"custom0 ddddd aaaaa bbbbb -----------
 #[test]
 fn each_suspicion_has_its_words() {
     let (body, free) = ("[Done(body)]", "[Done()]");
+    // The row is line 3 with `odd` in column 8, the body begins in line 4; an empty place or hint holds for any.
     for (row, lines, message, place, hint) in [
         (format!("{THREE} {body}"), "    mov d, a", "operand `b` of `odd` is not used", "3:8", "its bits are free"),
         (
@@ -77,6 +78,7 @@ fn each_suspicion_has_its_words() {
         assert!(found_place.starts_with(place), "{message} at {found_place}");
         assert!(found_hint.contains(hint), "{message}: {found_hint}");
     }
+    // Only arithmetic, requests and octets must be declared, so a body of `xor` alone may cost nothing.
     assert_eq!(warnings(&format!("{THREE} {free}"), "    xor d, a, b"), []);
     let (isa, loaded) = isa_of(&format!(".extension t\n.instr odd {TWO} {free}\n    mov d, a\n.end\n"));
     assert_eq!(findings(&isa, &loaded[0])[0].message, "`odd` has no description");

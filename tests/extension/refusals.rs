@@ -30,6 +30,7 @@ fn refuses(text: &str, message: &str, place: &str, hint: &str) {
 #[test]
 fn rows_that_cannot_be_read() {
     let with = |row: &str| file(row, "    mov d, a");
+    // In line 3 `.instr bad ` has 11 characters, so the row's `d` is in column 13, its `a` in 19, and its pattern begins in 26.
     for (row, message, place, hint) in [
         ("(d: S, a: S) \"custom0 ddddd aaaaa ---------------\" [Done()]", "31 bits instead of 32", "3:26", "add 1 `-`"),
         ("(d: S, a: S) \"custom0 ddddd aaaaa -----------------\" [Done()]", "33 bits", "3:26", "leave out 1"),

@@ -357,6 +357,8 @@ fn next_packets() {
             Place::Scalar("near"),
             Place::Scalar("any_hit"),
         ],
+        // The walk traps where `steps` comes to 0, so of two one may be taken. Without a packet the kernel leaves its registers as they are: they
+        // are cleared, as `packet_words` has them.
         body: "    vmov fars, zero_vector\n    vlt backwards, direction, zero_vector\n    vabs steep, direction\n    \
                movi steps, 2\n    call link_packet, next_packet\n    bgez packet_count, 1f\n    mov packet_refs, s0\n    \
                vmov box_low, zero_vector\n    vmov box_high, zero_vector\n1:\n",
@@ -373,6 +375,7 @@ fn next_packets() {
                 any::<bool>(),
                 any::<bool>(),
             );
+            // Words of a case: origin from 0 on, direction from 3, the box from 6, then near_t 12, near 13, any_hit 14
             let walker = subject.twin();
             let cases = cases.prop_map(move |(origin, direction, t, near, any)| {
                 let Packet { bounds, .. } =

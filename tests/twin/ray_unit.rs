@@ -24,6 +24,7 @@ fn walks_of_the_ray_unit() {
     let experiment = Experiment {
         functions: &[Function::OwnPacket, Function::NextPacket, Function::Descend],
         operands: &[Place::Vector("origin"), Place::Vector("direction")],
+        // s29 counts the packets; s30 becomes 31 s30 + address at each, so that their order counts too.
         body: "    mov near, s0\n    li near_t, NEVER\n    mov any_hit, s0\n    mov s29, s0\n    mov s30, s0\n    \
                call link_packet, own_packet\n    bltz packet_count, 2f\n1:\n    movi s12, 31\n    imul s30, s30, s12\n    \
                iadd s30, s30, packet_refs\n    iaddi s29, s29, 1\n    call link_packet, next_packet\n    bgez packet_count, 1b\n2:\n",
@@ -33,6 +34,7 @@ fn walks_of_the_ray_unit() {
         for subject in trees(modes) {
             let subject = subject.with(KernelSet::Ray);
             let twin = subject.twin();
+            // The address of a packet does not depend on its box.
             let address = |references: Range<u32>| {
                 let bounds = twin.stage.bounds;
                 packet_words(&subject, Some(Packet { bounds, references }))[1]
@@ -41,6 +43,7 @@ fn walks_of_the_ray_unit() {
             agree(&subject, &experiment, cases, |case| {
                 let (origin, direction) = (vector(case, 0), vector(case, 3));
                 let ray = TwinRay::new(&modes, origin, direction);
+                // Walk with planes and from box to box: both must name the same packets in the same order
                 let exact = isa::number::ray::Ray { origin, direction };
                 let packets = Packets::new(&twin.stage.nodes, &twin.stage.bounds, exact);
                 let packets: Vec<i32> = packets.map(address).collect();

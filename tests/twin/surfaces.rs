@@ -83,6 +83,7 @@ fn weights_of_children() {
             Place::Scalar("inside"),
             Place::Scalar("cosine"),
         ],
+        // k and eta are cleared first, since they are written only where a ray goes through.
         body: "    movi s12, MATERIALS\n    sw s12, MATERIAL_AT(s0)\n    movi node, NODES\n    sw s0, raynode.k(node)\n    \
                sw s0, raynode.eta(node)\n    call link_node, refracts\n    call link_node, reflects\n",
         results: &[
@@ -95,6 +96,7 @@ fn weights_of_children() {
     for modes in MODES {
         let subject = subject("slabs", Some(4), modes);
         let (twin, one, most) = (subject.twin(), 1 << (modes.word - 2), i32::MAX >> (32 - modes.word));
+        // Any four words will do as a material, and a cosine may be two units above 1 by rounding.
         let weight = || prop_oneof![0..=one, Just(0), Just(one)];
         let index = || 1..=most;
         let cases = (weight(), weight(), index(), index(), weight(), 0..=1i32, 0..=one + 2);
@@ -137,6 +139,7 @@ fn refracted_rays() {
         let subject = subject("slabs", Some(4), modes);
         let (twin, bits) = (subject.twin(), modes.word - 2);
         let (one, most) = (1 << bits, i32::MAX >> (32 - modes.word));
+        // Words of a case: k, eta, cosine, inside, normal from 4 on, incident from 7, behind from 10; rounding puts k up to 3 units above 1
         let cases = (0..=one + 3, 1..=most, 0..=one, 0..=1i32, direction(bits), direction(bits), point(bits));
         let cases = cases.prop_map(|(k, eta, cosine, inside, normal, incident, behind)| {
             [vec![k, eta, cosine, inside], words(&[normal, incident, behind], &[])].concat()
@@ -145,6 +148,7 @@ fn refracted_rays() {
             let (facing, incident) = (vector(case, 4), vector(case, 7));
             let surface = Surface { facing, incident, cosine: case[2], ..surface(&twin) };
             let direction = refract(&modes, &twin.constants, &surface, case[0], case[1]);
+            // The ray starts behind the surface, so it is inside where it was not before.
             words(&[vector(case, 10), direction], &[1 - case[3]])
         });
     }

@@ -129,6 +129,7 @@ fn defective(defect: Defect, body: &Body, definition: &InstructionDef, row_at: &
     let message = match defect {
         Defect::Unwritten { step, file, number } => {
             let name = register_name(file, number);
+            // A destination holds nothing before the body writes it, and neither does a temporary; each has a remedy of its own.
             let hint = match registers::letter(number) {
                 Some((letter, _)) => format!(
                     "`{}` is only written; call the operand `x` or `y` in the row if it is read too",
@@ -143,6 +144,7 @@ fn defective(defect: Defect, body: &Body, definition: &InstructionDef, row_at: &
                 .hint(hint)
         }
         Defect::Missing { step, letter, offset } => {
+            // An operand may be several registers: of `d: V3` the last one is told as `d+2`.
             let count = definition.operand(letter).map_or(1, |operand| operand.kind.registers());
             let name = letter_name(letter, offset, count);
             let message = format!("`{name}` is not written on every way to this outcome of `{}`", definition.name);

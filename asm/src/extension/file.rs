@@ -281,6 +281,7 @@ fn add(
     row.room = extension.to_owned().into();
     row.doc = doc.into();
     let place = Place::new(source, start..end);
+    // Refuse names that assembly text reads as something else
     let taken = |what: &str| {
         let message = format!("`{}` is {what} already", row.name);
         error(explain::TAKEN, message, source, name_at.clone(), "taken").hint("choose another name")
@@ -298,11 +299,13 @@ fn add(
         let message = format!("there are more than {MOST_INSTRUCTIONS} extension instructions");
         return Err(error(explain::SIZE, message, source, name_at, "one too many").into());
     }
+    // Enter the row: another one may have its name, or a word of its pattern
     let op = match isa.extend(row.clone()) {
         Ok(op) => op,
         Err(other) => return Err(clash(isa, &row, other, taken("an instruction"), source, pattern_at).into()),
     };
     let outcomes = outcomes_at.into_iter().map(|span| Place::new(source, span)).collect();
+    // Both are told later, by the body and by whoever has read the file.
     let (summary, is_rust) = (Summary::default(), false);
     Ok(LoadedInstruction { op, extension: extension.to_owned(), summary, row: place, outcomes, is_rust })
 }

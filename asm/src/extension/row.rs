@@ -246,6 +246,7 @@ fn misfit(
     let of = |letter: u8| operands.iter().find(|(operand, _)| operand.letter == letter);
     match wrong {
         DefinitionError::Field(letter) => {
+            // Point at the operand and at the pattern: of `i: Sh` drawn as `iiiii`, 5 bits where 6 are needed, either may be what is wrong
             let Some((operand, at)) = of(letter) else {
                 return Box::new(scanner.wrong("a field without an operand", pattern_at, "here"));
             };
@@ -267,12 +268,14 @@ fn misfit(
             let spare = pattern.fields().iter().find(|field| of(field.letter).is_none());
             let letter = spare.map_or('?', |field| field.letter as char);
             let message = format!("the pattern has a field `{letter}`, but the row no such operand");
+            // Suggest an operand that goes with the letter: `i` and `j` are immediates, all others registers
             let hint = format!(
                 "add an operand such as `{letter}: {}`, or draw the bits as `-`",
                 if matches!(letter, 'i' | 'j') { "Un" } else { "S" }
             );
             Box::new(scanner.wrong(message, pattern_at, "in this pattern").hint(hint))
         }
+        // Operands and outcomes were checked for these as they were read.
         DefinitionError::Twice(_) | DefinitionError::Letter(_) | DefinitionError::NoOutcome => {
             Box::new(scanner.wrong("the row cannot be read", pattern_at, "here"))
         }

@@ -101,6 +101,7 @@ impl Template {
     /// A register of a group, such as `c+1`, when that is written behind its letter.
     pub fn member(&self, register: Register, at: At, cursor: &mut Cursor) -> Parsed<(Register, At)> {
         let (file, number) = register;
+        // Only the letter of an operand is counted from: temporaries have numbers of their own.
         let Some((letter, 0)) = registers::letter(number) else { return Ok((register, at)) };
         let count = self.operand(letter).map_or(1, |operand| operand.kind.registers());
         let first = cursor.position;
@@ -109,6 +110,7 @@ impl Template {
         }
         let found = cursor.peek().filter(|token| token.kind == Token::Integer);
         let Some(token) = found else { return Err(cursor.expected("which register of the group")) };
+        // Of `c: V3` the registers are `c`, `c+1` and `c+2`; `c+0` is `c`
         let offset: Option<u8> = cursor.text(token).parse().ok().filter(|&offset| offset < count);
         cursor.skip();
         let whole = at.to(cursor.since(first));
@@ -184,11 +186,13 @@ impl Assembler<'_> {
         let Some(template) = &self.body else { return false };
         let Some(&op) = self.operations.get(name) else { return false };
         let problem = match op {
+            // Its own name has a message of its own: whoever writes it probably wants a loop.
             Op::Ext(_) if op == template.op => {
                 let message = format!("the body of `{name}` contains `{name}` itself");
                 Problem::new(explain::BODY, message, at, "recursive")
                     .hint("a loop is written with a label and a branch")
             }
+            // Steps have no steps of their own, so engines never go deeper than one body.
             Op::Ext(_) => {
                 let message = format!("`{name}` is an instruction of an extension");
                 Problem::new(explain::BODY, message, at, "not in a body")
@@ -211,6 +215,7 @@ impl Assembler<'_> {
         let definition = template.definition.clone();
         let names =
             || definition.outcomes.iter().map(|outcome| format!("`{}`", outcome.name)).collect::<Vec<_>>().join(", ");
+        // A row with one outcome needs no name for it: `exit` alone ends the body.
         let outcome = if cursor.is_at_end() && definition.outcomes.len() == 1 {
             0
         } else {
@@ -232,6 +237,7 @@ impl Assembler<'_> {
             }
         }
         cursor.end()?;
+        // A label in a body is a number of words, so this step takes a word too, as all others do.
         let step = self.program.words.len();
         if self.body.as_ref().is_some_and(|template| !template.is_shared) {
             self.set_act(step, BodyAct::End { outcome: outcome as u8, jumps });

@@ -311,6 +311,7 @@ fn pieces() -> impl Strategy<Value = String> {
         .chain(Isa::base().ops().map(|op| Isa::base().definition(op).name.to_string()))
         .chain(
             [
+                // Ends of lines and blanks come more often than all else, so that lines are short.
                 "\n",
                 "\n",
                 "\n",
@@ -332,6 +333,7 @@ fn pieces() -> impl Strategy<Value = String> {
                 "||",
                 ".",
                 "...",
+                // What only macros and quotation marks give a meaning, and halves of it
                 "\\a",
                 "\\@",
                 "\\()",
@@ -363,6 +365,7 @@ fn pieces() -> impl Strategy<Value = String> {
                 "defined(a)",
                 "min(",
                 "high(",
+                // Characters beyond the language, and comments
                 "é",
                 "\u{0}",
                 "; c",

@@ -26,6 +26,7 @@ fn a_loaded_core_runs_as_if_it_had_not_run_before() {
         });
         let profile = [ProfileLevel::None, ProfileLevel::Extremes][seed as usize % 2];
         let mut core = OneCore { profile, step_limit: 1 << 20, ..OneCore::new(&config, &isa, &program) };
+        // Shifts make small numbers as likely as large ones.
         let starts: Vec<Registers> = (0..4)
             .map(|_| {
                 let mut registers = Registers::default();
@@ -34,6 +35,7 @@ fn a_loaded_core_runs_as_if_it_had_not_run_before() {
             })
             .collect();
         for wish in [Wish::CHECKED, Wish::native()] {
+            // Run them all on one core before comparing, so that each meets what the ones before have left behind
             let loaded = LoadedCore::new(&core).expect("the setup is right");
             let again: Vec<_> = starts.iter().map(|start| loaded.run(start, Memory::new(image()), wish)).collect();
             for (start, again) in starts.iter().zip(again) {

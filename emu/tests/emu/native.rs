@@ -101,6 +101,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
     let mut random = SplitMix64::new(77);
     let core = program(|p| {
         scatter(p, &mut random);
+        // Rows at random leave s27 alone, so the loop ends after 20,000 passes.
         p.constant(27, 20_000);
         let again = p.here();
         for &op in Op::BUILT_IN.iter().filter(|op| anywhere(op, &isa)) {
@@ -111,6 +112,7 @@ fn a_long_loop_over_all_rows_takes_no_stack() {
         p.place(function);
         p.emit(Op::ret, &[28]);
         p.place(over);
+        // Taken or not, a branch goes on at the next instruction.
         for op in [Op::beq, Op::bne, Op::blt, Op::bge, Op::bltu, Op::bgeu] {
             let next = p.label();
             p.branch(op, &[1, 2], next);
@@ -192,6 +194,7 @@ fn words_at_random() {
 
 #[test]
 fn what_is_unusual_is_the_interpreters() {
+    // Items know their number and 40, so that only some of them meet what is unusual.
     let few = |body: fn(&mut ProgramBuilder)| {
         program(|p| {
             p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[NUMBER, 0, 0]).emit(Op::movi, &[1, 40]);
@@ -200,12 +203,14 @@ fn what_is_unusual_is_the_interpreters() {
         })
     };
     let end = |name: &str, body: fn(&mut ProgramBuilder)| same(name, &few(body), 5000).map(|_| ()).unwrap_err();
+    // Item 40 alone does not jump over the trap.
     let trap = end("a trap", |p| {
         let past = p.label();
         p.branch(Op::bne, &[NUMBER, 1], past).emit(Op::trap, &[9]);
         p.place(past);
     });
     assert!(trap.contains("trap 9") && trap.contains("40, 40, 40"), "{trap}");
+    // Item 37 is the first beyond the buffer: 37 x 512 is 18944, and there are 18525 octets.
     let outside = end("an access", |p| {
         p.emit(Op::slli, &[2, NUMBER, 9]).emit(Op::lw, &[3, 2, 0]);
     });
@@ -215,6 +220,7 @@ fn what_is_unusual_is_the_interpreters() {
         p.branch(Op::jump, &[], here);
     });
     assert!(endless.contains("5000 instructions"), "{endless}");
+    // Whoever asks for the core's number gets no shared recording: such a frame is stepped.
     let core = few(|p| {
         p.emit(Op::core, &[3]);
     });
@@ -225,6 +231,7 @@ fn what_is_unusual_is_the_interpreters() {
 /// Something that may read the number of cores, write where it is, or leave it alone.
 fn meddle(p: &mut ProgramBuilder, random: &mut SplitMix64, depth: i64) {
     let register = 20 + below(random, 2);
+    // The innermost level has only what contains nothing.
     match below(random, if depth == 0 { 6 } else { 9 }) {
         0 => p.emit(Op::iadd, &[1, 1, register]),
         1 => p.emit(Op::movi, &[register, 5]),
@@ -239,6 +246,7 @@ fn meddle(p: &mut ProgramBuilder, random: &mut SplitMix64, depth: i64) {
             p.place(end)
         }
         7 => {
+            // Each level has a counter and a link of its own; a loop from 0, 1 or 2 down to below 0 is one to three passes.
             let counter = 24 + depth;
             p.emit(Op::movi, &[counter, below(random, 3)]);
             let again = p.here();

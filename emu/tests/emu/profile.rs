@@ -81,6 +81,7 @@ fn loops_up_to_the_step_limit_have_the_same_profile_on_all_engines() {
 
 #[test]
 fn calls_count_what_they_call_and_regions_what_is_inside() {
+    // The program calls outer and leaf; outer calls leaf twice, within its region part and behind it.
     let (profile, counts) = run(&program(|p| {
         let (outer, leaf) = (p.label(), p.label());
         p.emit(Op::iadd, &[1, 1, 1]);
@@ -104,10 +105,12 @@ fn calls_count_what_they_call_and_regions_what_is_inside() {
             p.emit(Op::ret, &[31]);
         });
     }));
+    // 24 in outer: 1 of its own, 13 in part, 10 in the second leaf; 13 in part: 2 of its own, 10 in leaf, 1 in deep.
     assert_eq!(adds(&profile, "outer"), [1, 1, 24, 24, 24]);
     assert_eq!(adds(&profile, "part"), [1, 2, 13, 13, 13]);
     assert_eq!(adds(&profile, "deep"), [1, 1, 1, 1, 1]);
     assert_eq!(adds(&profile, "leaf"), [3, 30, 30, 10, 10]);
+    // Outside stand an addition, two calls and the halt.
     assert_eq!(profile.outside[Class::Add], 1);
     assert_eq!(profile.outside_instructions, 4);
     assert_eq!(profile.total(), counts);

@@ -120,12 +120,14 @@ impl Model {
         let is_divisible = |at: usize, is_wide: bool| {
             if is_wide { before.wide(number(at)) != 0 } else { before.scalar(number(at)) != 0 }
         };
+        // Nothing is rounded: a shift right is a division by a power of two. Choices, as of abs and min, follow the machine's numbers.
         match op {
             Op::add => scalar(Some(s(1).plus(&s(2)))),
             Op::sub => scalar(Some(s(1).minus(&s(2)))),
             Op::neg => scalar(Some(Exact::whole(0).minus(&s(1)))),
             Op::abs => scalar(Some(if raw(1) < 0 { Exact::whole(0).minus(&s(1)) } else { s(1) })),
             Op::mul => scalar(Some(s(1).times(&s(2)).scaled(-shift(3)))),
+            // Where the machine divides by 0 or takes the root of less, the shadow has nothing to say.
             Op::div => {
                 let quotient = s(1).over(&s(2)).map(|quotient| quotient.scaled(shift(3)));
                 scalar(quotient.filter(|_| is_divisible(2, false)))
@@ -235,6 +237,7 @@ fn shadows_of_straight_line_programs_are_exact_rationals() {
             });
             p.emit(Op::halt, &[]);
         });
+        // Begin with the machine's numbers; the largest of all sets how far off a shadow may be
         let mut model = Model { numbers: BTreeMap::new(), largest: Exact::whole(1) };
         for (file, count) in [('s', 5), ('v', 3), ('w', 3)] {
             for (number, k) in (0..count).flat_map(|number| (0..3).map(move |k| (number, k))) {
@@ -246,6 +249,7 @@ fn shadows_of_straight_line_programs_are_exact_rationals() {
         }
         let mut stepper = shadowed(&config, &isa, &program, registers);
         for step in &steps {
+            // The model takes the step by the registers before it, then the machine does
             let before = stepper.state().registers.clone();
             let written = model.execute(step, &before);
             prop_assert!(stepper.step().is_some());
@@ -257,6 +261,7 @@ fn shadows_of_straight_line_programs_are_exact_rationals() {
                     'v' => stepper.state().registers.vector(number)[k].into(),
                     _ => stepper.state().registers.wide(number),
                 };
+                // A register without a deviation is the machine's number exactly.
                 let deviation = numbers[k].and_then(|number| number.deviation.as_ref());
                 let real = deviation.map_or_else(|| Exact::whole(raw), |deviation| Exact::of(&deviation.real));
                 let Some(exact) = exact else {

@@ -97,24 +97,28 @@ macro_rules! outcome_enum {
 
 /// The module of an instruction with the type of its outcome: `Done`, `Each`, an enum, or an enum with a number of units.
 macro_rules! outcome_type {
+    // One outcome at a fixed cost: such rows share a type.
     ($name:ident [Done($($class:ident $n:literal),*)]) => {
         #[doc = concat!("The outcome of `", stringify!($name), "`.")]
         pub mod $name {
             pub use super::super::Done as Outcome;
         }
     };
+    // One outcome at a cost by units: these share one that holds their number.
     ($name:ident [Done($($class:ident $n:literal),* ; each $($unit:ident $m:literal),+)]) => {
         #[doc = concat!("The outcome of `", stringify!($name), "`.")]
         pub mod $name {
             pub use super::super::Each as Outcome;
         }
     };
+    // Several outcomes at fixed costs: an enum of the row's own
     ($name:ident [$($outcome:ident($($class:ident $n:literal),*)),+]) => {
         #[doc = concat!("Outcomes of `", stringify!($name), "`.")]
         pub mod $name {
             outcome_enum! { Outcome $name [$($outcome)+] }
         }
     };
+    // Several outcomes, some by units: that enum together with their number
     ($name:ident [$($outcome:ident($($class:ident $n:literal),* $(; each $($unit:ident $m:literal),+)?)),+]) => {
         #[doc = concat!("Outcomes of `", stringify!($name), "`.")]
         pub mod $name {

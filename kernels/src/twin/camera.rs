@@ -19,6 +19,7 @@ pub fn camera(
     column: u32,
     row: u32,
 ) -> TwinRay {
+    // Compute as the kernel does: what is widened stands in twice the word, and what is narrowed is rounded there
     let [column, row] = [column, row].map(|number| arithmetic.widen((number as i32).into(), 0));
     let step = |step: i64, number: i64| i128::from(arithmetic.widen(i128::from(step) * i128::from(number), 0));
     let right = |from: i64, by: i64| arithmetic.widen(i128::from(from) + step(by, column), 0);
@@ -32,6 +33,7 @@ pub fn camera(
         RawCamera::Perspective { start, extra, base, column, row } => {
             let of_pixel = |function: PixelFunction| down(right(function.first, function.column), function.row);
             let way: WideVector = from_fn(|k| down(right(base[k], column[k]), row[k]));
+            // Only the length is that of the rounded way, so that each component of the direction is rounded once, by its quotient.
             let rounded = way.map(|component| arithmetic.narrow64(component, extra));
             let length = sqrt(arithmetic, arithmetic.wide_dot(rounded, rounded));
             let length = arithmetic.widen(i128::from(length) << extra, 0);
@@ -40,6 +42,7 @@ pub fn camera(
             let origin = match start {
                 RayStart::Eye(eye) => eye,
                 RayStart::Faces { shift, .. } => {
+                    // Find the face by which the ray enters: it goes towards it, and lies within both ends on either axis along it
                     let entry = start.faces().find_map(|face| {
                         let slope = Some(of_pixel(face.slope)).filter(|&slope| slope > 0)?;
                         let mut point = [face.at; 3];
@@ -53,6 +56,7 @@ pub fn camera(
                         }
                         Some(point)
                     });
+                    // A ray that misses the box starts beyond it on every axis, going away, so that it meets nothing.
                     let behind = |k: usize| if direction[k] < 0 { root.low[k] - 2 } else { root.high[k] + 2 };
                     entry.unwrap_or_else(|| from_fn(behind))
                 }

@@ -160,6 +160,7 @@ fn recounted(program: &Program, steps: &[Step], name: &str) -> Calls {
     let mut open: Option<u32> = None;
     let mut depth = 0;
     for (at, step) in steps.iter().enumerate() {
+        // A visit is over when the walk is back above its depth, or at it and elsewhere
         let came_by_call = at > 0 && steps[at - 1].motion == Motion::Call;
         let is_here = is_in(program, step.pc, name);
         if open.is_some_and(|home| depth < home || depth == home && (!is_here || came_by_call)) {
@@ -179,8 +180,10 @@ fn recounted(program: &Program, steps: &[Step], name: &str) -> Calls {
             Motion::Return => depth - 1,
             Motion::Jump => depth,
         };
+        // The trace has no gap.
         assert!(at + 1 == steps.len() || step.next == steps[at + 1].pc);
     }
+    // The least and the most are taken class by class, whichever visit has them
     let extreme = |pick: fn(u64, u64) -> u64| {
         let mut found = *visits.first().expect("the region is visited");
         for visit in &visits {

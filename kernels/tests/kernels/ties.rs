@@ -118,6 +118,7 @@ fn turned([x, y, z]: Vec3, axis: usize) -> Vec3 {
 
 fn plane_shapes() -> Vec<Shape> {
     vec![
+        // One triangle: in its place, where decimals are not exact, turned, thin
         triangle().changed("triangle", |p| p),
         triangle().changed("triangle in decimals", |[x, y, z]| [0.1 + 0.6 * x, 0.2 + 0.6 * y, z + 0.3]),
         triangle().changed("triangle in thirds", scaled(1.0 / 3.0)),
@@ -129,6 +130,7 @@ fn plane_shapes() -> Vec<Shape> {
         square().changed("rectangle", |[x, y, z]| [4.0 * x, 3.0 * y, z]),
         square().changed("diamond", |p| turned(p, 2)),
         square().changed("ramp", |[x, y, _]| [x, y, x + y]),
+        // Two pieces: apart, one before the other, in the same place, crossing, touching
         square().and("steps apart", square().changed("right", moved([1.0, 0.0, 0.5]))),
         square().and("one plane twice", square().changed("over", |[x, y, z]| [0.25 + 0.5 * x, 0.25 + 0.5 * y, z])),
         square().and("the same twice", square()),
@@ -136,6 +138,7 @@ fn plane_shapes() -> Vec<Shape> {
             .changed("up", |[x, y, _]| [x, y, x])
             .and("crossing", square().changed("down", |[x, y, _]| [x, y, 0.8 - x])),
         triangle().and("corner to corner", triangle().changed("other", |[x, y, z]| [-x, -y, z])),
+        // Faces within one plane, which share their edges
         flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], &[&[0, 1, 3], &[1, 2, 3]])
             .changed("two colours", |p| p),
         flat(
@@ -159,10 +162,12 @@ fn solid_shapes() -> Vec<Shape> {
         cuboid().changed("cube seen by an edge", |p| turned(p, 1)),
         cuboid().changed("cube seen from above", |p| turned(p, 0)),
         cuboid().changed("board", |[x, y, z]| [x / 3.0, y / 3.0, z / 30.0]),
+        // Several cubes that touch or hold each other
         cuboid()
             .and("box on box", cuboid().changed("top", |[x, y, z]| [0.25 + x / 2.0, 1.0 + y / 2.0, 0.25 + z / 2.0])),
         cuboid().and("box in box", cuboid().changed("in", |p| p.map(|x| 0.25 + x / 2.0))),
         stairs(0.0, 1.0).and("stairs", stairs(1.0, 2.0)).and("stairs", stairs(2.0, 3.0)),
+        // Points, folds, and a cube before a wall
         star(4, 1.0, 1.0).changed("pyramid", |p| p),
         star(4, 1.0, 1.0).changed("pyramid on edge", |p| turned(p, 2)),
         star(6, 1.0, 0.5).changed("tent", |p| p),

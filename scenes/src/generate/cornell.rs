@@ -31,12 +31,14 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
     let plain = |surface: MaterialNumber| move |_, _| surface;
     let across = |i: u32| 2.0 * f64::from(i) / f64::from(tiles) - 1.0;
     let depth = |j: u32| foreshortened(f64::from(j) / f64::from(tiles));
+    // Tile floor, ceiling, left, right and back; on two of them depth runs towards the viewer, so that all tiles turn the same way round
     mesh.patch(side, |i, j| inside(across(i), -1.0, depth(j)), |i, j| if (i + j) % 2 == 0 { white } else { grey });
     mesh.patch(side, |i, j| inside(across(i), 1.0, depth(tiles - j)), plain(white));
     mesh.patch(side, |i, j| inside(-1.0, across(i), depth(tiles - j)), plain(red));
     mesh.patch(side, |i, j| inside(1.0, across(i), depth(j)), plain(green));
     mesh.patch(side, |i, j| inside(across(i), across(j), 1.0), plain(white));
 
+    // Stand the blocks on the floor: the tall one's centre is 1.63 above it and half its height 1.6, so 0.03 keeps their planes apart
     let floor = slope_frame(-1.0);
     let stand = |x: f64, depth: f64, height: f64| add(inside(x, -1.0, depth), scale(floor.0[1], height));
     let tall = floor.then(Frame::rotation(1, 0.31));
@@ -44,6 +46,7 @@ pub(super) fn build(sizes: &Sizes) -> Scene {
     let short = floor.then(Frame::rotation(1, -0.16));
     mesh.block(stand(0.43, 0.36, 0.93), [0.89, 0.9, 0.85], short, glass);
 
+    // The lamp only looks like one: light comes from two points below the ceiling.
     let ceiling = slope_frame(1.0);
     let under = inside(0.0, 1.0, 0.47);
     mesh.block(add(under, [0.0, -0.09, 0.0]), [0.71, 0.03, 0.47], ceiling, lamp);

@@ -136,10 +136,12 @@ impl SceneInfo {
 
     /// The facts of a scene and its image.
     pub fn of_image(scene: &Scene, image: &MemoryImage) -> SceneInfo {
+        // Find the vertices that triangles name: a file may hold more
         let mut is_used = vec![false; scene.vertices.len()];
         scene.triangles.iter().flat_map(|t| t.vertices).for_each(|vertex| is_used[vertex as usize] = true);
         let corners: Vec<[u32; 3]> = scene.triangles.iter().map(|triangle| triangle.vertices).collect();
         let materials = materials(scene);
+        // A mirror that no triangle is made of is not in the picture.
         let has = |test: fn(&MaterialInfo) -> bool| materials.iter().any(|m| m.triangles > 0 && test(m));
         let formats = &image.formats;
         SceneInfo {

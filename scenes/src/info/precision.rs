@@ -34,11 +34,13 @@ pub struct Precision {
 impl Precision {
     /// Compares the triangles of a scene with those of its image.
     pub fn new(scene: &Scene, image: &MemoryImage) -> Precision {
+        // A stored coordinate is in steps of 2^shift raw ones: the layout `report` keeps 16 bits of a word of 24, so its step is 256.
         let shift = image.layout.coordinate_shift(image.formats.word);
         let inner = image.grid.bounds();
         let longest = [0, 1, 2].map(|axis| inner.side(axis)).into_iter().max().unwrap_or(0);
         let (mut largest, mut sum) = (0.0_f64, 0.0);
         let (mut degenerate, mut collapsed) = (0, 0);
+        // Sum up how far corners move, and tell the triangles that never had an area from those that lose it
         for (number, triangle) in (0..).zip(&scene.triangles) {
             let corners = triangle.vertices.map(|vertex| scene.vertices[vertex as usize]);
             let Some(stored) = image.triangle(number) else { continue };
@@ -53,6 +55,7 @@ impl Precision {
                 collapsed += 1;
             }
         }
+        // Take the mean over all corners, and shares of the longest side; a scene without triangles has zeros
         let corners = 3.0 * scene.triangles.len().max(1) as f64;
         let (largest_move, rms_move) = (largest.sqrt(), (sum / corners).sqrt());
         let share = |distance: f64| {

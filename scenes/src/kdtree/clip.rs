@@ -28,6 +28,7 @@ pub(super) fn clipped(vertices: &[[i32; 3]; 3], node: &Bounds) -> Option<Bounds>
         corner.at = vertex.map(f64::from);
     }
     let mut count = 3;
+    // Cut with the planes that the triangle crosses, moved outwards so that rounding loses no corner that lies in one
     for axis in 0..3 {
         if whole.low[axis] < node.low[axis] {
             let plane = f64::from(node.low[axis]) - MARGIN;
@@ -42,6 +43,8 @@ pub(super) fn clipped(vertices: &[[i32; 3]; 3], node: &Bounds) -> Option<Bounds>
     if left.is_empty() {
         return None;
     }
+    // Round outwards to whole units, but never beyond the triangle or the node: a computed corner at 4 may be at 4.001 and ends the box
+    // at 5, a vertex at 4 is exact and ends it at 4
     let bounds = Bounds {
         low: [0, 1, 2].map(|axis| {
             let low = left.iter().map(|c| c.at[axis] - c.margin).fold(f64::INFINITY, f64::min);

@@ -94,12 +94,14 @@ mod tests {
         let mut points: [Vec<[[f64; 3]; 2]>; 2] = [Vec::new(), Vec::new()];
         for (number, to) in corners.iter().enumerate() {
             let from = corners[(number + 2) % 3];
+            // A vertex is a point of the half on its side, and of both where it lies in the plane.
             if to[axis] <= plane {
                 points[0].push([*to; 2]);
             }
             if to[axis] >= plane {
                 points[1].push([*to; 2]);
             }
+            // An edge that ends in the plane is not cut: its vertex is in both halves already.
             if (from[axis] < plane && to[axis] > plane) || (from[axis] > plane && to[axis] < plane) {
                 let share = (plane - from[axis]) / (to[axis] - from[axis]);
                 let crossing = [0, 1, 2].map(|k| from[k] + share * (to[k] - from[k]));
@@ -107,6 +109,7 @@ mod tests {
                 points.iter_mut().for_each(|half| half.push(around));
             }
         }
+        // Round outwards and cut down to the part; the plane itself is exact
         let boxes = points.map(|half| {
             let least = |k: usize| half.iter().map(|[low, _]| low[k]).fold(f64::INFINITY, f64::min);
             let most = |k: usize| half.iter().map(|[_, high]| high[k]).fold(f64::NEG_INFINITY, f64::max);

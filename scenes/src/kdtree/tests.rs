@@ -27,12 +27,14 @@ fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> N
     if levels == 0 || area == 0 {
         return NaiveTree::Leaf(node, packet);
     }
+    // Collect the candidates: both ends of every triangle, strictly inside of the node
     let extent = |&i: &u32| (triangles[i as usize].low[axis], triangles[i as usize].high[axis]);
     let mut candidates: Vec<i32> = packet.iter().map(extent).flat_map(|(low, high)| [low, high]).collect();
     candidates.retain(|&s| node.low[axis] < s && s < node.high[axis]);
     candidates.sort_unstable();
     let mut lowest = packet.len() as i128 * area;
     let mut found = None;
+    // Count and price each candidate, times the node's area; what lies in the plane goes left where that costs no more
     for s in candidates {
         let left = packet.iter().map(extent).filter(|&(low, high)| low < s && high <= s).count() as i128;
         let right = packet.iter().map(extent).filter(|&(low, high)| low >= s && high > s).count() as i128;
@@ -50,6 +52,7 @@ fn model(packet: Vec<u32>, triangles: &[Bounds], node: Bounds, levels: u32) -> N
             found = Some((s, is_right, below, above));
         }
     }
+    // Divide at the cheapest candidate, the lowest of equal ones; where none is cheaper than a leaf, it stays one
     let Some((s, is_right, below, above)) = found else { return NaiveTree::Leaf(node, packet) };
     let is_flat = |i: &u32| extent(i) == (s, s);
     let lower = packet.iter().copied().filter(|i| extent(i).0 < s || is_flat(i) && !is_right).collect();

@@ -33,6 +33,7 @@ impl FieldWidths {
 
     /// The structures.
     pub(super) fn structures(&self) -> StructureSet {
+        // Materials and lights have the fields of `wide`, all of one width and bit behind bit
         let packed = |structure: &Structure, bits: u32| {
             let field = |&field: &Field| Field { bits, begins_octet: false, ..field };
             Structure { name: structure.name, fields: structure.fields.iter().map(field).collect() }
@@ -88,6 +89,7 @@ impl FieldWidths {
                     signed("v0", 3, self.vertex, "first vertex: position"),
                     signed("v1", 3, self.vertex, "second vertex"),
                     signed("v2", 3, self.vertex, "third vertex"),
+                    // The only field here that begins with an octet: nine coordinates of 15 bits, 135, leave one bit unused before it.
                     unsigned("material_id", self.material_id, true, "number of the material"),
                 ],
             ),

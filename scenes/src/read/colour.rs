@@ -87,11 +87,13 @@ impl FaceColours {
         let mut numbers = HashMap::new();
         let mut materials = Vec::new();
         let mut beyond = 0;
+        // Faces before the first coloured one are not in the list: where that is face 3, faces 0 to 2 stand before it without a colour.
         let before = std::iter::repeat_n(&Spec::Default, self.first);
         let of_faces = before
             .chain(&self.specs)
             .take(faces)
             .map(|&spec| {
+                // Bring the components to 0..1: `1 0 0` is bright red, but nearly black where another face has `255 0 0`
                 let colour = match spec {
                     Spec::Default => [2.0 / 3.0; 3],
                     Spec::Index(index) => map(index),
@@ -100,6 +102,7 @@ impl FaceColours {
                     Spec::Components(rgb, _) => rgb,
                 };
                 beyond += usize::from(colour.iter().any(|c| !(0.0..=1.0).contains(c)));
+                // Equal colours share a material; 0.0 is added since a negative zero has other bits.
                 let colour = colour.map(|c| c.clamp(0.0, 1.0) + 0.0);
                 *numbers.entry(colour.map(f64::to_bits)).or_insert_with(|| {
                     materials.push(Material { colour, reflection: 0.0, intensity: INTENSITY, index: 0.0 });

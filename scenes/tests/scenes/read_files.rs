@@ -71,6 +71,7 @@ fn said(path: &str, mesh: Option<&str>) -> String {
 fn files_are_found_and_belong_together() {
     let mut text = String::new();
     for (path, mesh) in [
+        // A description and its mesh, found beside it or given
         ("good.dsc", None),
         ("good.off", None),
         ("good.dsc", Some("good.off")),
@@ -81,6 +82,7 @@ fn files_are_found_and_belong_together() {
         ("counts_differ.dsc", None),
         ("faces_counted.dsc", None),
         ("both_wrong.dsc", None),
+        // Names that lead to nothing, with and without one that is like them
         ("alone.dsc", None),
         ("alone.dsc", Some("godo.off")),
         ("goood.dsc", None),
@@ -88,9 +90,11 @@ fn files_are_found_and_belong_together() {
         ("nothing_like_it.dsc", None),
         ("good.dsc/inside.dsc", None),
         (".", None),
+        // Files in each other's place, or of no known kind
         ("good.off", Some("good.off")),
         ("good.dsc", Some("good.dsc")),
         ("unknown.txt", None),
+        // Meshes of the other formats, with a description and alone, known by their contents where no ending names them
         ("with_obj.dsc", None),
         ("with_ply.dsc", None),
         ("with_stl.dsc", None),

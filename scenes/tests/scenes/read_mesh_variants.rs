@@ -306,6 +306,7 @@ impl Write for TextEnd<'_> {
 }
 
 fn ply_bytes(style: &PlyStyle, model: &MeshModel) -> Vec<u8> {
+    // Write the header, with the style's gaps in turn between its words
     let mut lines = vec!["ply".to_string(), format!("format {} 1.0", style.encoding), "comment any".to_string()];
     lines.push(format!("element vertex {}", model.vertices.len()));
     lines.extend(["x", "y", "z"].map(|axis| format!("property {} {axis}", style.coordinate)));
@@ -333,11 +334,13 @@ fn ply_bytes(style: &PlyStyle, model: &MeshModel) -> Vec<u8> {
         }
         out.extend(style.line_end.as_bytes());
     }
+    // In text each element ends with its line; binary elements have nothing between them.
     let end = |out: &mut Vec<u8>| {
         if style.encoding == "ascii" {
             out.extend(style.line_end.as_bytes());
         }
     };
+    // Write the elements in the order of the header; edges are read over, so their numbers may be any
     for vertex in &model.vertices {
         vertex.iter().for_each(|&x| put(&mut out, style, style.coordinate, x));
         if style.has_normals {

@@ -150,6 +150,7 @@ fn every_generated_scene_comes_back_in_every_format() {
             let (alone, described) = mesh_there_and_back(folder.path(), &scene, format);
             let (alone, described) = (alone.scene, described.scene);
             let what = format!("{} as {format}", scene.name);
+            // With a description STL loses precision and which corners are shared, the other formats nothing.
             if format == MeshFormat::Stl {
                 let single = |x: f64| f64::from(x as f32);
                 assert!(corners(&described, |x| x) == corners(&scene, single), "{what}");
@@ -159,6 +160,7 @@ fn every_generated_scene_comes_back_in_every_format() {
                 assert!(described.vertices == scene.vertices && described.triangles == scene.triangles, "{what}");
             }
             assert!(corners(&alone, |x| x) == corners(&described, |x| x), "{what}");
+            // Alone, a mesh has what its format keeps of materials: nothing, colours, colours in octets, or all that has an effect.
             for (own, wanted) in alone.triangles.iter().zip(&scene.triangles) {
                 let (own, wanted) =
                     (&alone.materials[own.material as usize], &scene.materials[wanted.material as usize]);

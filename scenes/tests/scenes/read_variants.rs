@@ -207,6 +207,7 @@ proptest! {
         let shown = String::from_utf8_lossy(&bytes).into_owned();
         let mesh = off::parse(&bytes, "f.off").map_err(|report| TestCaseError::fail(format!("{report}\n{shown}")))?;
 
+        // Positions: binary files hold single precision; of more than three coordinates the first three count, missing ones are 0
         let stored = |x: f64| if style.is_binary { f64::from(x as f32) } else { x };
         let kept = style.dimension.unwrap_or(3);
         for (&read, &written) in mesh.vertices.iter().zip(&model.vertices) {
@@ -215,6 +216,7 @@ proptest! {
         }
         prop_assert_eq!(mesh.vertices.len(), model.vertices.len());
 
+        // Faces: a cut into triangles keeps the outline, since the two directions of an edge within it cancel
         let drawn: Vec<usize> = (0..model.faces.len()).filter(|&n| model.faces[n].len() >= 3).collect();
         prop_assert_eq!(mesh.faces, drawn.len());
         let mut triangles = mesh.triangles.iter().zip(mesh.surfaces.iter().map(Some).chain(std::iter::repeat(None)));
@@ -223,6 +225,7 @@ proptest! {
             let own: Vec<_> = triangles.by_ref().take(face.len() - 2).collect();
             let corners: Vec<Vec<u32>> = own.iter().map(|(corners, _)| corners.to_vec()).collect();
             prop_assert_eq!(outline(&corners), outline(std::slice::from_ref(face)), "{}", shown);
+            // Colours: a single whole number above 1, in a face that is drawn, makes all whole numbers of the file 0..255
             let rgb = [0, 1, 2].map(|k| f64::from(model.colours[n][k]));
             let is_octet = drawn.iter().any(|&n| model.colours[n][..3].iter().any(|&c| c > 1));
             for (_, surface) in own {

@@ -40,12 +40,14 @@ fn bus_words(config: &Config) -> Vec<String> {
 
 /// Figure 8: main processor, cores, bus and memory.
 pub fn machine(name: &str, config: &Config) -> DiagramFigure {
+    // Choose the cores that are shown: of 16 these are 0 to 4 and 15, with the title `.. core 15`
     let numbers: Vec<u32> = match config.cores <= SHOWN {
         true => (0..config.cores).collect(),
         false => (0..SHOWN - 1).chain([config.cores - 1]).collect(),
     };
     let (bus_y, core_y) = (0.24, 0.42);
     let pitch = 1.0 / numbers.len() as f64;
+    // Put main processor and memory above the bus; all places are in widths of the figure
     let mut boxes = vec![one((0.5, bus_y), (1.0, 0.065), Look::Numbered(1), bus_words(config))];
     let traffic = if config.main.traffic { "its transfers use the bus" } else { "its transfers take no time" };
     let main = vec![
@@ -61,6 +63,7 @@ pub fn machine(name: &str, config: &Config) -> DiagramFigure {
     ];
     boxes.push(one((0.78, 0.07), (0.36, 0.1), Look::Numbered(2), memory));
     let mut links = vec![line(vec![(0.22, 0.07), (0.22, bus_y)], 1.5), line(vec![(0.78, 0.07), (0.78, bus_y)], 1.5)];
+    // Hang the cores from the bus, side by side
     for (at, &number) in numbers.iter().enumerate() {
         let x = pitch * (at as f64 + 0.5);
         links.push(line(vec![(x, bus_y), (x, core_y)], 1.5));
@@ -90,6 +93,7 @@ pub fn coprocessor(name: &str, config: &Config) -> DiagramFigure {
         one[class] = 1;
         format!("{}: {}", class.name(), clocks(timing.clocks(&one).0))
     };
+    // Say in words what each part of a core is on this machine
     let arithmetic = &config.arithmetic;
     let modes = format!("{} bits, {}, {}", arithmetic.word, arithmetic.quantization, arithmetic.overflow);
     let elementary: Vec<String> =
@@ -118,6 +122,7 @@ pub fn coprocessor(name: &str, config: &Config) -> DiagramFigure {
         "bus port".to_owned(),
         if config.bus.overlap { "computes while it loads".to_owned() } else { "waits for its transfers".to_owned() },
     ];
+    // Place the parts in a frame, which leaves the bus below it
     let frame =
         DiagramBox { is_around: true, ..one((0.5, 0.21), (0.98, 0.42), Look::Muted, vec!["coprocessor".to_owned()]) };
     let boxes = vec![
@@ -130,6 +135,7 @@ pub fn coprocessor(name: &str, config: &Config) -> DiagramFigure {
         one((0.5, 0.36), (0.5, 0.07), Look::Numbered(1), port),
         one((0.5, 0.48), (1.0, 0.065), Look::Numbered(1), bus_words(config)),
     ];
+    // Join units, registers, ray unit and buffer, and these by way of cache and port to the bus
     let links = vec![
         line(vec![(0.18, 0.11), (0.82, 0.11)], 1.2),
         line(vec![(0.5, 0.11), (0.5, 0.23)], 1.2),

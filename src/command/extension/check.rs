@@ -36,6 +36,7 @@ pub struct CheckArguments {
 pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Result<Exit, Failure> {
     let mut isa = Isa::base();
     for path in &arguments.files {
+        // All files go into one set of instructions, so that clashes between them show.
         let (loaded, _) = extend(&mut isa, path)?;
         let warnings: Vec<_> = loaded.iter().flat_map(|loaded| findings(&isa, loaded)).collect();
         let number = warnings.len() as u64;
@@ -48,6 +49,7 @@ pub(super) fn execute(arguments: &CheckArguments, terminal: &mut Terminal) -> Re
         );
         for loaded in &loaded {
             text += &format!("  {}\n", isa.definition(loaded.op).line());
+            // A meaning is written in Rust, as a body of instructions, or both; only of a body it is known what it spends.
             if loaded.is_rust {
                 text += "    meaning in Rust: a program of yours attaches and runs it\n";
             }

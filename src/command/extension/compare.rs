@@ -84,6 +84,7 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
     };
     let mut extended = job.job()?;
     terminal.show(&extended.warnings);
+    // Make two jobs: kernels that use the extension do not assemble without it, so one has the profile's own
     let mut plain = extended.clone();
     plain.kernels.replaced.clear();
     let (loaded, texts) = extend(&mut extended.isa, &arguments.file)?;
@@ -92,6 +93,7 @@ pub(super) fn execute(arguments: &CompareArguments, terminal: &mut Terminal) -> 
     let hash = Some(hash::texts(texts.iter().map(|text| text.text.as_str())));
     let settings =
         CompareSettings { job: Settings::of(&extended), extension: FileSettings { file: file.clone(), hash } };
+    // Draw three pictures: without, with, and with the bodies in the place of the instructions
     let bar = terminal.progress("pictures", 3);
     let comparison = compare(file, &ops, &plain, &extended, &mut || bar.inc(1));
     bar.finish_and_clear();

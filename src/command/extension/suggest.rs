@@ -134,6 +134,7 @@ fn text(suggestions: &Suggestions) -> String {
         "at most",
     ])];
     for found in &suggestions.found {
+        // A row `fused1 (d: S, a: S, b: V) ...` has three operands.
         let operands = found.row.split(['(', ')']).nth(1).unwrap_or_default().split(", ").count();
         rows.push(vec![
             found.name.clone(),
@@ -149,6 +150,7 @@ fn text(suggestions: &Suggestions) -> String {
             format!("{:.3} x", suggestions.speedup(found)),
         ]);
     }
+    // Each was found with those before it in their places, so what they save adds up.
     let saved: u64 = suggestions.found.iter().map(|found| found.saved()).sum();
     format!(
         "{}apart: places where other instructions stood between those of the sequence; saves: share of all instructions; clocks: one after the other, and along the longest chain of results; saved clocks: of computing, on this machine;\nat most: how much \

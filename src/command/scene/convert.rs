@@ -94,6 +94,7 @@ pub(super) fn execute(
     terminal: &mut Terminal,
 ) -> Result<Exit, Failure> {
     let output = &arguments.output;
+    // Name the files, and refuse places where they cannot go
     let target = arguments.to.map_or_else(|| ConversionTarget::of(output), Ok).map_err(Failure::usage)?;
     let has_description = arguments.dsc || target == ConversionTarget::Description;
     let paths = paths(output, target, has_description);
@@ -110,9 +111,11 @@ pub(super) fn execute(
     files::check_spared(paths.iter().map(PathBuf::as_path), &loaded.files).map_err(Failure::usage)?;
     terminal.show(&loaded.warnings);
     let scene = &loaded.scene;
+    // Convert everything before the first file is written, so that an error leaves none
     let contents = contents(&loaded, target, has_description, &paths)
         .map_err(|error| Diagnostic::error(format!("the scene cannot be written: {error}")))?;
     files::write_all(&paths.iter().zip(contents).collect::<Vec<_>>())?;
+    // Say what the format cannot hold; a description beside the mesh holds more
     match target {
         ConversionTarget::Mesh(format) if has_description => {
             terminal.show(&write::losses_beside_description(&loaded, format))
@@ -120,6 +123,7 @@ pub(super) fn execute(
         ConversionTarget::Mesh(format) => terminal.show(&write::losses(&loaded, format)),
         ConversionTarget::Description => terminal.show(&write::losses_beside_description(&loaded, MeshFormat::Off)),
     }
+    // Name the files from the outside in: a description, its mesh, the library of that.
     let shown: Vec<String> = paths.iter().rev().map(|path| path.display().to_string()).collect();
     match (is_taken, arguments.json) {
         (true, _) => {}
@@ -158,6 +162,7 @@ fn contents(
     if has_description {
         write::dsc(scene, &mut description)?;
     }
+    // The order is that of `paths`: x.mtl is named by x.obj, and that by x.dsc.
     let mut files = match target {
         ConversionTarget::Mesh(MeshFormat::Obj) => {
             let (mut library, mut mesh) = (Vec::new(), Vec::new());

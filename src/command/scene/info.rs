@@ -117,6 +117,7 @@ fn text(facts: &SceneInfo) -> String {
     };
     let mirror = if facts.has_mirror { "mirrors" } else { "no mirror" };
     text += &format!("{mirror}, {}\n\n", if facts.has_glass { "glass" } else { "no glass" });
+    // List materials, memory and tree
     text += &materials(facts);
     text += &memory(facts);
     let tree = &facts.tree;
@@ -131,8 +132,10 @@ fn text(facts: &SceneInfo) -> String {
         grouped(tree.most_triangles as u64),
         tree.expected_cost,
     );
+    // The first format is the word; the others are fraction bits.
     let formats: Vec<String> = facts.formats.0.iter().skip(1).map(|(name, bits)| format!("{name} {bits}")).collect();
     text += &format!("formats: word {}, fraction bits {}\n", facts.formats.0[0].1, formats.join(", "));
+    // Steps are shorter than a power of two by the stretch: 2^-16 / 1.2500 = 1.221e-5.
     let precision = &facts.precision;
     let divided = if precision.stretch == 1.0 { String::new() } else { format!(" / {:.4}", precision.stretch) };
     text + &format!(

@@ -105,9 +105,11 @@ fn variable(session: &Session, name: &str, shown: &ShownRegister, register: Opti
 /// A reference that is none.
 pub fn variables(session: &Session, arguments: &Value) -> Result<Value, String> {
     let reference = arguments["variablesReference"].as_u64().unwrap_or(0);
+    // A reference is 8 * frame + scope, so the vectors (scope 3) of frame 2 have 19.
     let (frame, scope) = (reference / 8, (reference % 8) as usize);
     let pc = frame_word(session, frame)?;
     let (program, state) = (&session.target.program, session.stepper().state());
+    // Calls keep no registers: an outer frame shows those of now, by the names that hold there.
     let shown = |register| ShownRegister::at(program, &state.registers, register, pc);
     let variable = |name: &str, register| variable(session, name, &shown(register), Some(register));
     let of_file = |file: char| -> Vec<Value> {

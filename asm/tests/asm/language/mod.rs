@@ -63,16 +63,19 @@ fn labels_lead_forward_and_back() {
 #[test]
 fn expressions_follow_c() {
     for (text, value) in [
+        // Precedence: `*` before `+` before `<<`, and `==` before `&` before `^` before `|`
         ("1 + 2 * 3", 7),
         ("(1 + 2) * 3", 9),
         ("1 << 2 + 1", 8),
         ("7 & 3 == 3", 1),
         ("1 | 2 ^ 3 & 1", 3),
+        // Quotients are rounded towards 0, and remainders have the sign of the dividend.
         ("-7 / 2", -3),
         ("-7 % 2", -1),
         ("~0", -1),
         ("!5 + !0", 1),
         ("0 || 2 && 3", 1),
+        // What need not be known is not computed.
         ("0 && 1 / 0", 0),
         ("1 || 1 / 0", 1),
         ("- -3", 3),
@@ -84,6 +87,7 @@ fn expressions_follow_c() {
         ("0x7fff_ffff_ffff_ffff", i64::MAX),
         ("-9223372036854775808", i64::MIN),
         ("-(1 << 62) * 2", i64::MIN),
+        // Literals in a format of 30 fraction bits, and its name as that number
         ("0.5:pos + 1:pos", 3 << 29),
         ("-1.25:pos", -5 << 28),
         ("pos - 2", 28),
@@ -229,6 +233,7 @@ fn conditions_choose_lines() {
         .endif
         this is not read
         .endif";
+    // No trap is left, and a line that is left out may be anything.
     assert_eq!(code(text), "movi s1, 1; movi s1, 2; movi s1, 3; movi s2, 4");
 }
 
@@ -273,6 +278,7 @@ fn every_pseudo_instruction_expands() {
     for pseudo in PSEUDOS {
         assert!(isa.find(pseudo.name).is_none(), "{} is a row", pseudo.name);
         assert!(pseudo.doc.ends_with('.'), "{}", pseudo.name);
+        // Small numbers, large ones, some of each, and a name that is known only later: expansions differ by them.
         for numbers in [["0", "0", "0"], ["70000", "70000", "70000"], ["1", "2", "70000"], ["later", "later", "1"]] {
             let mut next = numbers.iter();
             let operands: Vec<String> = pseudo
@@ -281,6 +287,7 @@ fn every_pseudo_instruction_expands() {
                 .map(|&(letter, part)| match part {
                     PseudoPart::Number => next.next().unwrap_or(&"1").to_string(),
                     PseudoPart::Kind(kind) => {
+                        // Registers by their letters: `a` is 97, so 1, and `d` is 100, so 4.
                         kind.register_file().map_or(".".into(), |file| format!("{file}{}", letter as u8 % 8))
                     }
                 })
@@ -289,12 +296,14 @@ fn every_pseudo_instruction_expands() {
             assert!(!program(&text).words.is_empty(), "{text}");
         }
     }
+    // Three equal components are loaded once, and 0 is there as `s0`.
     assert_eq!(code("vset v1, 0, 0, 0, s9"), "vsplat v1, s0");
     assert_eq!(code("vset v1, 7, 7, 7, s9"), "movi s9, 7; vsplat v1, s9");
     assert_eq!(
         code("vset v1, 1, 2, 3, s9"),
         "movi s9, 1; vput v1, s9, 0; movi s9, 2; vput v1, s9, 1; movi s9, 3; vput v1, s9, 2"
     );
+    // Comparisons without a row are those that exist, with their operands exchanged.
     assert_eq!(
         code("x: bgt s1, s2, x\nble s1, s2, x\nbgtz s1, x\nblez s1, x"),
         "L0:; blt s2, s1, L0; bge s2, s1, L0; blt s0, s1, L0; bge s0, s1, L0"

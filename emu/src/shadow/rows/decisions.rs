@@ -92,6 +92,7 @@ pub(super) fn meeting(ray: &RealRay, vertices: &[[LongReal; 3]; 3]) -> Option<Lo
     };
     let dot =
         |a: &[LongReal; 3], b: &[LongReal; 3]| a[0].times(&b[0]).plus(&a[1].times(&b[1])).plus(&a[2].times(&b[2]));
+    // Möller and Trumbore's test before its division: u, v and w are barycentric coordinates times the determinant
     let [edge1, edge2, start] = [
         difference(&vertices[1], &vertices[0]),
         difference(&vertices[2], &vertices[0]),
@@ -102,6 +103,7 @@ pub(super) fn meeting(ray: &RealRay, vertices: &[[LongReal; 3]; 3]) -> Option<Lo
     if determinant.is_zero() {
         return None;
     }
+    // Inside of the triangle each of them is 0 or has the determinant's sign.
     let is_outside = |number: &LongReal| !number.is_zero() && number.is_negative() != determinant.is_negative();
     let u = dot(&p, &start);
     let q = cross(&start, &edge1);
@@ -110,6 +112,7 @@ pub(super) fn meeting(ray: &RealRay, vertices: &[[LongReal; 3]; 3]) -> Option<Lo
     if [u, v, w].iter().any(is_outside) {
         return None;
     }
+    // Divide, now that there is a hit of the plane within the triangle, and see whether it lies ahead
     let t = dot(&q, &edge2).over(&determinant)?;
     (!t.is_zero() && !t.is_negative()).then_some(t)
 }

@@ -21,6 +21,7 @@ impl RealFormulas<'_> {
     /// Goes the machine's way and asks the shadow at each node; `None` where the walk leaves the buffer, which is a trap.
     fn walk(&mut self, mut node: u32, note: u32, a: &[[ShadowInput; 3]; 2], entry: Plane, block: u32) -> Option<()> {
         let ray = RealRay::new(a);
+        // A block is the address of its first node, its octets, and its nodes; the note holds the plane by which the ray leaves.
         let (first, octets) =
             (self.buffer.word(block).ok()? as u32, self.buffer.word(block.wrapping_add(4)).ok()? as u32);
         let mut exit = Plane::from_pattern(self.pattern(note)?);
@@ -32,6 +33,7 @@ impl RealFormulas<'_> {
                 return Some(());
             }
             let split = self.pattern(block.wrapping_add(8).wrapping_add(inside))?;
+            // A node 0x00001012_00008000 divides axis 2 at 0x8000; its children are at 0x1010 and 0x1018.
             let (plane, left) = (Plane::from_pattern(split), (split >> 32) as u32 & !3);
             let taken = descent.step(plane);
             let is_right = match taken {
@@ -40,6 +42,7 @@ impl RealFormulas<'_> {
                 Children::Both { is_right_first } => is_right_first,
             };
             let is_both = matches!(taken, Children::Both { .. });
+            // Which child comes first is a decision, and whether there are two; the walk goes on as the machine's does.
             self.decide_on(a.iter().flatten(), || {
                 let (end, is_right_first) = real_step(&ray, plane, &ray.crossing(entry), &ray.crossing(exit));
                 is_both == (end == SplitEnd::Both) && is_right == is_right_first
@@ -48,6 +51,7 @@ impl RealFormulas<'_> {
                 exit = plane;
             }
             let child = if is_right { left.wrapping_add(NODE) } else { left };
+            // The machine too follows only trees whose children stand behind their parents, so that the walk ends.
             if child <= node {
                 return Some(());
             }

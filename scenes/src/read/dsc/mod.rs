@@ -64,6 +64,7 @@ fn read(words: &mut Words<'_>) -> Option<Description> {
     keyword(words)?;
     let size = (side(words, "the picture's width")?, side(words, "the picture's height")?);
     let (materials, lights) = (count(words, "materials")?, count(words, "lights")?);
+    // Six numbers take 12 octets at least, a digit and a gap each, so absurd counts are refused before anything is read.
     words.room(materials.0, materials.1, "materials", 12)?;
     words.room(lights.0, lights.1, "lights", 12)?;
 
@@ -86,6 +87,7 @@ fn read(words: &mut Words<'_>) -> Option<Description> {
             lamps.push(Light { position: [x, y, z], colour: [red, green, blue] });
         }
     }
+    // Scale all colours once the last light is read: one component above 1 makes the whole file 0..255
     let largest = colours.largest(words);
     surfaces.iter_mut().for_each(|material| material.colour = material.colour.map(|c| c / largest));
     lamps.iter_mut().for_each(|light| light.colour = light.colour.map(|c| c / largest));
@@ -255,10 +257,12 @@ fn triangle_materials(
             return cut(words, &place, Some((triangles.1, "triangle")));
         };
         let number = words.whole(word, || format!("the material of triangle {n}"));
+        // Collect what is out of range for one message: with a wrong count of materials that may be thousands of triangles
         if let Some(number) = number.filter(|&number| number >= materials.0) {
             first_beyond.get_or_insert((n, number, word));
             beyond += 1;
         }
+        // 0 stands for a word that is no number: it has its complaint, so the list will not be used.
         list.push(number.unwrap_or(0));
         if words.is_lost() {
             return None;

@@ -49,17 +49,20 @@ pub(super) fn parse(source: &Arc<Source>) -> (Vec<(String, Material)>, Report) {
     let mut arguments = Vec::new();
     while let Some(keyword) = statement::next(&mut words, &mut arguments) {
         if keyword.text == "newmtl" {
+            // A material ends where the next one begins
             materials.extend(draft.take().map(|draft| finish(&mut words, draft, &mut lost)));
             let name = words.line_from(keyword.span().end).text;
             if name.is_empty() {
                 words.refuse(keyword, "a material needs a name", "no name follows");
             }
+            // A material that says no more is grey, opaque and without reflection.
             let (diffuse, specular) = (GREY.colour, [0.0; 3]);
             draft =
                 Some(Draft { name, diffuse, specular, opacity: None, transparency: None, refraction: 1.0, model: 2 });
         } else if let Some(draft) = &mut draft {
             read(&mut words, keyword, &arguments, draft, &mut lost);
         } else {
+            // One complaint is enough: where this is no library, each line would bring another.
             let message = format!("`{}` stands before the first `newmtl`", shortened(keyword.text));
             words.refuse(keyword, message, "of which material?");
             break;

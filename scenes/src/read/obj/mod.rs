@@ -129,6 +129,7 @@ fn vertex<'a>(
     lost: &mut LostStatements<'a>,
 ) -> Vec3 {
     let count = arguments.len();
+    // A weight, the components of a colour or all four may follow x, y, z: `v 1 2 3 0.5`, `v 1 2 3 1 0 0`, `v 1 2 3 0.5 1 0 0`
     if !matches!(count, 3 | 4 | 6 | 7) {
         let message = format!("vertex {number} should have 3 coordinates");
         let place = words.place(statement::span(keyword, arguments));
@@ -143,12 +144,14 @@ fn vertex<'a>(
     for (k, (value, word)) in values.iter_mut().zip(arguments).enumerate() {
         *value = match k {
             0..3 => words.number(*word, || format!("{} of vertex {number}", ["x", "y", "z"][k])),
+            // No picture depends on these, so they need not be finite.
             _ => words.unused_number(*word, || format!("number {} of vertex {number}", k + 1)),
         };
     }
     if count >= 6 {
         lost.note(lost::COLOURS);
     }
+    // A weight of 1 changes nothing, so nothing is lost with it.
     if (count == 4 || count == 7) && values[3] != 1.0 {
         lost.note(lost::WEIGHTS);
     }

@@ -80,6 +80,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
         binary: None,
     };
     let is_number = word.text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    // The keyword is tried before a number, since `4OFF` begins with a digit too.
     let Ok((glued, letters)) = keyword(word.text) else {
         if is_number {
             words.seek(word.start);
@@ -88,6 +89,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
         return refuse(words, word);
     };
     let has = |prefix| letters.contains(&prefix);
+    // Each letter is there once, and what is glued behind `OFF` is `BINARY` or the first count, as in `OFF8 6 12`
     let is_repeated = (1..letters.len()).any(|n| letters[..n].contains(&letters[n]));
     if is_repeated || !(glued.is_empty() || glued == "BINARY" || glued.starts_with(|c: char| c.is_ascii_digit())) {
         return refuse(words, word);
@@ -96,6 +98,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
     header.has_normals = has(OffPrefix::Normal);
     header.has_colours = has(OffPrefix::Colour);
     header.has_texture = has(OffPrefix::Texture);
+    // Go back to what is glued: `nOFF BINARY` has its dimension in the binary part, `nOFF 4 BINARY` in the text
     words.seek(word.span().end - glued.len());
     let mut mark = take_binary(words);
     let has_dimension = has(OffPrefix::Dimension) && mark.is_some();
@@ -104,6 +107,7 @@ pub(super) fn read(words: &mut Words<'_>) -> Option<Header> {
         dimension = read_dimension(words)?;
         mark = take_binary(words);
     }
+    // Behind this line end every octet is data, so nothing else may stand before it.
     if let Some(word) = mark {
         let Some(start) = words.skip_line_end() else {
             let at = words.position();

@@ -49,11 +49,13 @@ pub(super) fn read(
                     format!("{} cannot be read (octet {at}): {reason}", which(element, number))
                 }
             };
+            // Behind an element that failed nothing is where it seems to be, so its complaint is the only one.
             let place = words.place(element.count.span());
             words.complain(Diagnostic::error(message).at(place, "the number of these elements"));
             return None;
         }
     }
+    // Octets behind the last element do no harm: all that was announced is there.
     let rest = bytes.len() - cursor.position() as usize;
     if rest > 0 {
         let rest = counted(rest, "octet is", "octets are");

@@ -186,6 +186,7 @@ fn refuse(words: &mut Words<'_>, keyword: Word<'_>, line: Word<'_>) {
     let hint = match keyword.text {
         "format" => "formats are `format ascii 1.0`, binary_little_endian and binary_big_endian".to_string(),
         "element" => {
+            // A count that is no number has its own complaint, which says more than the form of the line.
             if let (Some(name), Some(count), 3) = (at(1), at(2), parts.len())
                 && words.whole(count, || format!("the number of elements `{}`", shortened(name.text))).is_none()
             {
@@ -195,11 +196,13 @@ fn refuse(words: &mut Words<'_>, keyword: Word<'_>, line: Word<'_>) {
         }
         "property" => {
             let is_list = at(1).is_some_and(|word| word.text == "list");
+            // `property list uchar int vertex_indices` has types in places 2 and 3, `property float x` in place 1.
             let types = if is_list { 2..4 } else { 1..2 };
             let unknown = types.filter_map(at).find(|word| !TYPES.contains(&word.text));
             if let Some(word) = unknown {
                 let message = format!("`{}` is no type of PLY", shortened(word.text));
                 let error = Diagnostic::error(message).at(words.place(word.span()), "not a type");
+                // The first eight are all there are: the others are their second names.
                 let hint = did_you_mean(&shortened(word.text), TYPES)
                     .unwrap_or_else(|| format!("the types are {}", TYPES[..8].join(", ")));
                 words.complain(error.hint(hint));

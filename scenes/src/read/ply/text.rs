@@ -133,6 +133,7 @@ impl<'a> ElementReader<'_, 'a, '_> {
             self.words.complain(error.also(count, "the number of these elements"));
             return None;
         };
+        // Note where the element's first line ends, which is what is wrong if there is a number too many later
         if self.first.is_none() {
             self.first = Some(word);
         } else if self.cut.is_none() && self.words.starts_line(word) {
@@ -141,10 +142,12 @@ impl<'a> ElementReader<'_, 'a, '_> {
         self.last_end = word.span().end;
         self.read += 1;
         let is_used = is_length || matches!(column.slot, PropertySlot::Position(_) | PropertySlot::Corners);
+        // A float is rounded once, from the text: by way of double precision it may end at a neighbour.
         let value = match kind {
             ScalarType::Float => word.text.parse::<f32>().map(f64::from),
             _ => word.text.parse::<f64>(),
         };
+        // Nothing depends on a number that is not used, so it may be `nan` or infinite.
         if let Ok(value) = value
             && (fits(kind, value) || !is_used && !fits(&ScalarType::Double, value))
             && !(is_length && value < 0.0)

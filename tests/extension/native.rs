@@ -1,6 +1,10 @@
 //! Instructions with a meaning in Rust in native code: what goes wrong in them.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread::ThreadId;
+use std::time::{Duration, Instant};
 
 use emu::engine::Wish;
 use emu::extension::{Call, Ending, Meaning, attach};
@@ -88,12 +92,34 @@ fn panics_come_to_who_runs_the_program() {
     }
 }
 
-/// A core's program that answers each work item but number 700, at which it panics.
+/// A mistake that only another thread makes than the one that came first, which waits for another one for a while.
+#[derive(Clone, Debug)]
+struct PanicsElsewhere {
+    first: Arc<OnceLock<ThreadId>>,
+    has_come: Arc<AtomicBool>,
+    until: Instant,
+}
+
+impl Meaning for PanicsElsewhere {
+    fn execute(&mut self, _: &mut Call) -> Result<Ending, Fault> {
+        let own = std::thread::current().id();
+        if *self.first.get_or_init(|| own) != own {
+            self.has_come.store(true, Ordering::Relaxed);
+            panic!("another thread has come");
+        }
+        while !self.has_come.load(Ordering::Relaxed) && Instant::now() < self.until {
+            std::thread::yield_now();
+        }
+        Ok(Ending::DONE)
+    }
+}
+
+/// A core's program that answers each work item, and panics at number 700 where the instruction does.
 const ANSWERS: &str = "
     recv5 v0, s20
     vget  s4, v0, 0
-    li    s5, 700
-    bne   s4, s5, fine
+    li    s5, NUMBER
+    blt   s4, s5, fine
     panics s4
 fine:
     andi  s4, s4, 63
@@ -103,20 +129,39 @@ fine:
     send2 s20, v6
     halt";
 
-#[test]
-fn panics_of_a_work_item_come_to_who_runs_the_machines() {
+/// Text of the panic with which machines end on so many threads, whose cores panic from an item on.
+fn panic_of(meaning: impl Meaning + Clone, from: u32, threads: usize, machines: &[Config]) -> Option<String> {
     let (mut isa, _): (Isa, _) = isa_of(ROWS);
-    attach(&mut isa, "panics", Panics).unwrap();
-    let (core, main) = (program(ANSWERS, &isa), dispatch(2_500));
-    let machines: Vec<Config> = [4, 2, 7].map(|cores| Config { cores, ..Config::default() }).to_vec();
+    attach(&mut isa, "panics", meaning).unwrap();
+    let (core, main) = (program(&ANSWERS.replace("NUMBER", &from.to_string()), &isa), dispatch(2_500));
     let options = RunOptions::default();
     let setup = Setup { config: &machines[0], isa: &isa, core: &core, main: &main, kinds: Vec::new(), options };
     let memory = Memory::new(vec![0; 2_000]);
-    for (threads, wanted) in [1, 2, 3, 6].into_iter().flat_map(|threads| [(threads, 1), (threads, 3)]) {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let run = || pool.install(|| emu::run_all(&setup, &machines[..wanted], &memory, &mut |_| {}));
-        let panic = catch_unwind(AssertUnwindSafe(run)).expect_err("an item panics");
-        let said = panic.downcast_ref::<String>().map(String::as_str);
-        assert_eq!(said, Some("700 is too much"), "{wanted} machines on {threads} threads");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let run = || {
+        pool.install(|| match machines {
+            [_] => drop(emu::count(&setup, &memory)),
+            _ => drop(emu::run_all(&setup, machines, &memory, &mut |_| {})),
+        })
+    };
+    let panic = catch_unwind(AssertUnwindSafe(run)).err()?;
+    panic.downcast_ref::<String>().cloned().or_else(|| panic.downcast_ref::<&str>().map(|&text| text.to_owned()))
+}
+
+#[test]
+fn panics_of_work_items_come_to_who_runs_the_machines() {
+    let machines: Vec<Config> = [4, 4, 2, 7].map(|cores| Config { cores, ..Config::default() }).to_vec();
+    // One machine is counted, two machines are as many as wait at once with a prerun, and four are more than there are threads.
+    for (threads, wanted) in [1, 2, 3, 6].into_iter().flat_map(|threads| [1, 2, 4].map(|wanted| (threads, wanted))) {
+        let machines = &machines[..wanted];
+        let said = panic_of(Panics, 700, threads, machines).expect("an item panics");
+        assert!(said.ends_with("is too much"), "{wanted} machines on {threads} threads: {said}");
+        if threads == 1 {
+            continue;
+        }
+        let until = Instant::now() + Duration::from_secs(60);
+        let elsewhere = PanicsElsewhere { first: Arc::default(), has_come: Arc::default(), until };
+        let said = panic_of(elsewhere, 0, threads, machines);
+        assert_eq!(said.as_deref(), Some("another thread has come"), "{wanted} machines on {threads} threads");
     }
 }

@@ -1,5 +1,5 @@
-//! Crew of a prerun: recorders, and whoever has nothing else to do. A batch is worked off portion by portion by the prerun's thread, by threads that do
-//! nothing else, and by machines that wait for it; so no host thread waits as long as there is work.
+//! Host threads that record the batches of a prerun together: the prerun's own, threads that do nothing else, and machines, which record as long as they
+//! would wait for the next batch. How a work item is recorded, and how a machine replays it, is not said here.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -22,11 +22,14 @@ const MOST_SEGMENTS: usize = 1 << 23;
 /// reason is told; it must not depend on the number of threads.
 pub const AT_ONCE: usize = 32;
 
-const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
+/// Reason that comes before all others.
+pub const TOO_LONG: Reason = "the work items make too many transfers to be recorded";
+
+/// Reason that nobody is told: a thread has panicked, and its panic goes on where that is joined.
 const BROKEN_OFF: Reason = "a work item was not recorded to its end";
 
 /// Work items of a batch that somebody records.
-pub struct Work {
+pub struct BatchWork {
     /// Numbers of cores, and the messages that they were sent.
     pub messages: Vec<(u32, Message)>,
     /// Number of the first item that nobody has taken.
@@ -38,11 +41,11 @@ pub struct Work {
 /// Portion, or why there is none, by the number of its first item.
 type PortionFound = (usize, Result<Arc<Portion>, Reason>);
 
-impl Work {
-    /// Work of which nothing is taken.
-    pub fn new(messages: Vec<(u32, Message)>) -> Work {
+impl BatchWork {
+    /// A batch of which nothing is taken.
+    pub fn new(messages: Vec<(u32, Message)>) -> BatchWork {
         let (next, found) = (AtomicUsize::new(0), Mutex::default());
-        Work { messages, next, budget: Budget::new(MOST_SEGMENTS), found }
+        BatchWork { messages, next, budget: Budget::new(MOST_SEGMENTS), found }
     }
 
     /// True where there is something to be taken.
@@ -78,16 +81,16 @@ impl Work {
     }
 }
 
-/// A lock on what stays whole if somebody panics who holds it.
+/// A lock, whoever has panicked with it: the panic goes on at its thread's end, before anybody uses a result.
 fn held<D>(lock: &Mutex<D>) -> MutexGuard<'_, D> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Desk at which all meet: what is to be done, and what is ready.
-struct Desk {
-    /// The batch that is worked on.
-    work: Option<Arc<Work>>,
-    /// Threads that work on it beside that of the prerun.
+/// State that the threads of a crew share.
+struct CrewState {
+    /// The batch that is being recorded; none from when the prerun waits for the helpers of one up to the next.
+    work: Option<Arc<BatchWork>>,
+    /// Threads that record some of it beside that of the prerun.
     helpers: usize,
     /// One of them has panicked, so that the batch stays incomplete.
     is_broken: bool,
@@ -97,36 +100,56 @@ struct Desk {
     ready: Vec<Option<VecDeque<Arc<Batch>>>>,
 }
 
-/// Recorders, a host thread each at most, with the desk at which those meet who use them.
-pub struct Crew<'a, T, O> {
-    /// The first one is the prerun's.
-    recorders: Vec<Mutex<Recorder<'a, T, O>>>,
-    desk: Mutex<Desk>,
-    /// Something at the desk is otherwise than it was.
+/// Monitor of that state: a lock, and a signal of its changes.
+struct Monitor {
+    state: Mutex<CrewState>,
     changed: Condvar,
 }
 
+impl Monitor {
+    fn lock(&self) -> MutexGuard<'_, CrewState> {
+        held(&self.state)
+    }
+
+    fn wait<'s>(&self, state: MutexGuard<'s, CrewState>) -> MutexGuard<'s, CrewState> {
+        self.changed.wait(state).unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes the state, and tells those who wait.
+    fn change<R>(&self, change: impl FnOnce(&mut CrewState) -> R) -> R {
+        let result = change(&mut self.lock());
+        self.changed.notify_all();
+        result
+    }
+}
+
+/// Recorders, with what those share who use them.
+pub struct Crew<'a, T, O> {
+    /// A recorder a host thread; the first one is the prerun's.
+    recorders: Vec<Mutex<Recorder<'a, T, O>>>,
+    monitor: Monitor,
+}
+
 impl<'a, T: Watch, O: Observer> Crew<'a, T, O> {
-    /// A crew of these recorders, whose batches so many machines want.
-    pub fn new(recorders: impl Iterator<Item = Recorder<'a, T, O>>, machines: usize) -> Crew<'a, T, O> {
-        let ready = (0..machines).map(|_| Some(VecDeque::new())).collect();
-        let desk = Desk { work: None, helpers: 0, is_broken: false, is_closed: false, ready };
-        Crew { recorders: recorders.map(Mutex::new).collect(), desk: Mutex::new(desk), changed: Condvar::new() }
+    /// A crew of these recorders, whose batches nobody wants yet.
+    pub fn new(recorders: impl Iterator<Item = Recorder<'a, T, O>>) -> Crew<'a, T, O> {
+        let state = CrewState { work: None, helpers: 0, is_broken: false, is_closed: false, ready: Vec::new() };
+        let monitor = Monitor { state: Mutex::new(state), changed: Condvar::new() };
+        Crew { recorders: recorders.map(Mutex::new).collect(), monitor }
     }
 
     /// Records a batch, for the prerun: yields it when all have done their part.
-    pub fn record(&self, work: &Arc<Work>) -> Batch {
+    pub fn record(&self, work: &Arc<BatchWork>) -> Batch {
         if self.recorders.len() > 1 {
-            held(&self.desk).work = Some(work.clone());
-            self.changed.notify_all();
+            self.monitor.change(|state| state.work = Some(work.clone()));
         }
         work.work_off(&mut held(&self.recorders[0]));
-        let mut desk = held(&self.desk);
-        desk.work = None;
-        while desk.helpers != 0 {
-            desk = self.wait(desk);
+        let mut state = self.monitor.lock();
+        state.work = None;
+        while state.helpers != 0 {
+            state = self.monitor.wait(state);
         }
-        if desk.is_broken { Err(BROKEN_OFF) } else { work.recorded() }
+        if state.is_broken { Err(BROKEN_OFF) } else { work.recorded() }
     }
 
     /// Asks each recorder something, between two batches.
@@ -134,65 +157,50 @@ impl<'a, T: Watch, O: Observer> Crew<'a, T, O> {
         self.recorders.iter().for_each(|recorder| ask(&mut held(recorder)));
     }
 
-    /// Lays a batch before the machines, as soon as all of them have room for it; false where none wants it.
-    pub fn hand_over(&self, batch: &Arc<Batch>) -> bool {
-        let mut desk = held(&self.desk);
-        while desk.ready.iter().flatten().any(|ready| ready.len() >= AHEAD) {
-            desk = self.wait(desk);
+    /// Gives a batch to the machines, as soon as all of them have room for it; false where none wants it.
+    pub fn publish(&self, batch: &Arc<Batch>) -> bool {
+        let mut state = self.monitor.lock();
+        while state.ready.iter().flatten().any(|ready| ready.len() >= AHEAD) {
+            state = self.monitor.wait(state);
         }
-        desk.ready.iter_mut().flatten().for_each(|ready| ready.push_back(batch.clone()));
-        self.changed.notify_all();
-        desk.ready.iter().any(Option::is_some)
+        state.ready.iter_mut().flatten().for_each(|ready| ready.push_back(batch.clone()));
+        self.monitor.changed.notify_all();
+        state.ready.iter().any(Option::is_some)
     }
 
-    /// Lends a hand until there are no more batches.
+    /// Records until there are no more batches.
     pub fn help(&self) {
-        let mut desk = held(&self.desk);
-        while !desk.is_closed {
-            desk = self.help_or_wait(desk);
+        let mut state = self.monitor.lock();
+        while !state.is_closed {
+            state = self.help_or_wait(state);
         }
     }
 
-    /// The next batch of a machine, which lends a hand meanwhile; `None` when there are no more.
-    fn take(&self, machine: usize) -> Option<Arc<Batch>> {
-        let mut desk = held(&self.desk);
-        loop {
-            if let Some(batch) = desk.ready[machine].as_mut()?.pop_front() {
-                self.changed.notify_all();
-                return Some(batch);
-            }
-            if desk.is_closed {
-                return None;
-            }
-            desk = self.help_or_wait(desk);
-        }
-    }
-
-    fn wait<'d>(&self, desk: MutexGuard<'d, Desk>) -> MutexGuard<'d, Desk> {
-        self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Works on the batch at the desk with a recorder that nobody uses, until nothing of it can be taken; waits where there is no such thing.
-    fn help_or_wait<'d>(&'d self, mut desk: MutexGuard<'d, Desk>) -> MutexGuard<'d, Desk> {
-        let work = desk.work.clone().filter(|work| work.is_open());
+    /// Records some of the batch with a recorder that nobody uses, until nothing of it can be taken; waits where there is no such thing.
+    fn help_or_wait<'s>(&'s self, mut state: MutexGuard<'s, CrewState>) -> MutexGuard<'s, CrewState> {
+        let work = state.work.clone().filter(|work| work.is_open());
         let free = || self.recorders[1..].iter().find_map(|recorder| recorder.try_lock().ok());
-        let Some((work, mut recorder)) = work.and_then(|work| Some((work, free()?))) else { return self.wait(desk) };
-        desk.helpers += 1;
-        drop(desk);
-        let helping = Helping(&self.desk, &self.changed);
+        let Some((work, mut recorder)) = work.and_then(|work| Some((work, free()?))) else {
+            return self.monitor.wait(state);
+        };
+        state.helpers += 1;
+        drop(state);
+        let helping = Helping(&self.monitor);
         work.work_off(&mut recorder);
         drop((recorder, helping));
-        held(&self.desk)
+        self.monitor.lock()
     }
 
-    /// The place of a machine at the desk.
-    pub fn seat(&self, machine: usize) -> Seat<'_, 'a, T, O> {
-        Seat { crew: self, machine }
+    /// The subscription of one more machine. All have to be there before the first batch is published.
+    pub fn subscribe(&self) -> Subscription<'_, 'a, T, O> {
+        let mut state = self.monitor.lock();
+        state.ready.push(Some(VecDeque::new()));
+        Subscription { crew: self, number: state.ready.len() - 1 }
     }
 
-    /// Says that there will be no more batches when it is dropped, in a panic as well.
+    /// Says that there will be no more batches when it is dropped, in a panic as well: to be had before anybody waits for one.
     pub fn closing(&self) -> Closing<'_> {
-        Closing(&self.desk, &self.changed)
+        Closing(&self.monitor)
     }
 
     /// All recorders, when nobody uses them any more.
@@ -202,43 +210,59 @@ impl<'a, T: Watch, O: Observer> Crew<'a, T, O> {
 }
 
 /// Help with a batch, up to its end or a panic.
-struct Helping<'c>(&'c Mutex<Desk>, &'c Condvar);
+struct Helping<'c>(&'c Monitor);
 
 impl Drop for Helping<'_> {
     fn drop(&mut self) {
-        let mut desk = held(self.0);
-        desk.helpers -= 1;
-        desk.is_broken |= std::thread::panicking();
-        self.1.notify_all();
+        let mut state = self.0.lock();
+        state.helpers -= 1;
+        state.is_broken |= std::thread::panicking();
+        // Only the prerun waits for that, and for all of them.
+        if state.helpers == 0 {
+            self.0.changed.notify_all();
+        }
     }
 }
 
-/// Promise of a prerun to say when there will be no more batches.
-pub struct Closing<'c>(&'c Mutex<Desk>, &'c Condvar);
+/// Promise to say when there will be no more batches.
+pub struct Closing<'c>(&'c Monitor);
 
 impl Drop for Closing<'_> {
     fn drop(&mut self) {
-        held(self.0).is_closed = true;
-        self.1.notify_all();
+        self.0.change(|state| state.is_closed = true);
     }
 }
 
-/// Seat of a machine, which wants batches as long as it has it.
-pub struct Seat<'c, 'a, T: Watch, O: Observer> {
+/// Subscription of a machine, which wants batches as long as it has it.
+pub struct Subscription<'c, 'a, T: Watch, O: Observer> {
     crew: &'c Crew<'a, T, O>,
-    machine: usize,
+    number: usize,
 }
 
-impl<T: Watch, O: Observer> Seat<'_, '_, T, O> {
-    /// The next batch; `None` when there are no more.
+impl<T: Watch, O: Observer> Subscription<'_, '_, T, O> {
+    /// The next batch, for which the machine records meanwhile; `None` when there are no more.
     pub fn take(&self) -> Option<Arc<Batch>> {
-        self.crew.take(self.machine)
+        let mut state = self.crew.monitor.lock();
+        loop {
+            let ready = state.ready[self.number].as_mut()?;
+            let was_full = ready.len() == AHEAD;
+            if let Some(batch) = ready.pop_front() {
+                // Only a prerun that has found no room waits for some.
+                if was_full {
+                    self.crew.monitor.changed.notify_all();
+                }
+                return Some(batch);
+            }
+            if state.is_closed {
+                return None;
+            }
+            state = self.crew.help_or_wait(state);
+        }
     }
 }
 
-impl<T: Watch, O: Observer> Drop for Seat<'_, '_, T, O> {
+impl<T: Watch, O: Observer> Drop for Subscription<'_, '_, T, O> {
     fn drop(&mut self) {
-        held(&self.crew.desk).ready[self.machine] = None;
-        self.crew.changed.notify_all();
+        self.crew.monitor.change(|state| state.ready[self.number] = None);
     }
 }

@@ -38,6 +38,7 @@ use crate::machine::stepped;
 use crate::machine::{RunFailure, RunOutcome, Setup};
 use crate::profile::{Observer, Unobserved};
 use crate::semantics::Watch;
+use crew::Subscription;
 use cursor::{ItemCursor, Replayer};
 use feed::Feed;
 use item::RecordLevel;
@@ -99,42 +100,48 @@ fn replay<T: Watch + Clone + Send, O: Observer + Send>(
     progress: &mut dyn FnMut(u64),
 ) -> (ItemTotals, Vec<Replayed>) {
     let (first, cores, threads) = (&setups[0], setups[0].config.cores, rayon::current_num_threads());
-    // Programs of its own, so that the prerun does not wait while a machine compiles those.
-    let own_codes = &first.codes();
-    let [core_code, main_code] = own_codes;
-    let level = RecordLevel::Segments;
-    let crew = prerun::crew::<T, O>(first, core_code, memory, arithmetic, level, [threads, setups.len()]);
-    if let ([setup], 1) = (setups, threads) {
-        let mut prerun = Prerun::new(setup, main_code, memory, arithmetic.clone(), &crew);
+    let is_alone = setups.len() == 1 && threads == 1;
+    // Beside machines it has programs of its own, so that it does not wait while a machine compiles those.
+    let own_codes = (!is_alone).then(|| first.codes());
+    let [core_code, main_code] = own_codes.as_ref().unwrap_or(codes);
+    let crew = prerun::crew::<T, O>(first, core_code, memory, arithmetic, RecordLevel::Segments, threads);
+    if is_alone {
+        let mut prerun = Prerun::new(first, main_code, memory, arithmetic.clone(), &crew);
         let feed = Feed::new(prefix, cores, cores, || prerun.next_batch());
-        let ending = on_clock::<T, O>(setup, codes, memory.clone(), arithmetic, feed, progress);
-        return (ItemTotals::of(crew, setup, core_code), vec![ending]);
+        let ending = on_clock::<T, O>(first, codes, memory.clone(), arithmetic, feed, progress);
+        return (ItemTotals::of(crew, first, core_code), vec![ending]);
     }
+    // Threads of their own: this may itself be a thread of a pool in which all others wait.
     let endings = std::thread::scope(|scope| {
-        let own = arithmetic.clone();
-        let crew = &crew;
+        let (own, crew) = (arithmetic.clone(), &crew);
+        // Whatever goes wrong from here on, nobody waits for ever for batches, nor for somebody who would take one.
+        let closing = crew.closing();
+        let subscriptions: Vec<_> = setups.iter().map(|_| crew.subscribe()).collect();
         let prerun = scope.spawn(move || {
-            let prerun = Prerun::new(first, main_code, memory, own, crew);
-            prerun.run(&mut |batch| crew.hand_over(&batch));
+            let _closing = closing;
+            Prerun::new(first, main_code, memory, own, crew).run(&mut |batch| crew.publish(&batch));
         });
-        // The prerun and the machines work with recorders as well.
+        // The prerun and the machines record as well.
         let helpers = (1 + setups.len()..threads).map(|_| scope.spawn(|| crew.help()));
         let mut others: Vec<_> = helpers.collect();
-        let play = |machine: usize, setup: &Setup, own: &T, progress: &mut dyn FnMut(u64)| {
-            let seat = crew.seat(machine);
-            let feed = Feed::new(prefix, cores, setup.config.cores, move || seat.take());
-            on_clock::<T, O>(setup, codes, memory.clone(), own, feed, progress)
+        let play = move |setup: &Setup, subscription: Subscription<T, O>, own: &T, progress: &mut dyn FnMut(u64)| {
+            let feed = Feed::new(prefix, cores, setup.config.cores, move || subscription.take());
+            let ending = on_clock::<T, O>(setup, codes, memory.clone(), own, feed, progress);
+            // Other machines may go on where this one has trapped.
+            crew.help();
+            ending
         };
-        let machines: Vec<_> = (1..)
-            .zip(&setups[1..])
-            .map(|(machine, setup)| {
+        let mut machines = setups.iter().zip(subscriptions);
+        let (first, subscription) = machines.next().expect("there is a machine");
+        let machines: Vec<_> = machines
+            .map(|(setup, subscription)| {
                 let own = arithmetic.clone();
-                scope.spawn(move || play(machine, setup, &own, &mut |_| {}))
+                scope.spawn(move || play(setup, subscription, &own, &mut |_| {}))
             })
             .collect();
         // The first machine stays on this thread, because only that may call `progress`.
-        let mut endings = vec![play(0, first, arithmetic, progress)];
-        // An instruction in Rust may panic: that goes on here, with its own message.
+        let mut endings = vec![play(first, subscription, arithmetic, progress)];
+        // An instruction in Rust may panic: that goes on here, with its own message; of several, with that of the first of these threads.
         endings.extend(machines.into_iter().map(|machine| machine.join().unwrap_or_else(|panic| resume_unwind(panic))));
         others.push(prerun);
         others.into_iter().for_each(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic)));

@@ -5,7 +5,7 @@ use std::collections::{HashSet, VecDeque};
 use std::panic::resume_unwind;
 use std::sync::Arc;
 
-use super::crew::{Crew, Work};
+use super::crew::{BatchWork, Crew, TOO_LONG};
 use super::feed::Batch;
 use super::item::RecordLevel;
 use super::record::Recorder;
@@ -85,7 +85,7 @@ pub struct ItemTotals {
 }
 
 impl ItemTotals {
-    /// What all recorders of a crew counted; sums do not depend on who recorded what.
+    /// Totals of all recorders of a crew; sums do not depend on who recorded what.
     pub fn of<T: Watch, O: Observer>(crew: Crew<T, O>, setup: &Setup, code: &Code) -> ItemTotals {
         let (tally, kinds, keys) = (Tally::new(code), Kinds::new(&setup.kinds), Vec::new());
         let mut items = ItemTotals { tally, kinds, profile: None, keys };
@@ -120,10 +120,10 @@ pub fn crew<'a, T: Watch + Clone, O: Observer>(
     memory: &'a Memory,
     arithmetic: &T,
     level: RecordLevel,
-    [threads, machines]: [usize; 2],
+    threads: usize,
 ) -> Crew<'a, T, O> {
     let recorder = |number| Recorder::new(number, core_code, setup, memory, arithmetic.clone(), level);
-    Crew::new((0..threads as u32).map(recorder), machines)
+    Crew::new((0..threads as u32).map(recorder))
 }
 
 /// A main processor that runs ahead, and the crew that records what it hands out.
@@ -175,9 +175,12 @@ impl<'c, 'a, T: Watch, O: Observer> Prerun<'c, 'a, T, O> {
             self.end = Some(pause);
             return None;
         }
-        let work = Arc::new(Work::new(std::mem::take(&mut cores.work)));
-        let batch = self.crew.record(&work);
-        let batch = if batch.is_ok() && has_too_many_paths(self.crew) { Err(TOO_MANY_PATHS) } else { batch };
+        let work = Arc::new(BatchWork::new(std::mem::take(&mut cores.work)));
+        let batch = match self.crew.record(&work) {
+            Err(TOO_LONG) => Err(TOO_LONG),
+            _ if has_too_many_paths(self.crew) => Err(TOO_MANY_PATHS),
+            batch => batch,
+        };
         // Answers come in the order of the work, which is as if all cores had taken equally long.
         if let Ok(batch) = &batch {
             let items = batch.iter().flat_map(|portion| portion.items.iter().map(|item| portion.sent(item)));
@@ -194,7 +197,6 @@ impl<'c, 'a, T: Watch, O: Observer> Prerun<'c, 'a, T, O> {
     /// Hands over all batches, as long as somebody wants them, and yields the pause of the main processor after which there were no more, and
     /// global memory.
     pub fn run(mut self, hand_over: &mut dyn FnMut(Arc<Batch>) -> bool) -> (Pause, Memory) {
-        let _closing = self.crew.closing();
         while let Some(batch) = self.next_batch() {
             if !hand_over(batch) {
                 break;
@@ -213,10 +215,13 @@ pub fn run<T: Watch + Clone + Send, O: Observer + Send>(
     hand_over: &mut dyn FnMut(Arc<Batch>) -> bool,
 ) -> PrerunTotals {
     let ([core_code, main_code], threads) = (&setup.codes(), rayon::current_num_threads());
-    let crew = crew::<T, O>(setup, core_code, memory, &arithmetic, level, [threads, 0]);
+    let crew = crew::<T, O>(setup, core_code, memory, &arithmetic, level, threads);
+    // Threads of their own: this may itself be a thread of a pool in which all others wait.
     let (end, memory) = std::thread::scope(|scope| {
+        let closing = crew.closing();
         let helpers: Vec<_> = (1..threads).map(|_| scope.spawn(|| crew.help())).collect();
         let ended = Prerun::new(setup, main_code, memory, arithmetic, &crew).run(hand_over);
+        drop(closing);
         helpers.into_iter().for_each(|helper| helper.join().unwrap_or_else(|panic| resume_unwind(panic)));
         ended
     });

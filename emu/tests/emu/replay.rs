@@ -115,16 +115,15 @@ fn recordings_come_in_several_batches() {
         p.emit(Op::andi, &[4, 4, 63]).emit(Op::cores, &[20]);
         p.emit(Op::vsplat, &[6, 4]).emit(Op::vsplat, &[7, 6]).emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
     });
-    let main = dispatch(2_500);
-    for cores in [1, 4, 20] {
-        let frame = both(&with(ArbiterKind::RoundRobin, cores, Config::default()), &core, &main);
-        assert_eq!((frame.method, frame.item_count), (Method::Replayed, 2_500));
+    let main = dispatch(5_500);
+    let machines = [1, 4, 20, 3].map(|cores| with(ArbiterKind::RoundRobin, cores, Config::default()));
+    let alone: Vec<RunOutcome> = machines.iter().map(|config| both(config, &core, &main)).collect();
+    for frame in &alone {
+        assert_eq!((frame.method, frame.item_count), (Method::Replayed, 5_500));
     }
     // Who records what, and how many machines wait for it meanwhile, changes nothing.
     let isa = Isa::base();
-    let machines = [1, 4, 20, 3].map(|cores| with(ArbiterKind::RoundRobin, cores, Config::default()));
     let setup = setup(&machines[0], &isa, &core, &main);
-    let alone: Vec<RunOutcome> = machines.iter().map(|config| both(config, &core, &main)).collect();
     for (threads, wanted) in (1..=6).flat_map(|threads| (1..=machines.len()).map(move |wanted| (threads, wanted))) {
         let frames = on_threads(threads, || emu::run_all(&setup, &machines[..wanted], &memory(), &mut |_| {}));
         let frames = frames.into_iter().map(|frame| frame.unwrap_or_else(|failure| panic!("{failure}")));
@@ -321,6 +320,43 @@ fn work_that_depends_on_the_number_of_cores_is_not_shared() {
     for (config, frame) in machines.iter().zip(frames) {
         let stepped = emu::step(&setup(config, &isa, &core, &main), memory(), &mut |_| {}).expect("it runs");
         assert_eq!(frame.clocks, stepped.clocks);
+    }
+}
+
+#[test]
+fn machines_that_want_no_more_recordings_leave_the_others_theirs() {
+    let isa = Isa::base();
+    // Both programs hand out six batches. Of the first, recordings serve three cores only; the second one traps in the first batch.
+    let counts = program(|p| {
+        p.emit(Op::recv5, &[0, 20]).emit(Op::cores, &[3]).emit(Op::vput, &[0, 3, 1]);
+        p.emit(Op::vget, &[4, 0, 0]).emit(Op::andi, &[4, 4, 63]).emit(Op::vsplat, &[6, 4]).emit(Op::vmov, &[7, 0]);
+        p.emit(Op::cores, &[20]).emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+    });
+    let traps = program(|p| {
+        let good = p.label();
+        p.emit(Op::recv5, &[0, 20]).emit(Op::vget, &[4, 0, 0]).emit(Op::movi, &[2, 330]);
+        p.branch(Op::bne, &[4, 2], good);
+        p.emit(Op::trap, &[7]);
+        p.place(good);
+        p.emit(Op::andi, &[4, 4, 63]).emit(Op::cores, &[20]);
+        p.emit(Op::vsplat, &[6, 4]).emit(Op::vsplat, &[7, 4]).emit(Op::send2, &[20, 6]).emit(Op::halt, &[]);
+    });
+    let main = dispatch(6_000);
+    let machines: Vec<Config> = [3, 5, 3, 4].into_iter().map(|cores| Config { cores, ..Config::default() }).collect();
+    for threads in 1..=5 {
+        let run = |core: &Program| {
+            let setup = setup(&machines[0], &isa, core, &main);
+            on_threads(threads, || emu::run_all(&setup, &machines, &memory(), &mut |_| {}))
+        };
+        let frames: Vec<RunOutcome> = run(&counts).into_iter().map(|frame| frame.expect("it runs")).collect();
+        let stepped = Method::Stepped { why: "the work items depend on the number of cores" };
+        let methods: Vec<Method> = frames.iter().map(|frame| frame.method).collect();
+        assert_eq!(methods, [Method::Replayed, stepped, Method::Replayed, stepped], "{threads} threads");
+        assert!(frames[0] == frames[2] && frames.iter().all(|frame| frame.item_count == 6_000), "{threads} threads");
+        for failed in run(&traps) {
+            let failed = failed.expect_err("it traps").to_string();
+            assert!(failed.contains("began with 330, 330, 330"), "{threads} threads: {failed}");
+        }
     }
 }
 
